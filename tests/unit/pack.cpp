@@ -1,8 +1,8 @@
-#include "core/numerics/linear_algebra/pack.h"
-
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <random>
+
+#include "core/numerics/linear_algebra/pack_functions.h"
 
 using namespace drape;
 

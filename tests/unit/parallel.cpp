@@ -1,10 +1,10 @@
-#include "core/kernel/threads/parallel.h"
-
 #include <atomic>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <stdexcept>
 #include <vector>
+
+#include "core/kernel/threads/parallel_collect.h"
 
 using namespace drape;
 
@@ -73,4 +73,21 @@ TEST_CASE("parallel_sum has the same bits with any number of threads") {
   }
   set_thread_count(0);
   CHECK(parallel_sum(0, 5, [](int, int) { return 1.0; }) == 0);
+}
+
+TEST_CASE("what pieces find is collected in their order") {
+  for (const int threads : {1, 4}) {
+    set_thread_count(threads);
+    const std::vector<int> odd =
+        parallel_collect<int>(1001, 7, [](int begin, int end, std::vector<int>& found) {
+          for (int i = begin; i < end; ++i)
+            if (i % 2) found.push_back(i);
+        });
+    REQUIRE(odd.size() == 500);
+    for (int k = 0; k < 500; ++k) CHECK(odd[k] == 2 * k + 1);
+  }
+  set_thread_count(0);
+  CHECK(parallel_collect<int>(0, 5, [](int, int, std::vector<int>&) {
+          FAIL("there is nothing to do");
+        }).empty());
 }

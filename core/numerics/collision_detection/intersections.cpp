@@ -7,7 +7,7 @@
 #include <array>
 #include <limits>
 
-#include "core/kernel/threads/parallel.h"
+#include "core/kernel/threads/parallel_collect.h"
 #include "core/numerics/collision_detection/broad_phase.h"
 
 namespace drape {
@@ -105,25 +105,21 @@ std::vector<Box> boxes_of(const TriangleMesh& mesh) {
 std::vector<TrianglePair> meeting(const TriangleMesh& mesh, const TriangleMesh& other, bool same,
                                   const AdjacencyList& candidates) {
   const int count = static_cast<int>(mesh.triangles.rows());
-  std::vector<std::vector<TrianglePair>> lists((count + triangles_per_task - 1) / triangles_per_task);
-  parallel_for(count, triangles_per_task, [&](int begin, int end) {
+  const auto test = [&](int begin, int end, std::vector<TrianglePair>& found) {
     for (int s = begin; s < end; ++s)
       for (const int* t = candidates.begin(s); t != candidates.end(s); ++t) {
         std::array<int, 3> a = vertices(mesh, s), b = vertices(other, *t);
         const int shared = same ? share_first(a, b) : 0;
         if (meet(corners(mesh.vertices, a), corners(other.vertices, b), shared))
-          lists[begin / triangles_per_task].push_back(
-              {s, *t, middle_of_both(box_of(mesh, s), box_of(other, *t))});
+          found.push_back({s, *t, middle_of_both(box_of(mesh, s), box_of(other, *t))});
       }
-  });
-  std::vector<TrianglePair> all;
-  for (const auto& list : lists) all.insert(all.end(), list.begin(), list.end());
-  return all;
+  };
+  return parallel_collect<TrianglePair>(count, triangles_per_task, test);
 }
 
-std::unique_ptr<BroadPhase> broad_phase_of(const TriangleMesh& mesh) {
-  auto phase = make_broad_phase(BroadPhaseKind::bvh);
-  phase->update(boxes_of(mesh));
+BroadPhase broad_phase_of(const TriangleMesh& mesh) {
+  BroadPhase phase;
+  phase.update(boxes_of(mesh));
   return phase;
 }
 
@@ -133,13 +129,13 @@ constexpr long unlimited = std::numeric_limits<long>::max();
 
 std::vector<TrianglePair> self_intersections(const TriangleMesh& mesh) {
   AdjacencyList candidates;
-  broad_phase_of(mesh)->overlaps(unlimited, candidates);
+  broad_phase_of(mesh).overlaps(unlimited, candidates);
   return meeting(mesh, mesh, true, candidates);
 }
 
 std::vector<TrianglePair> intersections(const TriangleMesh& mesh, const TriangleMesh& other) {
   AdjacencyList candidates;
-  broad_phase_of(mesh)->overlaps(*broad_phase_of(other), unlimited, candidates);
+  broad_phase_of(mesh).overlaps(broad_phase_of(other), unlimited, candidates);
   return meeting(mesh, other, false, candidates);
 }
 

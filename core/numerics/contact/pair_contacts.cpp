@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "core/kernel/threads/parallel.h"
+#include "core/kernel/threads/parallel_collect.h"
 #include "core/numerics/contact/contact_kernel.h"
 #include "core/numerics/contact_forces/friction.h"
 
@@ -104,23 +104,18 @@ std::unique_ptr<Collisions> make_pair_contacts(const Positions& x, const Positio
                                                const BarrierParameters& parameters) {
   // Collect indices first, then construct the contacts in place: they are large, and copying dominates.
   constexpr int pairs_per_task = 2048;
-  const int size = static_cast<int>(pairs.size());
-  std::vector<std::vector<int>> near((size + pairs_per_task - 1) / pairs_per_task);
-  parallel_for(size, pairs_per_task, [&](int begin, int end) {
+  const auto find = [&](int begin, int end, std::vector<int>& near) {
     for (int i = begin; i < end; ++i)
-      if (is_within_dhat(pairs[i], positions_of(pairs[i], x, obstacle_vertices)))
-        near[begin / pairs_per_task].push_back(i);
+      if (is_within_dhat(pairs[i], positions_of(pairs[i], x, obstacle_vertices))) near.push_back(i);
+  };
+  const std::vector<int> near = parallel_collect<int>(static_cast<int>(pairs.size()), pairs_per_task, find);
+  const int count = static_cast<int>(near.size());
+  auto contacts = std::make_unique_for_overwrite<Contact[]>(count);
+  parallel_for(count, contacts_per_task, [&](int begin, int end) {
+    for (int k = begin; k < end; ++k)
+      contacts[k] = contact_at(pairs[near[k]], positions_of(pairs[near[k]], x, obstacle_vertices));
   });
-  std::vector<int> start = {0};
-  for (const auto& piece : near) start.push_back(start.back() + static_cast<int>(piece.size()));
-  auto contacts = std::make_unique_for_overwrite<Contact[]>(start.back());
-  parallel_for(static_cast<int>(near.size()), 1, [&](int piece, int) {
-    Contact* contact = contacts.get() + start[piece];
-    for (const int i : near[piece])
-      *contact++ = contact_at(pairs[i], positions_of(pairs[i], x, obstacle_vertices));
-  });
-  return std::make_unique<PairCollisions>(std::move(contacts), start.back(), static_cast<int>(x.rows()),
-                                          parameters);
+  return std::make_unique<PairCollisions>(std::move(contacts), count, static_cast<int>(x.rows()), parameters);
 }
 
 }  // namespace drape

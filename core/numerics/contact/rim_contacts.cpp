@@ -5,7 +5,7 @@
 #include <limits>
 #include <utility>
 
-#include "core/kernel/threads/parallel.h"
+#include "core/kernel/threads/parallel_collect.h"
 #include "core/numerics/contact/contact_kernel.h"
 #include "core/numerics/contact/projected_matrix.h"
 #include "core/numerics/contact_forces/friction.h"
@@ -168,8 +168,7 @@ std::unique_ptr<Collisions> make_rim_contacts(const Positions& x, const Position
                                               const std::vector<ContactPair>& pairs,
                                               const BarrierParameters& parameters) {
   const int count = static_cast<int>(pairs.size());
-  std::vector<std::vector<RimContact>> pieces((count + rim_contacts_per_task - 1) / rim_contacts_per_task);
-  parallel_for(count, rim_contacts_per_task, [&](int begin, int end) {
+  const auto find = [&](int begin, int end, std::vector<RimContact>& found) {
     for (int i = begin; i < end; ++i) {
       const auto part = [&](const ContactPair& own) {
         return contact_at(own, positions_of(own, x, obstacle_vertices));
@@ -179,12 +178,11 @@ std::unique_ptr<Collisions> make_rim_contacts(const Positions& x, const Position
           {part(pairs[i]), part(pair_of_end(pairs[i], 0)), part(pair_of_end(pairs[i], 1))}};
       // Where an end is nearest, the contact and its derivatives are 0.
       const auto& c = contact.parts[0].closest.c;
-      if (c[0] > 0 && c[1] > 0 && contact.b(0) > 0) pieces[begin / rim_contacts_per_task].push_back(contact);
+      if (c[0] > 0 && c[1] > 0 && contact.b(0) > 0) found.push_back(contact);
     }
-  });
-  std::vector<RimContact> contacts;
-  for (const auto& piece : pieces) contacts.insert(contacts.end(), piece.begin(), piece.end());
-  return std::make_unique<RimCollisions>(std::move(contacts), static_cast<int>(x.rows()), parameters);
+  };
+  return std::make_unique<RimCollisions>(parallel_collect<RimContact>(count, rim_contacts_per_task, find),
+                                         static_cast<int>(x.rows()), parameters);
 }
 
 }  // namespace drape

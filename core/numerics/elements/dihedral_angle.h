@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "core/kernel/interfaces/level.h"
-#include "core/numerics/linear_algebra/pack.h"
+#include "core/numerics/linear_algebra/pack_functions.h"
 
 namespace drape {
 

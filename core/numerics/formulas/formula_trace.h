@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "core/numerics/linear_algebra/pack_functions.h"
+
 namespace drape {
 
 /// What a formula depends on: evaluated on traces in place of numbers, it returns one. A comparison is a
@@ -26,22 +28,7 @@ struct Trace {
 
 #define DRAPE_TRACE(function) \
   friend Trace function(const Trace& a) { return of_function(a); }
-  DRAPE_TRACE(sqrt)
-  DRAPE_TRACE(exp)
-  DRAPE_TRACE(expm1)
-  DRAPE_TRACE(log)
-  DRAPE_TRACE(log1p)
-  DRAPE_TRACE(sin)
-  DRAPE_TRACE(cos)
-  DRAPE_TRACE(tan)
-  DRAPE_TRACE(asin)
-  DRAPE_TRACE(acos)
-  DRAPE_TRACE(atan)
-  DRAPE_TRACE(sinh)
-  DRAPE_TRACE(cosh)
-  DRAPE_TRACE(tanh)
-  DRAPE_TRACE(abs)
-  DRAPE_TRACE(sign)
+  DRAPE_FUNCTIONS(DRAPE_TRACE)
 #undef DRAPE_TRACE
 #define DRAPE_TRACE(function) \
   friend Trace function(const Trace& a, const Trace& b) { return of_function(a + b); }

@@ -25,6 +25,11 @@ double decode(std::array<char, 8> bytes) {
   return static_cast<double>(number);
 }
 
+/// Of each PlyType.
+constexpr std::array<double (*)(std::array<char, 8>), 8> decoders{
+    decode<std::int8_t>,  decode<std::uint8_t>,  decode<std::int16_t>, decode<std::uint16_t>,
+    decode<std::int32_t>, decode<std::uint32_t>, decode<float>,        decode<double>};
+
 /// The numbers behind the header, whatever their encoding.
 class PlyBody {
  public:
@@ -59,24 +64,7 @@ class PlyBody {
     std::copy_n(bytes_.data(), size, bytes.data());
     if (format_ == PlyFormat::big_endian) std::reverse(bytes.begin(), bytes.begin() + size);
     bytes_.remove_prefix(size);
-    switch (type) {
-      case PlyType::i8:
-        return decode<std::int8_t>(bytes);
-      case PlyType::u8:
-        return decode<std::uint8_t>(bytes);
-      case PlyType::i16:
-        return decode<std::int16_t>(bytes);
-      case PlyType::u16:
-        return decode<std::uint16_t>(bytes);
-      case PlyType::i32:
-        return decode<std::int32_t>(bytes);
-      case PlyType::u32:
-        return decode<std::uint32_t>(bytes);
-      case PlyType::f32:
-        return decode<float>(bytes);
-      default:
-        return decode<double>(bytes);
-    }
+    return decoders[static_cast<int>(type)](bytes);
   }
 
   [[noreturn]] void fail(const std::string& message) const {
@@ -101,49 +89,58 @@ class PlyBody {
   int number_ = 0;
 };
 
-/// Faces before they are cut, for which the vertices have to be known.
-struct PlyFaces {
+/// A face before it is cut, for which the vertices have to be known.
+struct PlyFace {
   std::vector<int> corners;
-  std::vector<std::size_t> end;         ///< of each face's corners
-  std::vector<std::vector<double>> uv;  ///< of each face's corners, u and v; empty for faces without
-
-  template <class Corners>
-  void add(const Corners& face, const std::vector<double>& face_uv) {
-    corners.insert(corners.end(), std::begin(face), std::end(face));
-    end.push_back(corners.size());
-    uv.push_back(face_uv);
-  }
+  std::vector<double> uv;  ///< u and v of each corner; empty for a face without
 };
 
 struct PlyContent {
   MeshBuilder mesh;
-  PlyFaces faces;
+  std::vector<PlyFace> faces;
   std::vector<std::string> names;            ///< scalar vertex properties
   std::vector<std::vector<double>> columns;  ///< their values
+
+  /// The values of a scalar vertex property; null without one of this name.
+  const std::vector<double>* column(const std::string& name) const {
+    const auto found = std::find(names.begin(), names.end(), name);
+    return found == names.end() ? nullptr : &columns[found - names.begin()];
+  }
 };
 
-void read_list(PlyBody& body, const PlyProperty& property, std::vector<double>& values) {
-  const auto count = static_cast<long long>(body.next(*property.count_type));
-  if (count < 0) body.fail("list '" + excerpt(property.name) + "' has a negative length");
-  values.clear();
-  for (long long i = 0; i < count; ++i) values.push_back(body.next(property.type));
+/// Reads an element: calls on_number(property, value) and on_list(property, values) for its properties, then
+/// on_end().
+template <class OnNumber, class OnList, class OnEnd>
+void read_element(PlyBody& body, const PlyElement& element, const OnNumber& on_number, const OnList& on_list,
+                  const OnEnd& on_end) {
+  std::vector<double> values;
+  for (int i = 0; i < element.count; ++i) {
+    body.enter(element, i);
+    for (const PlyProperty& p : element.properties) {
+      if (!p.count_type) {
+        on_number(p, body.next(p.type));
+        continue;
+      }
+      const auto count = static_cast<long long>(body.next(*p.count_type));
+      if (count < 0) body.fail("list '" + excerpt(p.name) + "' has a negative length");
+      values.clear();
+      for (long long k = 0; k < count; ++k) values.push_back(body.next(p.type));
+      on_list(p, values);
+    }
+    on_end();
+  }
 }
+
+constexpr auto ignore = [](const auto&...) {};
 
 void read_vertices(PlyBody& body, const PlyElement& element, PlyContent& content) {
   for (const PlyProperty& p : element.properties)
     if (!p.count_type) content.names.push_back(p.name);
   content.columns.resize(content.names.size());
-  std::vector<double> ignored;
-  for (int v = 0; v < element.count; ++v) {
-    body.enter(element, v);
-    std::size_t column = 0;
-    for (const PlyProperty& p : element.properties) {
-      if (p.count_type)
-        read_list(body, p, ignored);
-      else
-        content.columns[column++].push_back(body.next(p.type));
-    }
-  }
+  std::size_t column = 0;
+  read_element(
+      body, element, [&](const PlyProperty&, double value) { content.columns[column++].push_back(value); },
+      ignore, [&] { column = 0; });
 }
 
 bool holds_corners(const PlyProperty& p) {
@@ -157,20 +154,20 @@ int corner(const PlyBody& body, double v, int vertex_count) {
 }
 
 void add_face(const PlyBody& body, const std::vector<double>& values, const std::vector<double>& uv,
-              int vertex_count, PlyFaces& faces) {
+              int vertex_count, std::vector<PlyFace>& faces) {
   if (values.size() < 3) body.fail("a face needs at least three vertices");
   std::vector<int> face;
   for (const double v : values) face.push_back(corner(body, v, vertex_count));
   const bool finite = std::all_of(uv.begin(), uv.end(), [](double number) { return std::isfinite(number); });
   if (!uv.empty() && (uv.size() != 2 * face.size() || !finite))
     body.fail("list 'texcoord' needs two finite numbers for each corner");
-  faces.add(face, uv);
+  faces.push_back({std::move(face), uv});
 }
 
 /// Strips end with -1 or the list. Every second triangle of a strip is turned over, and one that repeats a
 /// vertex only joins its neighbours.
 void add_strips(const PlyBody& body, const std::vector<double>& values, const std::vector<double>&,
-                int vertex_count, PlyFaces& faces) {
+                int vertex_count, std::vector<PlyFace>& faces) {
   std::vector<int> strip;
   for (const double v : values) {
     if (v == -1) {
@@ -181,41 +178,23 @@ void add_strips(const PlyBody& body, const std::vector<double>& values, const st
     if (strip.size() < 3) continue;
     std::array<int, 3> t{strip.end()[-3], strip.end()[-2], strip.end()[-1]};
     if (strip.size() % 2 == 0) std::swap(t[0], t[1]);
-    if (t[0] != t[1] && t[1] != t[2] && t[2] != t[0]) faces.add(t, {});
+    if (t[0] != t[1] && t[1] != t[2] && t[2] != t[0]) faces.push_back({{t.begin(), t.end()}, {}});
   }
 }
 
 /// Reads an element of faces or of strips, whose lists of vertices and texture coordinates `add` takes.
 template <class Add>
-void read_faces(PlyBody& body, const PlyElement& element, int vertex_count, PlyFaces& faces, const Add& add) {
-  std::vector<double> values, corners, uv;
-  for (int f = 0; f < element.count; ++f) {
-    body.enter(element, f);
-    uv.clear();
-    for (const PlyProperty& p : element.properties) {
-      if (!p.count_type) {
-        body.next(p.type);
-        continue;
-      }
-      read_list(body, p, values);
-      if (holds_corners(p)) corners = values;
-      if (p.name == "texcoord") uv = values;
-    }
+void read_faces(PlyBody& body, const PlyElement& element, int vertex_count, std::vector<PlyFace>& faces,
+                const Add& add) {
+  std::vector<double> corners, uv;
+  const auto on_list = [&](const PlyProperty& p, const std::vector<double>& values) {
+    if (holds_corners(p)) corners = values;
+    if (p.name == "texcoord") uv = values;
+  };
+  read_element(body, element, ignore, on_list, [&] {
     add(body, corners, uv, vertex_count, faces);
-  }
-}
-
-void skip(PlyBody& body, const PlyElement& element) {
-  std::vector<double> ignored;
-  for (int i = 0; i < element.count; ++i) {
-    body.enter(element, i);
-    for (const PlyProperty& p : element.properties) {
-      if (p.count_type)
-        read_list(body, p, ignored);
-      else
-        body.next(p.type);
-    }
-  }
+    uv.clear();
+  });
 }
 
 std::string counts_of(const PlyHeader& header) {
@@ -223,17 +202,6 @@ std::string counts_of(const PlyHeader& header) {
   for (const PlyElement& e : header.elements)
     text += (text.empty() ? "" : ", ") + std::to_string(e.count) + " " + e.name;
   return "the header declares " + excerpt(text);
-}
-
-void cut_faces(const std::filesystem::path& path, PlyContent& content) {
-  const PlyFaces& faces = content.faces;
-  std::vector<int> face;
-  for (std::size_t f = 0; f < faces.end.size(); ++f) {
-    face.assign(faces.corners.data() + (f == 0 ? 0 : faces.end[f - 1]), faces.corners.data() + faces.end[f]);
-    content.mesh.add_face(face, faces.uv[f], [&](const std::string& why) {
-      throw std::runtime_error(path.string() + ": " + why);
-    });
-  }
 }
 
 PlyContent read_content(const std::filesystem::path& path, std::string_view bytes) {
@@ -263,17 +231,16 @@ PlyContent read_content(const std::filesystem::path& path, std::string_view byte
     else if (element.name == "tristrips")
       read_faces(body, element, vertex_count, content.faces, add_strips);
     else
-      skip(body, element);
+      read_element(body, element, ignore, ignore, [] {});
   }
   body.finish();
 
   content.mesh.coordinates.resize(3 * static_cast<std::size_t>(vertex_count));
   for (int axis = 0; axis < 3; ++axis) {
     const std::string name(1, "xyz"[axis]);
-    const auto found = std::find(content.names.begin(), content.names.end(), name);
-    if (found == content.names.end())
-      throw std::runtime_error(path.string() + ": vertices have no property '" + name + "'");
-    const auto& column = content.columns[found - content.names.begin()];
+    const std::vector<double>* found = content.column(name);
+    if (!found) throw std::runtime_error(path.string() + ": vertices have no property '" + name + "'");
+    const std::vector<double>& column = *found;
     for (std::size_t v = 0; v < column.size(); ++v) {
       if (!std::isfinite(column[v]))
         throw std::runtime_error(path.string() + ": vertex " + std::to_string(v) +
@@ -281,18 +248,17 @@ PlyContent read_content(const std::filesystem::path& path, std::string_view byte
       content.mesh.coordinates[3 * v + axis] = column[v];
     }
   }
-  cut_faces(path, content);
+  for (const PlyFace& face : content.faces)
+    content.mesh.add_face(face.corners, face.uv, [&](const std::string& why) {
+      throw std::runtime_error(path.string() + ": " + why);
+    });
   return content;
 }
 
 /// Texture coordinates that the file has at vertices, under the names that Blender, MeshLab or PCL write.
 void set_uv_of_vertices(const PlyContent& content, TriangleMesh& mesh) {
-  const auto column = [&](const char* name) -> const std::vector<double>* {
-    const auto found = std::find(content.names.begin(), content.names.end(), name);
-    return found == content.names.end() ? nullptr : &content.columns[found - content.names.begin()];
-  };
   for (const auto& [u, v] : {std::pair("s", "t"), {"texture_u", "texture_v"}, {"u", "v"}}) {
-    const std::vector<double>*us = column(u), *vs = column(v);
+    const std::vector<double>*us = content.column(u), *vs = content.column(v);
     if (!us || !vs) continue;
     mesh.uv.resize(mesh.triangles.rows(), 6);
     for (Eigen::Index t = 0; t < mesh.uv.rows(); ++t)

@@ -5,7 +5,6 @@
 #include <limits>
 #include <stdexcept>
 
-#include "core/kernel/threads/parallel.h"
 #include "core/numerics/contact_forces/contact_stiffness.h"
 #include "core/numerics/linear_algebra/same_entries.h"
 
@@ -13,7 +12,6 @@ namespace drape {
 
 namespace {
 
-constexpr int rows_at_once = 8192;  // per task
 constexpr const char* contact_part = "contact";
 
 double norm_where(const Positions& g, const std::vector<char>& flags, char flag) {
@@ -174,61 +172,6 @@ void LevelModel::require_constant_forces(const std::string& name, const BoundEne
     throw std::runtime_error("energy " + name +
                              " has no elements, so it counts as linear, but its forces depend on the "
                              "positions; return its elements from stencils()");
-}
-
-double LevelModel::linear_value(const Positions& x, Positions* g, Roles roles) const {
-  double value = 0;
-  bool first = true;
-  for (const LinearSum& sum : linear_) {
-    if (!roles.has(sum.role)) continue;
-    const auto add = [&](int begin, int end) {
-      const auto of = sum.gradient.middleRows(begin, end - begin);
-      if (g && first)
-        g->middleRows(begin, end - begin) = of;
-      else if (g)
-        g->middleRows(begin, end - begin) += of;
-      return of.cwiseProduct(x.middleRows(begin, end - begin)).sum();
-    };
-    value += sum.at_origin + parallel_sum(static_cast<int>(x.rows()), rows_at_once, add);
-    first = false;
-  }
-  if (g && first) g->setZero();
-  return value;
-}
-
-double LevelModel::value(const Positions& x, Roles roles) const {
-  double sum = linear_value(x, nullptr, roles);
-  for (const Term& term : terms_) {
-    if (!term.slots || !roles.has(term.role)) continue;
-    sum += term.energy->value(x);
-    if (!std::isfinite(sum)) return sum;
-  }
-  return sum;
-}
-
-double LevelModel::gradient(const Positions& x, Positions& g, Roles roles) const {
-  g.resize(x.rows(), 3);
-  double sum = linear_value(x, &g, roles);
-  for (const Term& term : terms_) {
-    if (!term.slots || !roles.has(term.role)) continue;
-    sum += term.energy->add_gradient(x, g);
-    if (!std::isfinite(sum)) return sum;
-  }
-  return sum;
-}
-
-void LevelModel::hessian(const Positions& x, Projection projection, BlockMatrix& matrix, Roles roles) const {
-  matrix.set_zero();
-  add_hessian(x, projection, matrix, roles, 1);
-}
-
-void LevelModel::add_hessian(const Positions& x, Projection projection, BlockMatrix& matrix, Roles roles,
-                             double factor) const {
-  for (const Term& term : terms_)
-    if (term.slots && roles.has(term.role)) {
-      BlockSink sink = term.slots->sink(matrix, factor);
-      term.energy->add_hessian(x, projection, sink);
-    }
 }
 
 std::optional<double> LevelModel::midpoint_factor(EnergyRole role) const {

@@ -1,9 +1,68 @@
-// Derivatives of the whole energy E_l, with limits and contacts.
+// Values and derivatives of the smooth energies, and of the whole energy E_l, with limits and contacts.
 
+#include <cmath>
+
+#include "core/kernel/threads/parallel.h"
 #include "core/numerics/model/hessian_assembler.h"
 #include "core/numerics/model/level_model.h"
 
 namespace drape {
+
+double LevelModel::linear_value(const Positions& x, Positions* g, Roles roles) const {
+  constexpr int rows_at_once = 8192;  // per task
+  double value = 0;
+  bool first = true;
+  for (const LinearSum& sum : linear_) {
+    if (!roles.has(sum.role)) continue;
+    const auto add = [&](int begin, int end) {
+      const auto of = sum.gradient.middleRows(begin, end - begin);
+      if (g && first)
+        g->middleRows(begin, end - begin) = of;
+      else if (g)
+        g->middleRows(begin, end - begin) += of;
+      return of.cwiseProduct(x.middleRows(begin, end - begin)).sum();
+    };
+    value += sum.at_origin + parallel_sum(static_cast<int>(x.rows()), rows_at_once, add);
+    first = false;
+  }
+  if (g && first) g->setZero();
+  return value;
+}
+
+double LevelModel::value(const Positions& x, Roles roles) const {
+  double sum = linear_value(x, nullptr, roles);
+  for (const Term& term : terms_) {
+    if (!term.slots || !roles.has(term.role)) continue;
+    sum += term.energy->value(x);
+    if (!std::isfinite(sum)) return sum;
+  }
+  return sum;
+}
+
+double LevelModel::gradient(const Positions& x, Positions& g, Roles roles) const {
+  g.resize(x.rows(), 3);
+  double sum = linear_value(x, &g, roles);
+  for (const Term& term : terms_) {
+    if (!term.slots || !roles.has(term.role)) continue;
+    sum += term.energy->add_gradient(x, g);
+    if (!std::isfinite(sum)) return sum;
+  }
+  return sum;
+}
+
+void LevelModel::hessian(const Positions& x, Projection projection, BlockMatrix& matrix, Roles roles) const {
+  matrix.set_zero();
+  add_hessian(x, projection, matrix, roles, 1);
+}
+
+void LevelModel::add_hessian(const Positions& x, Projection projection, BlockMatrix& matrix, Roles roles,
+                             double factor) const {
+  for (const Term& term : terms_)
+    if (term.slots && roles.has(term.role)) {
+      BlockSink sink = term.slots->sink(matrix, factor);
+      term.energy->add_hessian(x, projection, sink);
+    }
+}
 
 double LevelModel::energy_gradient(const Positions& x, Positions& g) const {
   double sum = gradient(x, g);

@@ -7,11 +7,11 @@
 #include "core/kernel/files/message_text.h"
 #include "core/numerics/model/weak_barrier.h"
 #include "core/numerics/solve/dirichlet_predictor.h"
+#include "core/numerics/solve/newton_report.h"
 #include "core/numerics/solve/newton_state.h"
 #include "core/numerics/solve/start_fault.h"
 
 namespace drape {
-
 namespace {
 
 /// The Dirichlet penalty doubles when the force residual falls to this multiple of the tolerance.
@@ -40,7 +40,6 @@ class Newton {
       : f_(objective),
         p_(parameters),
         run_(run),
-        observer_(run.observer),
         iterate_(objective, result_),
         check_(iterate_, parameters),
         step_(
@@ -66,7 +65,7 @@ class Newton {
     for (bool step_begun = run_.from != nullptr;; step_begun = false) {
       if (!step_begun)
         if (const std::optional<End> end = begin_step_unless_ended()) return finish(*end);
-      if (observer_.checkpoint_due()) observer_.checkpoint(state());
+      if (run_.observer.checkpoint_due()) run_.observer.checkpoint(state());
       if (const std::optional<End> end = requested_end()) return finish(*end);
       if (!step_.solve()) {
         stuck_ = step_.factor().fault().empty() && (dirichlet_.active() || is_at_rounding_floor());
@@ -74,16 +73,10 @@ class Newton {
         step_.abandon();
       }
       // A resumed run repeats the step, from the last checkpoint.
-      if (step_.interrupted() && observer_.stop_requested())
+      if (step_.interrupted() && run_.observer.stop_requested())
         return finish({Outcome::cancelled, "stopped on request"});
       if (const double drift = check_.drift(); drift > max_drift)
-        return finish(
-            {Outcome::infeasible,
-             "nothing holds the cloth within " + three_digits(max_drift) +
-                 " of its diagonals: it has drifted by " + three_digits(drift) + " of them, " +
-                 three_digits(drift * iterate_.rest_diagonal()) +
-                 " m, and does not come to rest; pin it, put something under it, start it nearer to "
-                 "what is there, or raise the friction"});
+        return finish({Outcome::infeasible, drift_text(drift, max_drift, iterate_.rest_diagonal())});
       if (dirichlet_.is_moving()) move_on_if_relaxed();
     }
   }
@@ -156,15 +149,11 @@ class Newton {
       }
       if (load_.loading() && !dirichlet_.active() && (at_equilibrium || load_.advances_at_once())) {
         advance_increment(at_equilibrium);
-        if (load_.blocked())
-          return End{Outcome::infeasible, "the increment to pseudo-time " + three_digits(*load_.time()) +
-                                              " cannot be completed" + load_.limit_text()};
+        if (load_.blocked()) return End{Outcome::infeasible, blocked_text(load_)};
       }
       if (check_.is_cycling()) damp_cycle();
       if (load_.steps() == p_.max_steps)
-        return End{Outcome::max_steps_reached,
-                   "no equilibrium within max_steps = " + std::to_string(p_.max_steps) + "; force residual " +
-                       three_digits(iterate_.force_residual())};
+        return End{Outcome::max_steps_reached, max_steps_text(p_.max_steps, iterate_.force_residual())};
       follow_contact_forces();
       step_.begin();
       return std::nullopt;
@@ -177,21 +166,26 @@ class Newton {
     if (!(iterate_.force_residual() < balanced)) return;
     if (!f_.contacts().raise_stiffness(iterate_.x(), f_.model().material().membrane_modulus)) return;
     step_.factor().invalidate();
+    start_over();
+  }
+
+  /// After the energy has changed at one x.
+  void start_over() {
     check_.restart();
     iterate_.evaluate();
     iterate_.update_residual();
   }
 
   std::optional<End> requested_end() {
-    if (observer_.stop_requested()) return End{Outcome::cancelled, "stopped on request"};
-    if (run_.finer_follows && observer_.refine_requested())
+    if (run_.observer.stop_requested()) return End{Outcome::cancelled, "stopped on request"};
+    if (run_.finer_follows && run_.observer.refine_requested())
       return End{Outcome::refined_early_on_request,
                  "refined on request; force residual " + three_digits(iterate_.force_residual())};
     return std::nullopt;
   }
 
   /// Asked within steps of several iterations.
-  bool is_to_end() { return observer_.stop_requested() || check_.drift() > max_drift; }
+  bool is_to_end() { return run_.observer.stop_requested() || check_.drift() > max_drift; }
 
   bool is_at_rounding_floor() { return check_.is_at_rounding_floor(step_.factor()); }
 
@@ -201,9 +195,7 @@ class Newton {
     if (dirichlet_.infeasible() || !f_.switch_to_plain()) return false;
     switched_to_plain_ = true;
     step_.restart();
-    check_.restart();
-    iterate_.evaluate();
-    iterate_.update_residual();
+    start_over();
     return true;
   }
 
@@ -212,10 +204,7 @@ class Newton {
     if (dirichlet_.infeasible()) return {Outcome::infeasible, "", "the rest of the cloth is at equilibrium"};
     if (in_tolerance) return {Outcome::converged};
     return {Outcome::converged_to_rounding,
-            "the force residual is " + three_digits(iterate_.force_residual()) +
-                ", above force_tolerance = " + three_digits(p_.force_tolerance) +
-                ": round-off alone accounts for up to " + three_digits(check_.rounding_residual()) +
-                " here, and no step lowers it"};
+            rounding_text(iterate_.force_residual(), p_.force_tolerance, check_.rounding_residual())};
   }
 
   /// Steps repeat each other: damps the lag of friction, which such steps mostly come from, or h.
@@ -259,27 +248,8 @@ class Newton {
   }
 
   void report(int iteration) {
-    IterationRow row;
-    row.level = result_.level;
-    row.step = result_.steps;
-    row.iteration = iteration;
-    row.energy = iterate_.energy_without_friction();
-    if (f_.is_proxy()) {
-      row.proxy_energy = row.energy;
-      row.energy = f_.plain_energy(iterate_.x());
-    }
-    if (f_.contacts().any()) {
-      row.contacts = f_.contacts().count();
-      row.smallest_gap = f_.contacts().smallest_gap();
-    }
-    row.decrement = result_.decrement;
-    row.force_residual = result_.force_residual;
-    row.step_length = step_.step_length();
-    row.step_size = step_.step_size();
-    row.time = load_.time();
-    row.seconds = run_.clock.seconds();
-    row.flops = result_.flops;
-    observer_.iteration(row, iterate_.x());
+    run_.observer.iteration(
+        iteration_row(f_, iterate_, step_, load_, result_, iteration, run_.clock.seconds()), iterate_.x());
   }
 
   void add_to_message(const std::string& text) {
@@ -300,13 +270,7 @@ class Newton {
     load_.store_progress(result_);
     result_.seconds += watch_.seconds();
     result_.analyses = step_.factor().analyses();
-    result_.contact_stiffness = f_.contacts().stiffness();
-    if (f_.contacts().any()) {
-      result_.smallest_gap = f_.contacts().smallest_gap();
-      // Collisions are built while energies are evaluated.
-      result_.seconds_by_phase["collisions"] = f_.contacts().seconds_building();
-      result_.seconds_by_phase["gradient"] -= f_.contacts().seconds_building();
-    }
+    record_contacts(f_.contacts(), result_);
     return std::move(result_);
   }
 
@@ -314,7 +278,6 @@ class Newton {
   const NewtonParameters& p_;
   const LevelRun& run_;
   const Stopwatch watch_;
-  Observer& observer_;
 
   LevelResult result_;
   Iterate iterate_;

@@ -1,12 +1,10 @@
-#include "plugins/contact/shapes/bound_shapes.h"
-
 #include <algorithm>
 #include <limits>
 #include <stdexcept>
 #include <utility>
 
 #include "core/kernel/interfaces/gaps.h"
-#include "core/kernel/threads/parallel.h"
+#include "core/kernel/threads/parallel_collect.h"
 #include "core/numerics/collision_detection/nonlinear_ccd.h"
 #include "core/numerics/contact/contact_stack.h"
 #include "core/numerics/contact/vertex_contacts.h"
@@ -47,28 +45,18 @@ class ShapesCandidates final : public CollisionCandidates {
   /// Those of the vertex candidates within d̂ at x.
   std::vector<VertexContact> vertex_contacts(const Positions& x) const {
     const std::vector<VertexSolidPair>& pairs = candidates_.vertices;
-    std::vector<char> is_near(pairs.size());
-    parallel_for(static_cast<int>(pairs.size()), 1024, [&](int begin, int end) {
-      for (int i = begin; i < end; ++i)
-        is_near[i] = scene_->solids[pairs[i].solid].distance(x.row(pairs[i].vertex)) < scene_->barrier.dhat;
-    });
-    std::vector<VertexContact> contacts;
-    for (std::size_t i = 0; i < pairs.size(); ++i)
-      if (is_near[i])
-        contacts.push_back({pairs[i].vertex,
-                            pairs[i].solid,
-                            scene_->vertex_area[pairs[i].vertex],
-                            scene_->solids[pairs[i].solid].friction,
-                            {}});
-    parallel_for(static_cast<int>(contacts.size()), 1024, [&](int begin, int end) {
+    const auto find = [&](int begin, int end, std::vector<VertexContact>& contacts) {
       for (int i = begin; i < end; ++i) {
-        VertexContact& contact = contacts[i];
-        const Eigen::Vector3d p = x.row(contact.vertex);
-        contact.nearest = scene_->solids[contact.obstacle].nearest(p);
-        contact.touched = p - contact.nearest.distance * contact.nearest.normal;
+        const auto [vertex, k] = pairs[i];
+        const Solid& solid = scene_->solids[k];
+        const Eigen::Vector3d p = x.row(vertex);
+        if (!(solid.distance(p) < scene_->barrier.dhat)) continue;
+        const SignedDistance nearest = solid.nearest(p);
+        contacts.push_back({vertex, k, scene_->vertex_area[vertex], solid.friction, nearest,
+                            p - nearest.distance * nearest.normal});
       }
-    });
-    return contacts;
+    };
+    return parallel_collect<VertexContact>(static_cast<int>(pairs.size()), 1024, find);
   }
 
   StepLimit limit_step(const std::vector<TriangleSolidPair>& pairs, const Positions& x0,

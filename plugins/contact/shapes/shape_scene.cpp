@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numeric>
 
-#include "core/kernel/threads/parallel.h"
+#include "core/kernel/threads/parallel_collect.h"
 #include "core/numerics/contact_forces/barrier.h"
 
 namespace drape::shapes {
@@ -46,15 +46,11 @@ class Finder {
 
   /// Those of the triangles, ascending, that may come within d̂.
   std::vector<int> triangles_near(const std::vector<int>& among) const {
-    std::vector<char> is_close(among.size());
-    parallel_for(static_cast<int>(is_close.size()), grain, [&](int begin, int end) {
+    const auto test = [&](int begin, int end, std::vector<int>& near) {
       for (int i = begin; i < end; ++i)
-        is_close[i] = is_near(ball_of(&scene_.cloth.triangles(among[i], 0), 3, x0_, x1_));
-    });
-    std::vector<int> result;
-    for (std::size_t i = 0; i < among.size(); ++i)
-      if (is_close[i]) result.push_back(among[i]);
-    return result;
+        if (is_near(ball_of(&scene_.cloth.triangles(among[i], 0), 3, x0_, x1_))) near.push_back(among[i]);
+    };
+    return parallel_collect<int>(static_cast<int>(among.size()), grain, test);
   }
 
   std::vector<int> vertices_of(const std::vector<int>& triangles) const {
@@ -161,13 +157,14 @@ ShapeScene ShapeScene::of(const Level& level, const std::vector<Solid>& solids,
   for (const Solid& solid : solids) s.features.push_back(Features::of(solid, inset * barrier.dhat));
   // Cylinders come last: a larger one has more points, and contacts are identified by point indices.
   s.first_point.resize(solids.size());
+  int count = 0;
   for (const bool cylinders : {false, true})
     for (std::size_t k = 0; k < solids.size(); ++k) {
       if ((solids[k].kind == SolidKind::cylinder) != cylinders) continue;
-      s.first_point[k] = static_cast<int>(s.solid_of_point.size());
-      s.solid_of_point.insert(s.solid_of_point.end(), s.features[k].points.rows(), static_cast<int>(k));
+      s.first_point[k] = count;
+      count += static_cast<int>(s.features[k].points.rows());
     }
-  s.obstacle_points.resize(static_cast<Eigen::Index>(s.solid_of_point.size()), 3);
+  s.obstacle_points.resize(count, 3);
   for (std::size_t k = 0; k < solids.size(); ++k)
     s.obstacle_points.middleRows(s.first_point[k], s.features[k].points.rows()) = s.features[k].points;
   return s;

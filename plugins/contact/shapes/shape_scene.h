@@ -1,7 +1,9 @@
 #pragma once
 
+#include <memory>
 #include <vector>
 
+#include "core/kernel/interfaces/contact_model.h"
 #include "core/numerics/collision_detection/surface.h"
 #include "core/numerics/contact/pair_contacts.h"
 #include "plugins/contact/shapes/features.h"
@@ -19,7 +21,6 @@ struct ShapeScene {
   std::vector<Features> features;  ///< of each solid
   std::vector<int> first_point;    ///< index of each solid's first point in obstacle_points
   Positions obstacle_points;       ///< the points of all solids [m]
-  std::vector<int> solid_of_point;
   BarrierParameters barrier;
   double min_gap_fraction = 0.1;
 
@@ -56,5 +57,10 @@ struct CandidatePairs {
 /// The candidate pairs of these triangles during the linear motion from x0 to x1.
 CandidatePairs find_candidates(const ShapeScene& scene, const std::vector<TriangleSolidPair>& triangles,
                                const Positions& x0, const Positions& x1);
+
+/// Contact of a level's cloth with solids. Reported gaps are distances of cloth triangles to solids.
+/// README.md describes the barrier's pairs of vertices, edges and triangles.
+std::unique_ptr<BoundContact> bind_shapes(const Level& level, const std::vector<Solid>& solids,
+                                          const BarrierParameters& barrier, double min_gap_fraction);
 
 }  // namespace drape::shapes

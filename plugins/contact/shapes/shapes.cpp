@@ -5,7 +5,7 @@
 #include "core/kernel/plugin/bounds.h"
 #include "core/kernel/plugin/plugin.h"
 #include "core/kernel/plugin/refused_parameters.h"
-#include "plugins/contact/shapes/bound_shapes.h"
+#include "plugins/contact/shapes/shape_scene.h"
 
 namespace drape::shapes {
 

@@ -1,19 +1,73 @@
-#include "plugins/energy/constant_load/constant_load.h"
+#include <vector>
 
+#include "core/kernel/interfaces/energy.h"
+#include "core/kernel/plugin/bounds.h"
+#include "core/kernel/plugin/parameters.h"
 #include "core/kernel/plugin/plugin.h"
 #include "core/numerics/elements/linear_energy.h"
 
 namespace drape {
 
-std::unique_ptr<BoundEnergy> ConstantLoad::bind(const Level& level, const Material&) const {
-  Positions forces = level.vertex_area * p_.force_density.transpose();
-  for (const PointForce& load : p_.points) {
-    Eigen::Index nearest;
-    (level.rest.vertices.rowwise() - load.point.transpose()).rowwise().squaredNorm().minCoeff(&nearest);
-    forces.row(nearest) += load.force.transpose();
+/// Constant forces: E = -Σ f_i · x_i.
+class ConstantLoad final : public Energy {
+ public:
+  /// A force on the vertex nearest to `point` in the rest shape.
+  struct PointForce {
+    Eigen::Vector3d point{0, 0, 0};
+    Eigen::Vector3d force{0, 0, 0};
+    static void declare(Declaration<PointForce>& d) {
+      d.add("point", &PointForce::point)
+          .unit("m")
+          .at_least(-bounds::largest_coordinate)
+          .at_most(bounds::largest_coordinate)
+          .required()
+          .description("point in the rest shape; the nearest vertex receives the force")
+          .source("this project");
+      d.add("force", &PointForce::force)
+          .unit("N")
+          .at_least(-bounds::largest_load)
+          .at_most(bounds::largest_load)
+          .required()
+          .description("total force")
+          .source("this project");
+    }
+  };
+
+  struct Parameters {
+    Eigen::Vector3d force_density{0, 0, 0};
+    std::vector<PointForce> points;
+    static void declare(Declaration<Parameters>& d) {
+      d.add("force_density", &Parameters::force_density)
+          .unit("N/m²")
+          .at_least(-bounds::largest_load)
+          .at_most(bounds::largest_load)
+          .description("force per rest area on the whole cloth")
+          .source("this project");
+      d.add_sections("points", &Parameters::points)
+          .description("forces on single vertices")
+          .source("this project");
+    }
+  };
+
+  explicit ConstantLoad(const Parameters& parameters) : p_(parameters) {}
+  EnergyRole role() const override { return EnergyRole::external; }
+  /// On a finer mesh another vertex may be nearest to a point.
+  std::optional<double> midpoint_factor() const override {
+    return p_.points.empty() ? std::optional(1.0) : std::nullopt;
   }
-  return std::make_unique<LinearEnergy>(std::move(forces));
-}
+  std::unique_ptr<BoundEnergy> bind(const Level& level, const Material&) const override {
+    Positions forces = level.vertex_area * p_.force_density.transpose();
+    for (const PointForce& load : p_.points) {
+      Eigen::Index nearest;
+      (level.rest.vertices.rowwise() - load.point.transpose()).rowwise().squaredNorm().minCoeff(&nearest);
+      forces.row(nearest) += load.force.transpose();
+    }
+    return std::make_unique<LinearEnergy>(std::move(forces));
+  }
+
+ private:
+  Parameters p_;
+};
 
 }  // namespace drape
 

@@ -1,8 +1,10 @@
 #include <catch2/catch.hpp>
 
 #include "core/numerics/patterns/generate.h"
-#include "plugins/energy/constant_load/constant_load.h"
 #include "tests/support/evaluate.h"
+#include "tests/support/unregistered.h"
+// After it:
+#include "plugins/energy/constant_load/constant_load.cpp"
 
 using namespace drape;
 

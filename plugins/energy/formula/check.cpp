@@ -1,136 +1,130 @@
 #include <algorithm>
-#include <map>
 #include <optional>
 
 #include "core/kernel/files/message_text.h"
 #include "core/kernel/files/string_utils.h"
-#include "plugins/energy/formula/functions.h"
 #include "plugins/energy/formula/law.h"
 
 namespace drape::formula {
 namespace {
 
-/// A node's type. Without a dimension it fits any: zero, or a constant without a unit.
-struct Quantity {
-  bool is_condition = false;
-  std::optional<Dimension> dimension = Dimension();
-  std::optional<double> number = {};  ///< of literal numbers and their sums and products
+std::string in_quotes(const std::string& word) { return "\"" + excerpt(word) + "\""; }
 
-  bool fits(const Dimension& wanted) const { return !dimension || *dimension == wanted; }
-};
+template <class Named>
+std::vector<std::string> names_of(const std::vector<Named>& all) {
+  std::vector<std::string> names;
+  for (const Named& one : all) names.push_back(one.name);
+  return names;
+}
 
 class Checker {
  public:
   Checker(const Law& law, const Tree& tree) : law_(law), tree_(tree) {}
 
-  /// Types of all nodes.
-  const std::vector<Quantity>& check() {
-    for (const Node& node : tree_) types_.push_back(type_of(node));
-    return types_;
+  /// The type of the whole.
+  Quantity check() {
+    for (const Node& node : tree_) {
+      Quantity type = type_of(node);
+      for (const int argument : node.arguments) type.has_units |= types_[argument].has_units;
+      types_.push_back(type);
+    }
+    return types_.back();
   }
 
  private:
   Quantity type_of(const Node& node) const {
-    switch (node.kind) {
-      case Node::Kind::number:
-        return {false, node.number == 0 ? std::nullopt : std::optional(Dimension()), node.number};
-      case Node::Kind::name:
-        return type_of_name(node);
-      case Node::Kind::call:
-        break;
-    }
-    return type_of_call(node);
+    if (node.kind == Node::Kind::call) return type_of_call(node);
+    if (node.kind == Node::Kind::name) return type_of_name(node);
+    Quantity number{.number = node.number};
+    if (node.number == 0) number.dimension.reset();
+    return number;
   }
 
   Quantity type_of_name(const Node& node) const {
-    for (const Constant& c : law_.constants)
-      if (c.name == node.word) return {false, c.unit.empty() ? std::nullopt : dimension_of(c.unit), {}};
-    for (const Part& part : law_.parts)
-      if (part.name == node.word) return {part.is_condition, part.dimension, {}};
-    for (const Symbol& s : symbols_of(law_.kind))
-      if (s.name == node.word) return {false, dimension_of(s.unit), {}};
+    if (const NamedConstant* c = find_named(law_.constants, node.word))
+      return {.dimension = c->unit.empty() ? std::nullopt : dimension_of(c->unit),
+              .has_units = !c->unit.empty()};
+    if (const Part* part = find_named(law_.parts, node.word)) {
+      Quantity type = part->type;
+      type.number.reset();
+      return type;
+    }
+    if (const Symbol* s = find_named(symbols_of(law_.kind), node.word))
+      return {.dimension = dimension_of(s->unit), .has_units = s->unit != "1" && s->unit != "rad"};
     refuse_name(node);
   }
 
   [[noreturn]] void refuse_name(const Node& node) const {
-    const std::string name = "\"" + excerpt(node.word) + "\"";
     if (find_function(node.word, 0))
-      throw Fault(node.at, name + " is a function; write " + node.word + "(…)");
-    for (const ElementKind other : {ElementKind::triangle, ElementKind::hinge, ElementKind::vertex})
-      for (const Symbol& s : symbols_of(other))
-        if (s.name == node.word)
-          throw Fault(node.at, name + " is for \"per: " + name_of(other) + "\"; " + offered());
-    std::vector<std::string> known;
-    for (const Constant& c : law_.constants) known.push_back(c.name);
-    for (const Part& part : law_.parts) known.push_back(part.name);
-    for (const Symbol& s : symbols_of(law_.kind)) known.push_back(s.name);
+      throw Fault(node.at, in_quotes(node.word) + " is a function; write " + node.word + "(…)");
+    std::vector<std::string> symbols = names_of(symbols_of(law_.kind)), constants = names_of(law_.constants);
+    std::string offered = "a " + name_of(law_.kind) + " offers " + joined(symbols);
+    if (!constants.empty()) offered += "; its constants are " + joined(constants);
+    for (const ElementKind other : element_kinds)
+      if (find_named(symbols_of(other), node.word))
+        throw Fault(node.at, in_quotes(node.word) + " is for \"per: " + name_of(other) + "\"; " + offered);
+    std::vector<std::string> known = std::move(constants);
+    for (const auto& names : {names_of(law_.parts), symbols})
+      known.insert(known.end(), names.begin(), names.end());
     const std::string nearest = nearest_word(node.word, known);
-    throw Fault(node.at, "unknown name " + name + "; " +
-                             (nearest.empty() ? offered() : "did you mean \"" + nearest + "\"?"));
-  }
-
-  std::string offered() const {
-    std::vector<std::string> own;
-    for (const Symbol& s : symbols_of(law_.kind)) own.push_back(s.name);
-    std::string text = "a " + name_of(law_.kind) + " offers " + joined(own);
-    std::vector<std::string> constants;
-    for (const Constant& c : law_.constants) constants.push_back(c.name);
-    if (!constants.empty()) text += "; its constants are " + joined(constants);
-    return text;
+    throw Fault(node.at, "unknown name " + in_quotes(node.word) + "; " +
+                             (nearest.empty() ? offered : "did you mean \"" + nearest + "\"?"));
   }
 
   Quantity type_of_call(const Node& node) const {
     const Function* f = find_function(node.word, node.arguments.size());
-    if (!f) {
-      std::vector<std::string> known;
-      for (const Function& other : functions())
-        if (!other.description.empty()) known.push_back(other.name);
-      const std::string nearest = nearest_word(node.word, known);
-      throw Fault(node.at,
-                  "unknown function \"" + excerpt(node.word) + "\"; " +
-                      (nearest.empty() ? "known: " + joined(known) : "did you mean \"" + nearest + "\"?"));
-    }
+    if (!f) refuse_function(node);
     const auto count = static_cast<int>(node.arguments.size());
     if (count < f->least || count > f->most)
       throw Fault(node.at, "\"" + f->name + "\" takes " + std::to_string(f->least) +
                                (f->most > f->least ? " to " + std::to_string(f->most) : "") +
                                (f->most == 1 ? " argument, not " : " arguments, not ") +
                                std::to_string(count));
-    using U = Function::Units;
     for (int i = 0; i < count; ++i) {
-      const bool wanted = f->units == U::logical || (f->units == U::choice && i == 0);
-      const int argument = node.arguments[static_cast<std::size_t>(i)];
-      if (types_[argument].is_condition == wanted) continue;
-      throw Fault(tree_[argument].at, wanted
-                                          ? "a condition is wanted here, as in x > 0"
-                                          : "a condition is no number; choose one with if(condition, a, b)");
+      const bool wanted =
+          f->units == Function::Units::logical || (f->units == Function::Units::choice && i == 0);
+      if (argument(node, i).is_condition == wanted) continue;
+      throw Fault(tree_[node.arguments[i]].at,
+                  wanted ? "a condition is wanted here, as in x > 0"
+                         : "a condition is no number; choose one with if(condition, a, b)");
     }
     return type_of_valid_call(node, *f);
+  }
+
+  [[noreturn]] static void refuse_function(const Node& node) {
+    std::vector<std::string> known;
+    for (const Function& other : functions())
+      if (!other.description.empty()) known.push_back(other.name);
+    const std::string nearest = nearest_word(node.word, known);
+    throw Fault(node.at,
+                "unknown function " + in_quotes(node.word) + "; " +
+                    (nearest.empty() ? "known: " + joined(known) : "did you mean \"" + nearest + "\"?"));
   }
 
   const Quantity& argument(const Node& node, std::size_t i) const { return types_[node.arguments[i]]; }
 
   Quantity type_of_valid_call(const Node& node, const Function& f) const {
     using U = Function::Units;
-    const auto first = [&] { return argument(node, 0); };
     switch (f.units) {
       case U::equal:
-        return {false, common(node, 0), sum(node)};
+        return {.dimension = common(node, 0), .number = sum(node)};
       case U::angle:
         common(node, 0);
         return {};
       case U::reads:
         common(node, 0);
-        return {true, Dimension(), {}};
+        return {.is_condition = true};
       case U::logical:
-        return {true, Dimension(), {}};
+        return {.is_condition = true};
       case U::choice:
-        return {false, common(node, 1), {}};
+        return {.dimension = common(node, 1)};
       case U::none:
         require_none(node, 0, "\"" + f.name + "\" takes a number without a unit");
         return {};
-      case U::root:
-        return {false, first().dimension ? std::optional(first().dimension->to(0.5)) : std::nullopt, {}};
+      case U::root: {
+        const auto& dimension = argument(node, 0).dimension;
+        return {.dimension = dimension ? std::optional(dimension->to(0.5)) : std::nullopt};
+      }
       case U::product:
       case U::quotient:
         return product(node, f.units == U::product);
@@ -152,7 +146,7 @@ class Checker {
 
   Quantity product(const Node& node, bool times) const {
     const Quantity &a = argument(node, 0), &b = argument(node, 1);
-    Quantity result{false, std::nullopt, {}};
+    Quantity result{.dimension = std::nullopt};
     if (a.number && b.number) result.number = times ? *a.number * *b.number : *a.number / *b.number;
     if (a.dimension && b.dimension)
       result.dimension = times ? *a.dimension * *b.dimension : *a.dimension / *b.dimension;
@@ -160,13 +154,12 @@ class Checker {
   }
 
   Quantity power(const Node& node) const {
-    const Quantity& base = argument(node, 0);
+    const auto& base = argument(node, 0).dimension;
     require_none(node, 1, "an exponent is a number without a unit");
-    if (!base.dimension) return {false, std::nullopt, {}};
-    if (base.dimension->is_none()) return {};
-    if (const auto exponent = argument(node, 1).number) return {false, base.dimension->to(*exponent), {}};
-    throw Fault(tree_[node.arguments[1]].at, "the exponent of a quantity in " + base.dimension->text() +
-                                                 " must be a literal number, as in x^2");
+    if (!base || base->is_none()) return {.dimension = base};
+    if (const auto exponent = argument(node, 1).number) return {.dimension = base->to(*exponent)};
+    throw Fault(tree_[node.arguments[1]].at,
+                "the exponent of a quantity in " + base->text() + " must be a literal number, as in x^2");
   }
 
   void require_none(const Node& node, std::size_t i, const std::string& what) const {
@@ -195,29 +188,16 @@ class Checker {
   std::vector<Quantity> types_;
 };
 
-/// Whether the tree has a quantity with a unit in it.
-bool has_units(const Law& law, const Tree& tree) {
-  return std::any_of(tree.begin(), tree.end(), [&](const Node& node) {
-    if (node.kind != Node::Kind::name) return false;
-    for (const Constant& c : law.constants)
-      if (c.name == node.word) return !c.unit.empty();
-    for (const Part& part : law.parts)
-      if (part.name == node.word) return part.has_units;
-    for (const Symbol& s : symbols_of(law.kind))
-      if (s.name == node.word) return s.unit != "1" && s.unit != "rad";
-    return false;
-  });
-}
-
 void require_energy(const Law& law, const Part& part) {
-  if (part.is_condition)
+  const Quantity& type = part.type;
+  if (type.is_condition)
     throw Fault(part.tree.back().at,
                 "the energy is a condition, not a number; choose one with if(condition, a, b)");
   const Dimension wanted = *dimension_of(law.per_area ? "J/m²" : "J");
-  if (!part.dimension || *part.dimension == wanted || !part.has_units) return;
-  const Dimension missing = wanted / *part.dimension;
+  if (type.fits(wanted) || !type.has_units) return;
+  const Dimension missing = wanted / *type.dimension;
   throw Fault(0, std::string(law.per_area ? "the density" : "the energy") + " is in " +
-                     part.dimension->text() + " and must be in " + wanted.text() +
+                     type.dimension->text() + " and must be in " + wanted.text() +
                      (missing == *dimension_of("m") && law.kind == ElementKind::triangle
                           ? "; a modulus in Pa times \"thickness\" is one of the surface"
                           : "; a factor in " + missing.text() + " is missing"));
@@ -226,14 +206,8 @@ void require_energy(const Law& law, const Part& part) {
 }  // namespace
 
 void append_part(Law& law, const std::string& name, const std::string& text, bool is_energy) {
-  Part part;
-  part.name = name;
-  part.text = text;
-  part.tree = parse(text);
-  const Quantity type = Checker(law, part.tree).check().back();
-  part.is_condition = type.is_condition;
-  part.dimension = type.dimension;
-  part.has_units = has_units(law, part.tree);
+  Part part{name, text, parse(text), {}};
+  part.type = Checker(law, part.tree).check();
   if (is_energy) require_energy(law, part);
   law.parts.push_back(std::move(part));
 }

@@ -1,14 +1,65 @@
-#include "plugins/energy/formula/compile.h"
-
+#include <initializer_list>
 #include <map>
 #include <string>
-#include <type_traits>
+#include <utility>
+#include <vector>
 
 #include "core/numerics/elements/green_strain.h"
-#include "plugins/energy/formula/differentiate.h"
+#include "plugins/energy/formula/program.h"
 
 namespace drape::formula {
 namespace {
+
+/// Functions and operators of formulas on jets of terms.
+template <int N>
+struct JetFunctions {
+  using J = Jet<N, Term>;
+
+  static bool is_literal(const J& a) {
+    bool literal = !a.value.graph;
+    for (const Term& t : a.first) literal = literal && t.is(0);
+    for (const Term& t : a.second) literal = literal && t.is(0);
+    return literal;
+  }
+
+  static J of_one(const std::string& word, const J& a) {
+#define DRAPE_ENTRY(name) {#name, drape::name},
+    static const std::map<std::string, J (*)(const J&)> functions = {DRAPE_FUNCTIONS(DRAPE_ENTRY)};
+#undef DRAPE_ENTRY
+    if (word == "-") return -a;
+    if (word == "not") return J(apply(Op::negated, a.value));
+    return functions.at(word)(a);
+  }
+
+  static J of_two(const std::string& word, const J& a, const J& b) {
+    const auto f = [&](Op op, const J& x, const J& y) { return J(apply(op, x.value, y.value)); };
+    if (word == "+") return a + b;
+    if (word == "-") return a - b;
+    if (word == "*") return a * b;
+    if (word == "/") return a / b;
+    if (word == "^" || word == "pow") return is_literal(b) ? pow(a, b.value.literal) : pow(a, b);
+    if (word == "atan2") return atan2(a, b);
+    if (word == "<") return f(Op::less, a, b);
+    if (word == ">") return f(Op::less, b, a);
+    if (word == "<=") return f(Op::less_equal, a, b);
+    if (word == ">=") return f(Op::less_equal, b, a);
+    if (word == "==") return f(Op::equal, a, b);
+    if (word == "!=") return J(apply(Op::negated, apply(Op::equal, a.value, b.value)));
+    if (word == "and") return f(Op::both, a, b);
+    if (word == "or") return f(Op::either, a, b);
+    return word == "min" ? min(a, b) : max(a, b);
+  }
+
+  /// A call of a tree, whose arguments are evaluated.
+  static J call(const Node& node, const std::vector<J>& values) {
+    const auto argument = [&](std::size_t i) -> const J& { return values[node.arguments[i]]; };
+    if (node.word == "if") return select(argument(0).value, argument(1), argument(2));
+    if (node.arguments.size() == 1) return of_one(node.word, argument(0));
+    J result = of_two(node.word, argument(0), argument(1));
+    for (std::size_t i = 2; i < node.arguments.size(); ++i) result = of_two(node.word, result, argument(i));
+    return result;
+  }
+};
 
 /// Jets of a law's names, and then of its parts.
 template <int N>
@@ -18,14 +69,15 @@ class Compiler {
 
   Compiler(const Law& law, const Material& material) : law_(law) {
     for (const Symbol& s : symbols_of(law.kind))
-      if (is_of_material(s.name)) names_[s.name] = J(material_value(s.name, material));
-    for (const Constant& c : law.constants) names_[c.name] = J(c.value);
+      if (s.value) names_[s.name] = J(s.value(MaterialSymbols(material)));
+    for (const NamedConstant& c : law.constants) names_[c.name] = J(c.value);
   }
 
   void define(const std::string& name, const J& jet) { names_[name] = jet; }
+  /// Defines names that are numbers of the element, none of the variables.
   template <class Input>
-  void define(const std::string& name, Input input) {
-    define(name, J(read(input)));
+  void define_inputs(std::initializer_list<std::pair<const char*, Input>> inputs) {
+    for (const auto& [name, input] : inputs) define(name, J(read(input)));
   }
   template <class Input>
   Term read(Input input) {
@@ -60,7 +112,7 @@ class Compiler {
       else if (const J* logarithm = known_logarithm(node, tree))
         values.push_back(*logarithm);
       else
-        values.push_back(Differentiate<N>::call(node, values));
+        values.push_back(JetFunctions<N>::call(node, values));
     }
     return values.back();
   }
@@ -68,7 +120,7 @@ class Compiler {
   /// log(J), which is defined apart, since J itself has lost digits of small strains.
   const J* known_logarithm(const Node& node, const Tree& tree) const {
     if (node.word != "log") return nullptr;
-    const Node& argument = tree[static_cast<std::size_t>(node.arguments[0])];
+    const Node& argument = tree[node.arguments[0]];
     const auto found = names_.find("log " + argument.word);
     return argument.kind == Node::Kind::name && found != names_.end() ? &found->second : nullptr;
   }
@@ -78,62 +130,65 @@ class Compiler {
   std::map<std::string, J> names_;
 };
 
+/// By the strains, which are the first three of N variables.
 template <int N>
-void define_rest(Compiler<N>& c) {
+void define_strains(Compiler<N>& c) {
   using I = TriangleInput;
-  c.define("area", I::area);
-  c.define("u", I::u);
-  c.define("v", I::v);
-  c.define("w", I::w);
+  c.define("g11", c.variable(I::g11, 0));
+  c.define("g22", c.variable(I::g22, 1));
+  c.define("g12", c.variable(I::g12, 2));
+  const auto ratio = area_ratio<N>(c.read(I::g11), c.read(I::g22), c.read(I::g12), c.read(I::det));
+  c.define("J", ratio);
+  c.define("log J", log(ratio));
+}
+
+/// By both stretches, of which strains along their axes are functions.
+void define_principal_strains(Compiler<2>& c) {
+  const Jet<2, Term> s1 = c.variable(TriangleInput::s1, 0), s2 = c.variable(TriangleInput::s2, 1), one(1.0),
+                     half(0.5);
+  c.define("s1", s1);
+  c.define("s2", s2);
+  c.define("J", s1 * s2);
+  c.define("g11", half * ((s1 - one) * (s1 + one)));
+  c.define("g22", half * ((s2 - one) * (s2 + one)));
+  c.define("g12", Jet<2, Term>(0.0));
+}
+
+template <int N>
+Programs compile_triangle_by(const Law& law, const Material& material) {
+  using I = TriangleInput;
+  Compiler<N> c(law, material);
+  c.template define_inputs<I>({{"area", I::area}, {"u", I::u}, {"v", I::v}, {"w", I::w}});
+  if constexpr (N == 2)
+    define_principal_strains(c);
+  else
+    define_strains(c);
+  if constexpr (N == 5) {
+    c.define("s1", c.variable(I::s1, 3));
+    c.define("s2", c.variable(I::s2, 4));
+  }
+  return c.compile();
 }
 
 }  // namespace
 
 Programs compile_triangle(const Law& law, const Material& material, TriangleVariables variables) {
-  using I = TriangleInput;
-  if (variables == TriangleVariables::stretches) {
-    Compiler<2> c(law, material);
-    define_rest(c);
-    const Jet<2, Term> s1 = c.variable(I::s1, 0), s2 = c.variable(I::s2, 1), one(1.0), half(0.5);
-    c.define("s1", s1);
-    c.define("s2", s2);
-    c.define("J", s1 * s2);
-    c.define("g11", half * ((s1 - one) * (s1 + one)));
-    c.define("g22", half * ((s2 - one) * (s2 + one)));
-    c.define("g12", Jet<2, Term>(0.0));
-    return c.compile();
-  }
-  const auto define_strains = [](auto& c) {
-    define_rest(c);
-    c.define("g11", c.variable(I::g11, 0));
-    c.define("g22", c.variable(I::g22, 1));
-    c.define("g12", c.variable(I::g12, 2));
-    using J = typename std::remove_reference_t<decltype(c)>::J;
-    const auto ratio =
-        area_ratio<J::variables>(c.read(I::g11), c.read(I::g22), c.read(I::g12), c.read(I::det));
-    c.define("J", J(ratio));
-    c.define("log J", log(ratio));
-  };
-  if (variables == TriangleVariables::strains) {
-    Compiler<3> c(law, material);
-    define_strains(c);
-    return c.compile();
-  }
-  Compiler<5> c(law, material);
-  define_strains(c);
-  c.define("s1", c.variable(I::s1, 3));
-  c.define("s2", c.variable(I::s2, 4));
-  return c.compile();
+  return variables == TriangleVariables::stretches ? compile_triangle_by<2>(law, material)
+         : variables == TriangleVariables::strains ? compile_triangle_by<3>(law, material)
+                                                   : compile_triangle_by<5>(law, material);
 }
 
 Programs compile_hinge(const Law& law, const Material& material) {
   using I = HingeInput;
   Compiler<1> c(law, material);
-  for (const auto& [name, input] :
-       {std::pair{"rest", I::rest}, std::pair{"length", I::length}, std::pair{"h1", I::h1},
-        std::pair{"h2", I::h2}, std::pair{"area", I::area}, std::pair{"u", I::u}, std::pair{"v", I::v},
-        std::pair{"w", I::w}})
-    c.define(name, input);
+  c.define_inputs<I>({{"rest", I::rest},
+                      {"length", I::length},
+                      {"h1", I::h1},
+                      {"h2", I::h2},
+                      {"area", I::area},
+                      {"u", I::u},
+                      {"v", I::v},
+                      {"w", I::w}});
   const Jet<1, Term> bend = c.variable(I::bend, 0), rest(c.read(I::rest));
   c.define("bend", bend);
   c.define("theta", bend + rest);
@@ -146,9 +201,7 @@ Programs compile_vertex(const Law& law, const Material& material) {
   c.define("x", c.variable(I::x, 0));
   c.define("y", c.variable(I::y, 1));
   c.define("z", c.variable(I::z, 2));
-  for (const auto& [name, input] : {std::pair{"u", I::u}, std::pair{"v", I::v}, std::pair{"w", I::w},
-                                    std::pair{"area", I::area}, std::pair{"mass", I::mass}})
-    c.define(name, input);
+  c.define_inputs<I>({{"u", I::u}, {"v", I::v}, {"w", I::w}, {"area", I::area}, {"mass", I::mass}});
   return c.compile();
 }
 

@@ -3,14 +3,12 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "core/kernel/files/message_text.h"
 #include "core/kernel/plugin/plugin.h"
+#include "core/kernel/plugin/refused_parameters.h"
 #include "core/numerics/formulas/formula_properties.h"
+#include "core/numerics/model/hessian_assembler.h"
 #include "core/numerics/model/derivative_check.h"
-#include "plugins/energy/formula/hinge.h"
-#include "plugins/energy/formula/membrane.h"
-#include "plugins/energy/formula/read_law.h"
-#include "plugins/energy/formula/rest_check.h"
-#include "plugins/energy/formula/vertex.h"
 
 namespace drape {
 
@@ -58,10 +56,78 @@ EnergyRole role_of(const Formula::Parameters& p) {
                               : EnergyRole::position;
 }
 
+constexpr double cell = 0.01;  // [m]
+
+/// Throws RefusedParameters at the key if the law cannot be compiled, or if its energy, forces or stiffness
+/// on a small patch of cloth at rest are not finite.
+void require_computable(const formula::Law& law, const std::string& key, const Energy& energy) {
+  const auto refuse = [&](const std::string& message) {
+    const std::string& text = law.parts.back().text;
+    throw RefusedParameters({{key, message, 0, formula::with_caret(text, formula::Fault(0, ""))}});
+  };
+  std::unique_ptr<BoundEnergy> bound;
+  const Level level = checked_level();
+  try {
+    bound = energy.bind(level, Material());
+  } catch (const std::exception& error) {
+    refuse(error.what());
+  }
+  if (law.kind == ElementKind::vertex) return;
+  for (const double entry : hessian_of(*bound, level.rest.vertices, Projection::none).values)
+    if (!std::isfinite(entry))
+      refuse(
+          "the stiffness of the rest shape is not finite: a second derivative is infinite there, as that of "
+          "sqrt(x) at 0");
+}
+
+/// How far derivatives on a deformed patch are from finite differences.
+std::string derivatives_remark(const Energy& energy, const Material& material) {
+  try {
+    const DerivativeCheck check = check_derivatives(energy, material);
+    return "derivatives " + std::string(check.agrees() ? "agree with" : "DIFFER from") +
+           " finite differences, forces to " + three_digits(check.gradient.error) + ", stiffness to " +
+           three_digits(check.hessian.error);
+  } catch (const std::exception& error) {
+    return std::string("derivatives could not be checked: ") + error.what();
+  }
+}
+
+/// Stress, moment or acceleration of a small patch at rest.
+std::string rest_remark(const Energy& energy, ElementKind kind, const Material& material) {
+  // One triangle with legs along x and y, or two about the diagonal edge of a cell.
+  TriangleMesh mesh;
+  mesh.vertices.resize(kind == ElementKind::hinge ? 4 : 3, 3);
+  mesh.vertices.topRows(3) << 0, 0, 0, cell, 0, 0, 0, cell, 0;
+  mesh.triangles.resize(kind == ElementKind::hinge ? 2 : 1, 3);
+  mesh.triangles.row(0) << 0, 1, 2;
+  if (kind == ElementKind::hinge) {
+    mesh.vertices.row(3) << cell, cell, 0;
+    mesh.triangles.row(1) << 1, 3, 2;
+  }
+  const Level level = Level::of(0, mesh);
+  Positions g = Positions::Zero(mesh.vertices.rows(), 3);
+  try {
+    energy.bind(level, material)->add_gradient(level.rest.vertices, g);
+  } catch (const std::exception& error) {
+    return std::string("has no finite state of rest: ") + error.what();
+  }
+  const auto rounded = [](double value) { return three_digits(std::abs(value) < 1e-300 ? 0 : value); };
+  if (kind == ElementKind::hinge) {
+    const double height = cell * std::sqrt(0.5), edge = cell * std::sqrt(2.0);
+    return "moment per length of a flat edge: " + rounded(g(0, 2) * height / edge) + " N";
+  }
+  if (kind == ElementKind::triangle)
+    return "stress at rest: " + rounded(2 * g(1, 0) / cell) + ", " + rounded(2 * g(2, 1) / cell) +
+           ", shear " + rounded((g(1, 1) + g(2, 0)) / cell) + " N/m";
+  const Eigen::RowVector3d a = -g.colwise().sum() / (material.area_density() * cell * cell / 2);
+  return "acceleration at the origin: " + rounded(a[0]) + ", " + rounded(a[1]) + ", " + rounded(a[2]) +
+         " m/s²";
+}
+
 }  // namespace
 
-Formula::Formula(const Parameters& p) : law_(formula::read_law(p)), axis_(p.axis), role_(role_of(p)) {
-  formula::require_computable(law_, p.density.empty() ? "energy" : "density", *this);
+Formula::Formula(const Parameters& p) : law_(p.law()), axis_(p.axis), role_(role_of(p)) {
+  require_computable(law_, p.density.empty() ? "energy" : "density", *this);
 }
 
 std::optional<double> Formula::midpoint_factor() const {
@@ -111,7 +177,7 @@ std::unique_ptr<BoundEnergy> Formula::bind_buckling(const Level& level, const Ma
 }
 
 std::vector<std::string> Formula::remarks(const Material& material) const {
-  return {formula::derivatives_remark(*this, material), formula::rest_remark(*this, law_.kind, material)};
+  return {derivatives_remark(*this, material), rest_remark(*this, law_.kind, material)};
 }
 
 }  // namespace drape

@@ -10,6 +10,24 @@
 #include "plugins/energy/formula/law.h"
 
 namespace drape {
+namespace formula {
+
+/// Binds a formula to all triangles of the level. The material's first axis is `axis`, projected into each
+/// triangle at rest. Throws std::runtime_error naming a triangle without area.
+std::unique_ptr<BoundEnergy> bind_membrane(const Law& law, const Eigen::Vector3d& axis, const Level& level,
+                                           const Material& material);
+/// Binds a formula to a level on which the cloth buckles below the mesh: as bind_buckling_membrane does if it
+/// depends on principal stretches alone, else as bind_buckling_strains does. A formula of both principal
+/// stretches and strains keeps its plain energy.
+std::unique_ptr<BoundEnergy> bind_buckling(const Law& law, const Eigen::Vector3d& axis, const Level& level,
+                                           const Material& material, double s);
+/// Binds a formula to all hinges of the level. Throws std::runtime_error naming a hinge whose triangles have
+/// no area.
+std::unique_ptr<BoundEnergy> bind_hinges(const Law& law, const Level& level, const Material& material);
+/// Binds a formula to all vertices of the level. One that is linear in the position gives a LinearEnergy.
+std::unique_ptr<BoundEnergy> bind_vertices(const Law& law, const Level& level, const Material& material);
+
+}  // namespace formula
 
 /// An energy whose density is an expression in the experiment. It is parsed and checked once, compiled to a
 /// program with exact derivatives on every level, and evaluated on packs of elements.
@@ -25,6 +43,8 @@ class Formula final : public Energy {
     Eigen::Vector3d axis{1, 0, 0};
 
     static void declare(Declaration<Parameters>& d);
+    /// The law that they write. Throws RefusedParameters with every fault and its place.
+    formula::Law law() const;
   };
 
   /// Throws RefusedParameters with the place in the formula.

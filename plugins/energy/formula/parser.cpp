@@ -2,7 +2,7 @@
 #include <cmath>
 
 #include "core/kernel/files/message_text.h"
-#include "plugins/energy/formula/syntax.h"
+#include "plugins/energy/formula/law.h"
 
 namespace drape::formula {
 namespace {

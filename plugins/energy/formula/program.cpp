@@ -4,8 +4,6 @@
 #include <stdexcept>
 #include <string>
 
-#include "plugins/energy/formula/arithmetic.h"
-
 namespace drape::formula {
 
 /// Gives every term that is needed a register, which is free again after its last use.
@@ -120,81 +118,30 @@ class Program::Allocator {
 
 Program::Program(const std::vector<Term>& outputs) { Allocator(*this, outputs); }
 
-namespace {
-
-template <Op op, class T, int batch>
-[[gnu::always_inline]] inline void run_op(T* to, const T* a, const T* b, const T* c) {
-  for (int k = 0; k < batch; ++k) to[k] = evaluate<T>(op, a[k], b[k], c[k]);
-}
-
-}  // namespace
-
 template <class T, int batch>
 void Program::run(T* registers) const {
   for (const Instruction& i : code_) {
     T* to = registers + i.to * batch;
     const T *a = registers + i.a * batch, *b = registers + i.b * batch, *c = registers + i.c * batch;
     const T literal = i.literal;
+#define DRAPE_RUN(op, result)                         \
+  case Op::op:                                        \
+    for (int k = 0; k < batch; ++k) to[k] = (result); \
+    break;
+#define DRAPE_RUN_OP(op) DRAPE_RUN(op, evaluate<T>(Op::op, a[k], b[k], c[k]))
     switch (i.op) {
-      case Op::load:
-        for (int k = 0; k < batch; ++k) to[k] = literal;
-        break;
-      case Op::scale:
-        for (int k = 0; k < batch; ++k) to[k] = literal * a[k];
-        break;
-      case Op::scale_add:
-        for (int k = 0; k < batch; ++k) to[k] = literal * a[k] + b[k];
-        break;
-      case Op::offset:
-        for (int k = 0; k < batch; ++k) to[k] = literal + a[k];
-        break;
-      case Op::subtract_from:
-        for (int k = 0; k < batch; ++k) to[k] = literal - a[k];
-        break;
-      case Op::divide_into:
-        for (int k = 0; k < batch; ++k) to[k] = literal / a[k];
-        break;
-#define DRAPE_RUN(op)                      \
-  case Op::op:                             \
-    run_op<Op::op, T, batch>(to, a, b, c); \
-    break
-        DRAPE_RUN(add);
-        DRAPE_RUN(subtract);
-        DRAPE_RUN(multiply);
-        DRAPE_RUN(divide);
-        DRAPE_RUN(negate);
-        DRAPE_RUN(square_root);
-        DRAPE_RUN(exp);
-        DRAPE_RUN(expm1);
-        DRAPE_RUN(log);
-        DRAPE_RUN(log1p);
-        DRAPE_RUN(sin);
-        DRAPE_RUN(cos);
-        DRAPE_RUN(tan);
-        DRAPE_RUN(asin);
-        DRAPE_RUN(acos);
-        DRAPE_RUN(atan);
-        DRAPE_RUN(atan2);
-        DRAPE_RUN(sinh);
-        DRAPE_RUN(cosh);
-        DRAPE_RUN(tanh);
-        DRAPE_RUN(pow);
-        DRAPE_RUN(abs);
-        DRAPE_RUN(sign);
-        DRAPE_RUN(min);
-        DRAPE_RUN(max);
-        DRAPE_RUN(less);
-        DRAPE_RUN(less_equal);
-        DRAPE_RUN(equal);
-        DRAPE_RUN(both);
-        DRAPE_RUN(either);
-        DRAPE_RUN(negated);
-        DRAPE_RUN(choose);
-        DRAPE_RUN(multiply_add);
-#undef DRAPE_RUN
+      DRAPE_OPS(DRAPE_RUN_OP)
+      DRAPE_RUN(load, literal)
+      DRAPE_RUN(scale, literal * a[k])
+      DRAPE_RUN(scale_add, literal * a[k] + b[k])
+      DRAPE_RUN(offset, literal + a[k])
+      DRAPE_RUN(subtract_from, literal - a[k])
+      DRAPE_RUN(divide_into, literal / a[k])
       case Op::input:
         break;
     }
+#undef DRAPE_RUN_OP
+#undef DRAPE_RUN
   }
 }
 

@@ -1,11 +1,9 @@
-#include "plugins/energy/formula/read_law.h"
-
 #include <algorithm>
 #include <cctype>
 
 #include "core/kernel/files/message_text.h"
 #include "core/kernel/plugin/refused_parameters.h"
-#include "plugins/energy/formula/functions.h"
+#include "plugins/energy/formula/formula.h"
 
 namespace drape::formula {
 namespace {
@@ -47,13 +45,11 @@ class LawReader {
       refuse(path, "\"" + excerpt(name) + "\" is " + by + "; choose another name");
       return false;
     };
-    for (const Symbol& s : symbols_of(law_.kind))
-      if (s.name == name && !(is_constant && is_of_material(name)))
-        return taken("a symbol already (" + s.description + ")");
-    for (const Constant& c : law_.constants)
-      if (c.name == name) return taken("a constant already");
-    for (const Part& part : law_.parts)
-      if (part.name == name) return taken("a sub-expression already");
+    const Symbol* symbol = find_named(symbols_of(law_.kind), name);
+    if (symbol && !(is_constant && symbol->value))
+      return taken("a symbol already (" + symbol->description + ")");
+    if (find_named(law_.constants, name)) return taken("a constant already");
+    if (find_named(law_.parts, name)) return taken("a sub-expression already");
     if (find_function(name, 0)) return taken("a function");
     return true;
   }
@@ -69,7 +65,7 @@ class LawReader {
                "\"" + excerpt(c.unit) +
                    "\" is not a unit that formulas know; write one of m, kg, s, N, J, Pa, W, Hz, "
                    "rad, 1, without prefixes, as in N/m or kg m^2/s^2");
-      law_.constants.push_back({c.name, c.value, c.unit});
+      law_.constants.push_back(c);
     }
   }
 
@@ -128,7 +124,10 @@ class LawReader {
 };
 
 }  // namespace
-
-Law read_law(const Formula::Parameters& p) { return LawReader(p).read(); }
-
 }  // namespace drape::formula
+
+namespace drape {
+
+formula::Law Formula::Parameters::law() const { return formula::LawReader(*this).read(); }
+
+}  // namespace drape

@@ -4,34 +4,21 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "plugins/energy/formula/arithmetic.h"
-
 namespace drape::formula {
 
 int arguments_of(Op op) {
+#define DRAPE_CASE(op) case Op::op:
   switch (op) {
     case Op::input:
       return 0;
-    case Op::choose:
-    case Op::multiply_add:
-      return 3;
-    case Op::add:
-    case Op::subtract:
-    case Op::multiply:
-    case Op::divide:
-    case Op::atan2:
-    case Op::pow:
-    case Op::min:
-    case Op::max:
-    case Op::less:
-    case Op::less_equal:
-    case Op::equal:
-    case Op::both:
-    case Op::either:
+      DRAPE_OPS_OF_TWO(DRAPE_CASE)
       return 2;
+      DRAPE_OPS_OF_THREE(DRAPE_CASE)
+      return 3;
     default:
       return 1;
   }
+#undef DRAPE_CASE
 }
 
 namespace {

@@ -2,59 +2,81 @@
 
 #include <array>
 #include <cstdint>
-#include <functional>
+#include <limits>
 #include <unordered_map>
 #include <vector>
 
+#include "core/numerics/linear_algebra/pack_functions.h"
+
 namespace drape::formula {
 
-/// Operations of a program. Conditions are 0 or 1; one of a NaN is NaN.
+// F(op) for the operations of one, two and three arguments.
+#define DRAPE_OPS_OF_ONE(F) F(negate) F(negated) DRAPE_FUNCTIONS(F)
+#define DRAPE_OPS_OF_TWO(F) \
+  F(add)                    \
+  F(subtract)               \
+  F(multiply) F(divide) F(pow) F(atan2) F(min) F(max) F(less) F(less_equal) F(equal) F(both) F(either)
+#define DRAPE_OPS_OF_THREE(F) F(choose) F(multiply_add)
+#define DRAPE_OPS(F) DRAPE_OPS_OF_ONE(F) DRAPE_OPS_OF_TWO(F) DRAPE_OPS_OF_THREE(F)
+
+/// Operations of a program. Conditions are 0 or 1; one of a NaN is NaN. The last six are those of programs
+/// alone, with a literal l: l, l a, l + a, l - a, l / a, l a + b.
+#define DRAPE_ENUMERATOR(op) op,
 enum class Op : std::uint8_t {
   input,
-  add,
-  subtract,
-  multiply,
-  divide,
-  negate,
-  square_root,
-  exp,
-  expm1,
-  log,
-  log1p,
-  sin,
-  cos,
-  tan,
-  asin,
-  acos,
-  atan,
-  atan2,
-  sinh,
-  cosh,
-  tanh,
-  pow,
-  abs,
-  sign,
-  min,
-  max,
-  less,
-  less_equal,
-  equal,
-  both,
-  either,
-  negated,
-  choose,
-  multiply_add,  ///< a b + c
-  // In programs alone, with a literal l:
-  load,
+  DRAPE_OPS(DRAPE_ENUMERATOR) load,
   scale,
   offset,
   subtract_from,
   divide_into,
-  scale_add  ///< l, l a, l + a, l - a, l / a, l a + b
+  scale_add
 };
+#undef DRAPE_ENUMERATOR
 
 /// Number of arguments.
 int arguments_of(Op op);
+
+/// 1 where the mask holds, else 0; NaN where a or b is.
+template <class T, class Mask>
+T condition(const Mask& mask, const T& a, const T& b) {
+  const T truth = select(mask, T(1.0), T(0.0));
+  return select((a == a) & (b == b), truth, T(std::numeric_limits<double>::quiet_NaN()));
+}
+
+/// The result of an operation between input and load, on double or Pack.
+template <class T>
+[[gnu::always_inline]] inline T evaluate(Op op, const T& a, const T& b, const T& c) {
+  using std::abs, std::acos, std::asin, std::atan, std::atan2, std::cos, std::cosh, std::exp, std::expm1,
+      std::log, std::log1p, std::pow, std::sin, std::sinh, std::sqrt, std::tan, std::tanh;
+#define DRAPE_CASE(op, result) \
+  case Op::op:                 \
+    return result;
+#define DRAPE_FUNCTION_CASE(name) DRAPE_CASE(name, name(a))
+  switch (op) {
+    DRAPE_FUNCTIONS(DRAPE_FUNCTION_CASE)
+    DRAPE_CASE(add, a + b)
+    DRAPE_CASE(subtract, a - b)
+    DRAPE_CASE(multiply, a * b)
+    DRAPE_CASE(divide, a / b)
+    DRAPE_CASE(negate, -a)
+    DRAPE_CASE(pow, pow(a, b))
+    DRAPE_CASE(atan2, atan2(a, b))
+    DRAPE_CASE(min, select(b == b, select(b < a, b, a), b))
+    DRAPE_CASE(max, select(b == b, select(b > a, b, a), b))
+    DRAPE_CASE(less, condition(a < b, a, b))
+    DRAPE_CASE(less_equal, condition(a <= b, a, b))
+    DRAPE_CASE(equal, condition(a == b, a, b))
+    DRAPE_CASE(both, a * b)
+    DRAPE_CASE(either, a + b - a * b)
+    DRAPE_CASE(negated, 1.0 - a)
+    DRAPE_CASE(multiply_add, a * b + c)
+    DRAPE_CASE(choose, select(a == a, select(a == 0.0, c, b), a))
+    default:
+      return T(std::numeric_limits<double>::quiet_NaN());
+  }
+#undef DRAPE_FUNCTION_CASE
+#undef DRAPE_CASE
+}
 
 class TermGraph;
 struct Term;
@@ -75,24 +97,9 @@ struct Term {
   bool is(double value) const { return !graph && literal == value; }
 
   // What jets of terms call (core/numerics/elements/jet_functions.h).
-#define DRAPE_OPERATION(name, op) \
-  friend Term name(const Term& a) { return apply(Op::op, a, {}, {}); }
-  DRAPE_OPERATION(sqrt, square_root)
-  DRAPE_OPERATION(exp, exp)
-  DRAPE_OPERATION(expm1, expm1)
-  DRAPE_OPERATION(log, log)
-  DRAPE_OPERATION(log1p, log1p)
-  DRAPE_OPERATION(sin, sin)
-  DRAPE_OPERATION(cos, cos)
-  DRAPE_OPERATION(tan, tan)
-  DRAPE_OPERATION(asin, asin)
-  DRAPE_OPERATION(acos, acos)
-  DRAPE_OPERATION(atan, atan)
-  DRAPE_OPERATION(sinh, sinh)
-  DRAPE_OPERATION(cosh, cosh)
-  DRAPE_OPERATION(tanh, tanh)
-  DRAPE_OPERATION(abs, abs)
-  DRAPE_OPERATION(sign, sign)
+#define DRAPE_OPERATION(name) \
+  friend Term name(const Term& a) { return apply(Op::name, a, {}, {}); }
+  DRAPE_FUNCTIONS(DRAPE_OPERATION)
 #undef DRAPE_OPERATION
   friend Term atan2(const Term& y, const Term& x) { return apply(Op::atan2, y, x, {}); }
   friend Term pow(const Term& a, const Term& b) { return apply(Op::pow, a, b, {}); }
@@ -103,7 +110,6 @@ struct Term {
     return apply(Op::choose, condition, a, b);
   }
 };
-
 Term operator+(const Term& a, const Term& b);
 Term operator-(const Term& a, const Term& b);
 Term operator*(const Term& a, const Term& b);

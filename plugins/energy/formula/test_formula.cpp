@@ -2,15 +2,15 @@
 #include <cmath>
 #include <regex>
 
-#include "plugins/energy/formula/compile.h"
-#include "plugins/energy/formula/law.h"
+#include "core/numerics/elements/jet.h"
+#include "plugins/energy/formula/program.h"
 
 using namespace drape;
 using namespace drape::formula;
 
 namespace {
 
-Law law_of(ElementKind kind, const std::string& energy, std::vector<Constant> constants = {},
+Law law_of(ElementKind kind, const std::string& energy, std::vector<NamedConstant> constants = {},
            bool per_area = false) {
   Law law;
   law.kind = kind;
@@ -46,7 +46,7 @@ double value_of(const std::string& energy, double x = 0, double y = 0, double z 
 }
 
 /// The fault of a triangle's density.
-Fault fault_of(const std::string& density, std::vector<Constant> constants = {}) {
+Fault fault_of(const std::string& density, std::vector<NamedConstant> constants = {}) {
   try {
     law_of(ElementKind::triangle, density, std::move(constants), true);
   } catch (const Fault& fault) {
@@ -121,7 +121,7 @@ TEST_CASE("the caret is under the place, also in a long or broken line") {
 }
 
 TEST_CASE("dimensions that do not fit are refused where constants have units") {
-  const std::vector<Constant> units = {{"warp", 1e3, "N/m"}, {"stiff", 1e5, "Pa"}, {"any", 2, ""}};
+  const std::vector<NamedConstant> units = {{"warp", 1e3, "N/m"}, {"stiff", 1e5, "Pa"}, {"any", 2, ""}};
   const auto taken = [&](const std::string& density) {
     law_of(ElementKind::triangle, density, units, true);
     SUCCEED(density);

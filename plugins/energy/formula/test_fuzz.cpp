@@ -7,9 +7,7 @@
 #include <random>
 
 #include "core/numerics/linear_algebra/pack.h"
-#include "plugins/energy/formula/compile.h"
-#include "plugins/energy/formula/functions.h"
-#include "plugins/energy/formula/law.h"
+#include "plugins/energy/formula/program.h"
 
 using namespace drape;
 using namespace drape::formula;

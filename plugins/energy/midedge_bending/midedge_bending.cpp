@@ -1,20 +1,41 @@
-#include "plugins/energy/midedge_bending/midedge_bending.h"
-
+#include "core/kernel/interfaces/energy.h"
+#include "core/kernel/plugin/parameters.h"
 #include "core/kernel/plugin/plugin.h"
 #include "core/numerics/elements/bending_stiffness.h"
 #include "plugins/energy/midedge_bending/bound_midedge_bending.h"
 
 namespace drape {
 
-double MidedgeBending::plate_stiffness(const Material& material) const {
-  return 2 * bending_stiffness(material);
-}
+/// Kirchhoff–Love plate bending from normals at edge midpoints, for any triangulation and rest shape: Σ_t Ā k
+/// ((1 - ν) tr S² + ν (tr S)²), k = E_bend d³ / (24 (1 - ν²)).
+class MidedgeBending final : public Energy {
+ public:
+  struct Parameters {
+    double correction_tolerance = 0.02;
 
-std::unique_ptr<BoundEnergy> MidedgeBending::bind(const Level& level, const Material& material) const {
-  return std::make_unique<BoundMidedgeBending>(
-      level, ShapeOperators::of(level, bending_stiffness(material), material.poisson_ratio,
-                                parameters_.correction_tolerance));
-}
+    static void declare(Declaration<Parameters>& d) {
+      d.add("correction_tolerance", &Parameters::correction_tolerance)
+          .at_least(0)
+          .at_most(1)
+          .description(
+              "smallest weight with which a neighbouring dihedral angle corrects an edge's normal, where "
+              "the triangles about the edge differ; with 1 normals are plain averages of the triangles'")
+          .source("this project");
+    }
+  };
+
+  explicit MidedgeBending(const Parameters& parameters) : parameters_(parameters) {}
+  EnergyRole role() const override { return EnergyRole::bending; }
+  double plate_stiffness(const Material& material) const override { return 2 * bending_stiffness(material); }
+  std::unique_ptr<BoundEnergy> bind(const Level& level, const Material& material) const override {
+    return std::make_unique<BoundMidedgeBending>(
+        level, ShapeOperators::of(level, bending_stiffness(material), material.poisson_ratio,
+                                  parameters_.correction_tolerance));
+  }
+
+ private:
+  Parameters parameters_;
+};
 
 }  // namespace drape
 

@@ -3,9 +3,11 @@
 
 #include "core/numerics/elements/dihedral_angle.h"
 #include "core/numerics/patterns/generate.h"
-#include "plugins/energy/midedge_bending/midedge_bending.h"
 #include "plugins/energy/midedge_bending/shape_operators.h"
 #include "tests/support/kernel_check.h"
+#include "tests/support/unregistered.h"
+// After it:
+#include "plugins/energy/midedge_bending/midedge_bending.cpp"
 
 using namespace drape;
 

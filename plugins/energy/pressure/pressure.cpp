@@ -1,9 +1,10 @@
-#include "plugins/energy/pressure/pressure.h"
-
 #include <Eigen/Geometry>
 #include <array>
 
 #include "core/kernel/interfaces/element_order.h"
+#include "core/kernel/interfaces/energy.h"
+#include "core/kernel/plugin/bounds.h"
+#include "core/kernel/plugin/parameters.h"
 #include "core/kernel/plugin/plugin.h"
 #include "core/kernel/threads/parallel.h"
 
@@ -131,9 +132,42 @@ class BoundPressure final : public BoundEnergy {
 
 }  // namespace
 
-std::unique_ptr<BoundEnergy> Pressure::bind(const Level& level, const Material&) const {
-  return std::make_unique<BoundPressure>(p_.pressure, p_.centre, level);
-}
+/// Follower pressure E = -p V(x) with the enclosed volume V. A cone from its border to a fixed centre closes
+/// an open cloth.
+class Pressure final : public Energy {
+ public:
+  struct Parameters {
+    double pressure = 0;
+    Eigen::Vector3d centre{0, 0, 0};
+    static void declare(Declaration<Parameters>& d) {
+      d.add("pressure", &Parameters::pressure)
+          .unit("Pa")
+          .at_least(-bounds::largest_load)
+          .at_most(bounds::largest_load)
+          .required()
+          .description("pressure along the normal of every triangle; negative for suction")
+          .source("this project");
+      d.add("centre", &Parameters::centre)
+          .unit("m")
+          .at_least(-bounds::largest_coordinate)
+          .at_most(bounds::largest_coordinate)
+          .description(
+              "apex of the cone that closes an open cloth; it has no effect on a pinned border or a closed "
+              "mesh")
+          .source("this project");
+    }
+  };
+
+  explicit Pressure(const Parameters& parameters) : p_(parameters) {}
+  EnergyRole role() const override { return EnergyRole::external; }
+  std::optional<double> midpoint_factor() const override { return 1; }
+  std::unique_ptr<BoundEnergy> bind(const Level& level, const Material&) const override {
+    return std::make_unique<BoundPressure>(p_.pressure, p_.centre, level);
+  }
+
+ private:
+  Parameters p_;
+};
 
 }  // namespace drape
 

@@ -1,9 +1,10 @@
 #include <catch2/catch.hpp>
 
 #include "core/numerics/patterns/generate.h"
-#include "plugins/energy/quadratic_bending/quadratic_bending.h"
-#include "plugins/energy/quadratic_bending/quadratic_bending_kernel.h"
 #include "tests/support/kernel_check.h"
+#include "tests/support/unregistered.h"
+// After it:
+#include "plugins/energy/quadratic_bending/quadratic_bending.cpp"
 
 using namespace drape;
 

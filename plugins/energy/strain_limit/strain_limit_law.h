@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "core/numerics/elements/stretch_kernel.h"
+#include "core/numerics/linear_algebra/pack_functions.h"
 
 namespace drape {
 

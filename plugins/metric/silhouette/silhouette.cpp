@@ -1,10 +1,11 @@
-#include "plugins/metric/silhouette/silhouette.h"
-
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <vector>
 
+#include "core/kernel/interfaces/metric.h"
+#include "core/kernel/plugin/parameters.h"
 #include "core/kernel/plugin/plugin.h"
 #include "core/kernel/threads/parallel.h"
 
@@ -112,52 +113,69 @@ double overlap(const Positions& x, const Positions& other, const Triangles& tria
 
 }  // namespace
 
-std::array<Eigen::Vector3d, 12> Silhouette::directions() {
-  std::array<Eigen::Vector3d, 12> all;
-  const double a = std::sqrt(2.0) - 1;
-  int k = 0;
-  for (const double s : {a, -a})
-    for (const double t : {a, -a}) {
-      all[k++] = Eigen::Vector3d(1, s, t).normalized();
-      all[k++] = Eigen::Vector3d(t, 1, s).normalized();
-      all[k++] = Eigen::Vector3d(s, t, 1).normalized();
-    }
-  return all;
-}
+/// How far the outlines of two states cover each other: silhouette_overlap, the mean over fixed views, and
+/// silhouette_lowest, that of the worst view [1].
+class Silhouette : public Metric {
+ public:
+  int resolution = 256;
 
-MetricDeclaration Silhouette::declaration() const {
-  return {.columns = {{.name = "silhouette_overlap",
-                       .label = "silhouette overlap",
-                       .unit = "1",
-                       .better = Better::higher,
-                       .error = "silhouette_mismatch"},
-                      {.name = "silhouette_lowest",
-                       .label = "silhouette overlap, worst view",
-                       .unit = "1",
-                       .better = Better::higher,
-                       .shown = Shown::stored}},
-          .text =
-              "Silhouette overlap is intersection over union of the outlines, averaged over twelve views; "
-              "higher is better."};
-}
+  static void declare(Declaration<Silhouette>& d) {
+    d.add("resolution", &Silhouette::resolution)
+        .at_least(16)
+        .at_most(4096)
+        .description("pixels along the diagonal of the rest shape");
+  }
 
-MetricResult Silhouette::measure(const MetricInput& input) const {
-  const Positions& x = input.x;
-  const Positions& other = *input.other;
-  const double diagonal = bounding_box_diagonal(input.level.rest.vertices);
-  const auto views = directions();
-  std::array<double, views.size()> values;
-  parallel_for(static_cast<int>(views.size()), 1, [&](int begin, int end) {
-    for (int k = begin; k < end; ++k)
-      values[k] = overlap(x, other, input.level.rest.triangles, views[k], diagonal / resolution);
-  });
-  double sum = 0;
-  for (const double v : values) sum += v;
-  MetricResult result;
-  result.values.push_back({"silhouette_overlap", sum / values.size()});
-  result.values.push_back({"silhouette_lowest", *std::min_element(values.begin(), values.end())});
-  return result;
-}
+  MetricScope scope() const override { return MetricScope::pair; }
+  MetricDeclaration declaration() const override {
+    return {.columns = {{.name = "silhouette_overlap",
+                         .label = "silhouette overlap",
+                         .unit = "1",
+                         .better = Better::higher,
+                         .error = "silhouette_mismatch"},
+                        {.name = "silhouette_lowest",
+                         .label = "silhouette overlap, worst view",
+                         .unit = "1",
+                         .better = Better::higher,
+                         .shown = Shown::stored}},
+            .text =
+                "Silhouette overlap is intersection over union of the outlines, averaged over twelve views; "
+                "higher is better."};
+  }
+
+  /// The directions of view, as unit vectors: the twelve axes through the vertices of a rhombicuboctahedron.
+  static std::array<Eigen::Vector3d, 12> directions() {
+    std::array<Eigen::Vector3d, 12> all;
+    const double a = std::sqrt(2.0) - 1;
+    int k = 0;
+    for (const double s : {a, -a})
+      for (const double t : {a, -a}) {
+        all[k++] = Eigen::Vector3d(1, s, t).normalized();
+        all[k++] = Eigen::Vector3d(t, 1, s).normalized();
+        all[k++] = Eigen::Vector3d(s, t, 1).normalized();
+      }
+    return all;
+  }
+
+ private:
+  MetricResult measure(const MetricInput& input) const override {
+    const Positions& x = input.x;
+    const Positions& other = *input.other;
+    const double diagonal = bounding_box_diagonal(input.level.rest.vertices);
+    const auto views = directions();
+    std::array<double, views.size()> values;
+    parallel_for(static_cast<int>(views.size()), 1, [&](int begin, int end) {
+      for (int k = begin; k < end; ++k)
+        values[k] = overlap(x, other, input.level.rest.triangles, views[k], diagonal / resolution);
+    });
+    double sum = 0;
+    for (const double v : values) sum += v;
+    MetricResult result;
+    result.values.push_back({"silhouette_overlap", sum / values.size()});
+    result.values.push_back({"silhouette_lowest", *std::min_element(values.begin(), values.end())});
+    return result;
+  }
+};
 
 }  // namespace drape
 

@@ -4,8 +4,10 @@
 
 #include "core/kernel/threads/parallel.h"
 #include "core/numerics/hierarchy/midpoint.h"
-#include "plugins/metric/silhouette/silhouette.h"
 #include "tests/support/metric_check.h"
+#include "tests/support/unregistered.h"
+// After it:
+#include "plugins/metric/silhouette/silhouette.cpp"
 
 using namespace drape;
 

@@ -3,8 +3,10 @@
 #include <cmath>
 #include <string>
 
-#include "plugins/metric/stretch/stretch.h"
 #include "tests/support/metric_check.h"
+#include "tests/support/unregistered.h"
+// After it:
+#include "plugins/metric/stretch/stretch.cpp"
 
 using namespace drape;
 using Eigen::Vector3d;

@@ -1,6 +1,127 @@
-#include "plugins/refiner/loop/loop.h"
+#include <Eigen/Geometry>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <vector>
 
+#include "core/kernel/interfaces/refiner.h"
+#include "core/kernel/plugin/parameters.h"
 #include "core/kernel/plugin/plugin.h"
+
+namespace drape {
+
+/// Loop subdivision (C. Loop, Smooth Subdivision Surfaces Based on Triangles, 1987) with J. Warren's weights
+/// inside (Subdivision Methods for Geometric Design, 1995), cubic B-splines along the border and
+/// interpolated corners.
+class LoopRefiner : public Refiner {
+ public:
+  struct Parameters {
+    double corner_angle = 30;
+
+    static void declare(Declaration<Parameters>& d) {
+      d.add("corner_angle", &Parameters::corner_angle)
+          .unit("degree")
+          .at_least(0)
+          .at_most(360)
+          .description(
+              "border vertices whose interior rest angle differs from 180 degrees by more than this are "
+              "corners and are interpolated; others are smoothed")
+          .source("docs/theory/method.md, section 4");
+    }
+  };
+
+  explicit LoopRefiner(const Parameters& parameters) : parameters_(parameters) {}
+
+  ProlongationMatrix weights(const Level& coarse) const override {
+    const Topology& topology = coarse.topology;
+    const int n = coarse.vertex_count();
+    const auto edge_count = static_cast<int>(topology.edges.rows());
+    Weights weights;
+    weights.reserve(7 * static_cast<std::size_t>(n) + 4 * static_cast<std::size_t>(edge_count));
+    const auto border = border_neighbours(topology, n);
+    const auto corner = corners(coarse);
+    for (int v = 0; v < n; ++v) {
+      if (corner[v])
+        weights.emplace_back(v, v, 1);
+      else if (topology.on_border[v])
+        add_border_vertex(v, border[v], weights);
+      else
+        add_inner_vertex(v, topology, weights);
+    }
+    for (int e = 0; e < edge_count; ++e) add_edge(e, coarse, weights);
+
+    ProlongationMatrix matrix(n + edge_count, n);
+    matrix.setFromTriplets(weights.begin(), weights.end());
+    return matrix;
+  }
+
+  /// n flags, 1 for interpolated border vertices. A flat rest shape keeps its corners on every finer level:
+  /// the new neighbours of a corner lie on the old border edges and keep its angle.
+  std::vector<char> corners(const Level& level) const {
+    Eigen::VectorXd angle = Eigen::VectorXd::Zero(level.vertex_count());  // [rad]
+    for (int t = 0; t < level.triangle_count(); ++t)
+      for (int k = 0; k < 3; ++k) {
+        const auto v = level.rest.triangles.row(t);
+        const Eigen::Vector3d p = level.rest.vertices.row(v[k]);
+        const Eigen::Vector3d a = level.rest.vertices.row(v[(k + 1) % 3]).transpose() - p;
+        const Eigen::Vector3d b = level.rest.vertices.row(v[(k + 2) % 3]).transpose() - p;
+        angle[v[k]] += std::atan2(a.cross(b).norm(), a.dot(b));
+      }
+    const double allowed = parameters_.corner_angle * std::numbers::pi / 180;
+    std::vector<char> corner(level.vertex_count());
+    for (int v = 0; v < level.vertex_count(); ++v)
+      corner[v] = level.topology.on_border[v] && std::abs(angle[v] - std::numbers::pi) > allowed;
+    return corner;
+  }
+
+  /// Weight β of each of `valence` neighbours of an inner vertex (Warren 1995).
+  static double neighbour_weight(int valence) { return valence == 3 ? 3.0 / 16 : 3.0 / (8.0 * valence); }
+
+ private:
+  using Weights = std::vector<Eigen::Triplet<double>>;
+
+  /// The two neighbours along the border of each border vertex.
+  static std::vector<std::array<int, 2>> border_neighbours(const Topology& topology, int vertex_count) {
+    std::vector<std::array<int, 2>> neighbours(vertex_count, {-1, -1});
+    for (int e = 0; e < topology.edges.rows(); ++e) {
+      if (topology.edge_triangles(e, 1) != -1) continue;
+      for (int end = 0; end < 2; ++end) {
+        auto& pair = neighbours[topology.edges(e, end)];
+        pair[pair[0] == -1 ? 0 : 1] = topology.edges(e, 1 - end);
+      }
+    }
+    return neighbours;
+  }
+
+  static void add_border_vertex(int v, const std::array<int, 2>& neighbours, Weights& weights) {
+    weights.emplace_back(v, v, 0.75);
+    for (int u : neighbours) weights.emplace_back(v, u, 0.125);
+  }
+
+  static void add_inner_vertex(int v, const Topology& topology, Weights& weights) {
+    const AdjacencyList& neighbours = topology.vertex_vertices;
+    const double beta = neighbour_weight(neighbours.size(v));
+    weights.emplace_back(v, v, 1 - neighbours.size(v) * beta);
+    for (const int* u = neighbours.begin(v); u != neighbours.end(v); ++u) weights.emplace_back(v, *u, beta);
+  }
+
+  static void add_edge(int e, const Level& coarse, Weights& weights) {
+    const Topology& topology = coarse.topology;
+    const int row = coarse.vertex_count() + e;
+    const bool border = topology.edge_triangles(e, 1) == -1;
+    for (int end = 0; end < 2; ++end) weights.emplace_back(row, topology.edges(e, end), border ? 0.5 : 0.375);
+    if (border) return;
+    for (int side = 0; side < 2; ++side) {
+      const int t = topology.edge_triangles(e, side);
+      for (int k = 0; k < 3; ++k)
+        if (topology.triangle_edges(t, k) == e) weights.emplace_back(row, coarse.rest.triangles(t, k), 0.125);
+    }
+  }
+
+  Parameters parameters_;
+};
+
+}  // namespace drape
 
 DRAPE_PLUGIN(registry) {
   registry.add<drape::Refiner, drape::LoopRefiner>(

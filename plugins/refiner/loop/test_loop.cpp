@@ -6,7 +6,9 @@
 #include "core/numerics/hierarchy/midpoint.h"
 #include "core/numerics/mesh/check.h"
 #include "core/numerics/patterns/generate.h"
-#include "plugins/refiner/loop/loop.h"
+#include "tests/support/unregistered.h"
+// After it:
+#include "plugins/refiner/loop/loop.cpp"
 
 using namespace drape;
 using Row = std::map<int, double>;

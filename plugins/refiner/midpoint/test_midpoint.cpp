@@ -2,7 +2,9 @@
 
 #include "core/numerics/hierarchy/hierarchy.h"
 #include "core/numerics/patterns/generate.h"
-#include "plugins/refiner/midpoint/midpoint.h"
+#include "tests/support/unregistered.h"
+// After it:
+#include "plugins/refiner/midpoint/midpoint.cpp"
 
 using namespace drape;
 

@@ -1,9 +1,11 @@
-#include "plugins/energy/formula/hinge.h"
+#include <algorithm>
+#include <utility>
 
 #include "core/numerics/elements/batched_energy.h"
+#include "core/numerics/elements/vertex_energy.h"
 #include "core/numerics/formulas/fold_formula.h"
-#include "plugins/energy/formula/compile.h"
-#include "plugins/energy/formula/strain_kernel.h"
+#include "plugins/energy/formula/formula.h"
+#include "plugins/energy/formula/program.h"
 
 namespace drape::formula {
 namespace {
@@ -11,7 +13,7 @@ namespace {
 /// A hinge's energy as a function of its angle.
 class HingeFormulaKernel {
  public:
-  static constexpr int vertices = 4, batch = batch_packs;
+  static constexpr int vertices = 4, batch = Program::batch_packs;
   using Rest = RestHinge;  ///< HingeInput from `rest` to `w`
   using T = Pack<native_pack_width>;
   using Batch = ElementBatch<4, native_pack_width, batch>;
@@ -22,7 +24,7 @@ class HingeFormulaKernel {
   void value(const Batch& packs, T* energies) const {
     T registers[Program::slots * batch];
     run(packs, programs_.value, registers, nullptr);
-    read_energies(programs_.value, registers, energies);
+    std::copy_n(programs_.value.packs_of(0, registers), batch, energies);
   }
 
   [[gnu::flatten]] void gradient(const Batch& packs, T* energies, Vector (*g)[3]) const {
@@ -30,9 +32,9 @@ class HingeFormulaKernel {
     const Program& p = programs_.gradient;
     Vector d[batch][3];
     run(packs, p, registers, d);
-    read_energies(p, registers, energies);
+    std::copy_n(p.packs_of(0, registers), batch, energies);
     for (int i = 0; i < batch; ++i) {
-      DihedralAngle<T>(d[i]).gradient(registers[p.output(1) * batch + i], g[i]);
+      DihedralAngle<T>(d[i]).gradient(p.packs_of(1, registers)[i], g[i]);
     }
   }
 
@@ -43,8 +45,8 @@ class HingeFormulaKernel {
     run(packs, p, registers, d);
     for (int i = 0; i < batch; ++i) {
       Eigen::Matrix<T, 9, 9> full;
-      DihedralAngle<T>(d[i]).hessian(registers[p.output(1) * batch + i], registers[p.output(0) * batch + i],
-                                     full, [&](auto& part) { project_part(part, projection); });
+      DihedralAngle<T>(d[i]).hessian(p.packs_of(1, registers)[i], p.packs_of(0, registers)[i], full,
+                                     [&](auto& part) { project_part(part, projection); });
       h[i] = Batch::Hessian(full);
     }
   }
@@ -72,12 +74,58 @@ class HingeFormulaKernel {
   Programs programs_;
 };
 
+/// The energy of a vertex, for VertexEnergy.
+class VertexProgramKernel {
+ public:
+  using T = Pack<native_pack_width>;
+
+  explicit VertexProgramKernel(Programs programs) : programs_(std::move(programs)) {}
+
+  T value(const T* x, const T* rest) const {
+    T registers[Program::slots];
+    run(programs_.value, x, rest, registers);
+    return registers[programs_.value.output(0)];
+  }
+  T gradient(const T* x, const T* rest, T* g) const {
+    T registers[Program::slots];
+    const Program& p = programs_.gradient;
+    run(p, x, rest, registers);
+    for (int c = 0; c < 3; ++c) g[c] = registers[p.output(1 + c)];
+    return registers[p.output(0)];
+  }
+  void hessian(const T* x, const T* rest, Eigen::Matrix<T, 3, 3>& h) const {
+    T registers[Program::slots];
+    const Program& p = programs_.hessian;
+    run(p, x, rest, registers);
+    for (int j = 0; j < 3; ++j)
+      for (int i = 0; i <= j; ++i) h(i, j) = registers[p.output(3 + Jet<3, T>::index(i, j))];
+  }
+
+ private:
+  static void run(const Program& program, const T* x, const T* rest, T* registers) {
+    for (int i = 0; i < 3; ++i) registers[program.register_of(i)] = x[i];
+    for (int i = 0; i < 5; ++i) registers[program.register_of(3 + i)] = rest[i];
+    program.run<T, 1>(registers);
+  }
+
+  Programs programs_;
+};
+
 }  // namespace
 
 std::unique_ptr<BoundEnergy> bind_hinges(const Law& law, const Level& level, const Material& material) {
   HingeFormulaKernel kernel(compile_hinge(law, material));
   return std::make_unique<BatchedEnergy<HingeFormulaKernel>>(std::move(kernel), level.hinges,
                                                              rest_hinges(level), level.hinge_order);
+}
+
+std::unique_ptr<BoundEnergy> bind_vertices(const Law& law, const Level& level, const Material& material) {
+  Programs programs = compile_vertex(law, material);
+  const bool is_linear = programs.is_linear;
+  auto bound = std::make_unique<VertexEnergy<VertexProgramKernel>>(level, material,
+                                                                   VertexProgramKernel(std::move(programs)));
+  if (!is_linear) return bound;
+  return as_linear(std::move(bound), level);
 }
 
 }  // namespace drape::formula

@@ -1,0 +1,65 @@
+#include "core/numerics/solve/newton_report.h"
+
+#include "core/kernel/files/message_text.h"
+
+namespace drape {
+
+IterationRow iteration_row(Objective& objective, const Iterate& iterate, const NewtonStep& step,
+                           const LoadStepper& load, const LevelResult& so_far, int iteration,
+                           double seconds) {
+  IterationRow row;
+  row.level = so_far.level;
+  row.step = so_far.steps;
+  row.iteration = iteration;
+  row.energy = iterate.energy_without_friction();
+  if (objective.is_proxy()) {
+    row.proxy_energy = row.energy;
+    row.energy = objective.plain_energy(iterate.x());
+  }
+  if (objective.contacts().any()) {
+    row.contacts = objective.contacts().count();
+    row.smallest_gap = objective.contacts().smallest_gap();
+  }
+  row.decrement = so_far.decrement;
+  row.force_residual = so_far.force_residual;
+  row.step_length = step.step_length();
+  row.step_size = step.step_size();
+  row.time = load.time();
+  row.seconds = seconds;
+  row.flops = so_far.flops;
+  return row;
+}
+
+void record_contacts(const ActiveContacts& contacts, LevelResult& result) {
+  result.contact_stiffness = contacts.stiffness();
+  if (!contacts.any()) return;
+  result.smallest_gap = contacts.smallest_gap();
+  // Collisions are built while energies are evaluated.
+  result.seconds_by_phase["collisions"] = contacts.seconds_building();
+  result.seconds_by_phase["gradient"] -= contacts.seconds_building();
+}
+
+std::string blocked_text(const LoadStepper& load) {
+  return "the increment to pseudo-time " + three_digits(*load.time()) + " cannot be completed" +
+         load.limit_text();
+}
+
+std::string max_steps_text(int max_steps, double residual) {
+  return "no equilibrium within max_steps = " + std::to_string(max_steps) + "; force residual " +
+         three_digits(residual);
+}
+
+std::string drift_text(double drift, double most, double diagonal) {
+  return "nothing holds the cloth within " + three_digits(most) + " of its diagonals: it has drifted by " +
+         three_digits(drift) + " of them, " + three_digits(drift * diagonal) +
+         " m, and does not come to rest; pin it, put something under it, start it nearer to what is there, "
+         "or raise the friction";
+}
+
+std::string rounding_text(double residual, double tolerance, double rounding) {
+  return "the force residual is " + three_digits(residual) +
+         ", above force_tolerance = " + three_digits(tolerance) + ": round-off alone accounts for up to " +
+         three_digits(rounding) + " here, and no step lowers it";
+}
+
+}  // namespace drape

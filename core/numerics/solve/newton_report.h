@@ -1,0 +1,29 @@
+#pragma once
+
+#include <string>
+
+#include "core/numerics/model/objective.h"
+#include "core/numerics/solve/load_stepper.h"
+#include "core/numerics/step/newton_step.h"
+
+namespace drape {
+
+/// The row of an iteration, `seconds` after the clock began.
+IterationRow iteration_row(Objective& objective, const Iterate& iterate, const NewtonStep& step,
+                           const LoadStepper& load, const LevelResult& so_far, int iteration, double seconds);
+
+/// Stores the contacts' stiffness, their smallest gap and the time that they took.
+void record_contacts(const ActiveContacts& contacts, LevelResult& result);
+
+/// Why a cloth that has drifted by `drift` of its diagonals [1], more than `most`, will not come to rest.
+std::string drift_text(double drift, double most, double diagonal);
+
+/// Why the increment under way ends the level.
+std::string blocked_text(const LoadStepper& load);
+
+std::string max_steps_text(int max_steps, double residual);
+
+/// Why a force residual above the tolerance, of which round-off explains `rounding`, counts as converged.
+std::string rounding_text(double residual, double tolerance, double rounding);
+
+}  // namespace drape
