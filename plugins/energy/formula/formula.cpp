@@ -7,8 +7,8 @@
 #include "core/kernel/plugin/plugin.h"
 #include "core/kernel/plugin/refused_parameters.h"
 #include "core/numerics/formulas/formula_properties.h"
-#include "core/numerics/model/hessian_assembler.h"
 #include "core/numerics/model/derivative_check.h"
+#include "core/numerics/model/hessian_assembler.h"
 
 namespace drape {
 
