@@ -117,9 +117,9 @@ std::vector<TrianglePair> meeting(const TriangleMesh& mesh, const TriangleMesh& 
   return parallel_collect<TrianglePair>(count, triangles_per_task, test);
 }
 
-BroadPhase broad_phase_of(const TriangleMesh& mesh) {
-  BroadPhase phase;
-  phase.update(boxes_of(mesh));
+std::unique_ptr<BroadPhase> broad_phase_of(const TriangleMesh& mesh) {
+  auto phase = make_broad_phase(BroadPhaseKind::bvh);
+  phase->update(boxes_of(mesh));
   return phase;
 }
 
@@ -129,13 +129,13 @@ constexpr long unlimited = std::numeric_limits<long>::max();
 
 std::vector<TrianglePair> self_intersections(const TriangleMesh& mesh) {
   AdjacencyList candidates;
-  broad_phase_of(mesh).overlaps(unlimited, candidates);
+  broad_phase_of(mesh)->overlaps(unlimited, candidates);
   return meeting(mesh, mesh, true, candidates);
 }
 
 std::vector<TrianglePair> intersections(const TriangleMesh& mesh, const TriangleMesh& other) {
   AdjacencyList candidates;
-  broad_phase_of(mesh).overlaps(broad_phase_of(other), unlimited, candidates);
+  broad_phase_of(mesh)->overlaps(*broad_phase_of(other), unlimited, candidates);
   return meeting(mesh, other, false, candidates);
 }
 
