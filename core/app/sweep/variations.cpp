@@ -102,9 +102,7 @@ Variation named(const ConfigNode& node, ConfigErrors& errors) {
 
 struct GridParameters {
   ConfigNode grid;
-  static void declare(Declaration<GridParameters>& d) {
-    d.add("grid", &GridParameters::grid).required();
-  }
+  static void declare(Declaration<GridParameters>& d) { d.add("grid", &GridParameters::grid).required(); }
 };
 
 void check_names(std::vector<Variation>& all, ConfigErrors& errors) {
