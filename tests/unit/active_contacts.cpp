@@ -7,7 +7,6 @@
 #include "core/numerics/contact_forces/barrier.h"
 #include "core/numerics/contact_forces/contact_stiffness.h"
 #include "core/numerics/patterns/generate.h"
-#include "core/numerics/solve/newton.h"
 #include "tests/support/evaluate.h"
 #include "tests/support/solve.h"
 
@@ -61,102 +60,7 @@ double potential(double u) {
   return mu * (q < 1 ? u * q * (1 - q / 3) : u - epsilon / 3);
 }
 
-/// Forwards to a real model; counts broad phases and stores the last motion.
-struct Counted : BoundContact {
-  std::unique_ptr<BoundContact> real;
-  mutable int searches = 0;
-  mutable Positions begin, end;
-
-  explicit Counted(std::unique_ptr<BoundContact> contact) : real(std::move(contact)) {}
-  std::unique_ptr<CollisionCandidates> build_candidates(const Positions& x0,
-                                                        const Positions& x1) const override {
-    ++searches;
-    begin = x0;
-    end = x1;
-    return real->build_candidates(x0, x1);
-  }
-  std::vector<Intersection> intersections(const Positions& x) const override {
-    return real->intersections(x);
-  }
-  std::vector<TriangleMesh> obstacles() const override { return real->obstacles(); }
-};
-
-/// Contact that allows no step.
-class Frozen : public ContactModel {
-  struct FrozenCollisions : Collisions {
-    int contact_count() const override { return 1; }
-    double smallest_gap() const override { return 1e-5; }
-    double value(const Positions&) const override { return 0; }
-    double add_gradient(const Positions&, Positions&) const override { return 0; }
-    Stencils stencils() const override { return Stencils(0, 1); }
-    void add_hessian(const Positions&, Projection, BlockSink&) const override {}
-  };
-  struct FrozenCandidates : CollisionCandidates {
-    StepLimit max_step() const override { return {0, "cloth triangle 3 and ice"}; }
-    std::unique_ptr<Collisions> build_collisions(const Positions&) const override {
-      return std::make_unique<FrozenCollisions>();
-    }
-  };
-  struct Bound : BoundContact {
-    std::unique_ptr<CollisionCandidates> build_candidates(const Positions&, const Positions&) const override {
-      return std::make_unique<FrozenCandidates>();
-    }
-    std::vector<Intersection> intersections(const Positions&) const override { return {}; }
-    std::vector<TriangleMesh> obstacles() const override { return {}; }
-  };
-
- public:
-  std::unique_ptr<BoundContact> bind(const Level&, const Material&) const override {
-    return std::make_unique<Bound>();
-  }
-};
-
-struct ObservedRows : Observer {
-  std::vector<IterationRow> rows;
-  std::vector<Positions> states;
-  void iteration(const IterationRow& row, const Positions& x) override {
-    rows.push_back(row);
-    states.push_back(x);
-  }
-};
-
-/// A sheet that falls on the floor, under gravity that leans by 0.1.
-struct Falling {
-  Level level = sheet();
-  LevelModel model;
-  ObservedRows rows;
-
-  explicit Falling(const std::vector<std::shared_ptr<ContactModel>>& contacts)
-      : model(level, Material(),
-              {{"neo_hookean", make_plugin_from<Energy>("neo_hookean")},
-               {"hinge", make_plugin_from<Energy>("hinge")},
-               {"gravity", make_plugin_from<Energy>("{type: gravity, acceleration: [0.98, 0, -9.81]}")}},
-              {}, contacts) {}
-
-  LevelResult solve(const NewtonParameters& p, double height) {
-    PlainObjective objective(model);
-    return minimise(objective, at(level, 0, height), p, {Stopwatch(), rows});
-  }
-};
-
 }  // namespace
-
-TEST_CASE("Without a contact model there is nothing") {
-  const BoundContacts none;
-  ActiveContacts contacts(none);
-  const Positions x = sheet().rest.vertices;
-  contacts.begin_step(x);
-  contacts.update_lagging(x);
-  Positions g = Positions::Zero(x.rows(), 3);
-  CHECK_FALSE(contacts.any());
-  CHECK_FALSE(contacts.has_friction());
-  CHECK(contacts.barrier(x) + contacts.friction(x) + contacts.add_gradient(x, g) == 0);
-  CHECK(g.norm() == 0);
-  CHECK(contacts.energies(x).empty());
-  CHECK(contacts.max_step(x, 2 * x).fraction == 1);
-  CHECK(contacts.count() == 0);
-  CHECK(contacts.smallest_gap() == std::numeric_limits<double>::infinity());
-}
 
 TEST_CASE("Friction keeps the normal forces of the step's start until update_lagging") {
   const Level level = sheet();
@@ -303,27 +207,6 @@ TEST_CASE("Tangential displacements are advected by obstacle motion") {
   CHECK(contacts.friction(x1) == Approx(force * potential(0.7 * epsilon)));
 }
 
-TEST_CASE("An obstacle's motion advects the contacts of its own model alone") {
-  const Level level = sheet();
-  const double height = 0.4 * dhat, force = normal_force(height);
-  const Positions x0 = at(level, 0, height), x1 = at(level, 0.3 * epsilon, height);
-  // The sheet lies on both plates at once. One moves, or both do by different lengths.
-  for (const double first : {0.0, 0.1 * epsilon}) {
-    const BoundContacts before = bound(level, {a_plate(0), a_plate(0)});
-    ActiveContacts contacts(before);
-    contacts.begin_step(x0);
-    contacts.max_step(x0, x1);
-    contacts.begin_step(x1);
-    BoundContacts after = bound(level, {a_plate(first), a_plate(-0.4 * epsilon)});
-    if (first == 0) after[0] = before[0];
-    contacts.update_obstacles(after, x1, x1);
-    const double expected = force * (potential(0.3 * epsilon - first) + potential(0.7 * epsilon));
-    CHECK(contacts.friction(x1) == Approx(expected));
-    contacts.begin_step(x1);
-    CHECK(contacts.friction(x1) == Approx(expected));
-  }
-}
-
 TEST_CASE("A moving cloth's tangential displacements are relative to the obstacle") {
   const Level level = sheet();
   const double height = 0.4 * dhat, force = normal_force(height);
@@ -374,17 +257,6 @@ TEST_CASE("Tangential displacements on a static obstacle are the cloth's own, an
   }
 }
 
-TEST_CASE("Friction can be disabled") {
-  const Level level = sheet();
-  const auto models = bound(level, {a_floor()});
-  ActiveContacts contacts(models);
-  contacts.disable_friction();
-  contacts.begin_step(at(level, 0, 0.4 * dhat));
-  CHECK_FALSE(contacts.has_friction());
-  CHECK(contacts.count() > 0);
-  CHECK(contacts.friction(at(level, 1, 0.4 * dhat)) == 0);
-}
-
 TEST_CASE("The smallest of several models' steps counts, and their collisions add up") {
   const Level level = sheet();
   const auto low = a_floor("low", -0.0002), high = a_floor("high", 0);
@@ -409,102 +281,6 @@ TEST_CASE("The smallest of several models' steps counts, and their collisions ad
     CHECK(contacts.smallest_gap() == Approx(0.3 * dhat));
     CHECK(contacts.energies(x).size() == 2);
   }
-}
-
-TEST_CASE("All states of one linear motion are evaluated from one search") {
-  const Level level = sheet();
-  BoundContacts models;
-  models.push_back(std::make_unique<Counted>(a_floor()->bind(level, Material())));
-  const auto& counted = dynamic_cast<const Counted&>(*models[0]);
-  ActiveContacts contacts(models);
-  const Positions x0 = at(level, 0, 0.9 * dhat), x1 = at(level, 0, 0.2 * dhat);
-  contacts.begin_step(x0);
-  CHECK(counted.searches == 1);
-  contacts.max_step(x0, x1);
-  CHECK(counted.searches == 2);
-  double last = contacts.barrier(x0);
-  for (const double part : {0.25, 0.5, 1.0}) {
-    const Positions x = x0 + part * (x1 - x0);
-    Positions g = Positions::Zero(x.rows(), 3);
-    CHECK(contacts.barrier(x) > last);
-    last = contacts.barrier(x);
-    contacts.add_gradient(x, g);
-    contacts.energies(x);
-    contacts.update_lagging(x);
-  }
-  CHECK(counted.searches == 2);
-}
-
-TEST_CASE("Newton names what blocks a step") {
-  for (const NewtonForm form : {NewtonForm::quasistatic, NewtonForm::statics}) {
-    Falling falling({std::make_shared<Frozen>()});
-    NewtonParameters p;
-    p.form = form;
-    const LevelResult r = falling.solve(p, 0.1);
-    CHECK(r.outcome == Outcome::stalled);
-    CHECK_THAT(r.message, Catch::StartsWith("the line search found no descent") &&
-                              Catch::EndsWith("; the step is limited by cloth triangle 3 and ice"));
-  }
-}
-
-TEST_CASE(
-    "Newton with contact and friction: what is recorded, and an equilibrium with the forces of its end") {
-  Falling falling({a_floor()});
-  NewtonParameters p;
-  p.force_tolerance = 1e-5;
-  const LevelResult r = falling.solve(p, 5 * dhat);
-  CAPTURE(r.message);
-  REQUIRE(r.outcome == Outcome::converged);
-  REQUIRE(r.smallest_gap);
-  CHECK(*r.smallest_gap == Approx(r.x.col(2).minCoeff()));
-  REQUIRE(falling.rows.rows.size() == static_cast<std::size_t>(r.iterations));
-  PlainObjective plain(falling.model);
-  for (std::size_t i = 0; i < falling.rows.rows.size(); ++i) {
-    const IterationRow& row = falling.rows.rows[i];
-    const Positions& x = falling.rows.states[i];
-    REQUIRE(row.contacts);
-    REQUIRE(row.smallest_gap);
-    CHECK((*row.contacts > 0) == (x.col(2).minCoeff() < dhat));
-    plain.max_step(x, x);
-    CHECK(row.energy == Approx(plain.plain_energy(x)).epsilon(1e-9));  // without friction
-  }
-  CHECK(falling.rows.rows.back().contacts == 16);
-  // The floor bears the weight and friction the rest: the plain model, which has no friction, is out of
-  // balance by just that.
-  const double weight = Material().area_density() * 0.01;
-  Positions g;
-  falling.model.gradient(r.x, g);
-  CHECK(-g.colwise().sum().x() == Approx(0.98 * weight));
-  const auto set = falling.model.contacts()[0]->build_candidates(r.x, r.x)->build_collisions(r.x);
-  CHECK(-gradient_of(*set, r.x).col(2).sum() == Approx(9.81 * weight).epsilon(1e-4));
-  CHECK(falling.model.force_residual(r.x) == Approx(0.98 / std::hypot(0.98, 9.81)).epsilon(1e-3));
-
-  Falling free({});
-  p.max_steps = 3;
-  const LevelResult none = free.solve(p, 5 * dhat);
-  CHECK_FALSE(none.smallest_gap);
-  REQUIRE(!free.rows.rows.empty());
-  for (const IterationRow& row : free.rows.rows) {
-    CHECK_FALSE(row.contacts);
-    CHECK_FALSE(row.smallest_gap);
-  }
-}
-
-TEST_CASE("A level is converged with the friction of where it ends, however long its last step was") {
-  // It starts so low that the floor's forces, and friction with them, are far larger than at the end.
-  Falling falling({a_floor()});
-  NewtonParameters p;
-  p.force_tolerance = 1e-6;
-  p.form = NewtonForm::statics;
-  p.iterations_per_step = 20;
-  PlainObjective objective(falling.model);
-  const LevelResult r = minimise(objective, at(falling.level, 0, 0.9 * dhat), p, {Stopwatch(), falling.rows});
-  CAPTURE(r.message);
-  REQUIRE(r.outcome == Outcome::converged);
-  Positions g;
-  objective.contacts().update_lagging(r.x);
-  objective.gradient(r.x, g);
-  CHECK(free_norm(g, falling.model.fixed()) / falling.model.residual_scale(r.x, g) <= 1e-6);
 }
 
 TEST_CASE("The objective's derivatives with limits, contact and friction") {
@@ -589,42 +365,6 @@ methods: {newton: {}}
              Catch::EndsWith("; pinned vertices begin at their targets: a schedule moves pins far"));
 }
 
-TEST_CASE("Restored contacts have the same candidates and tangential displacements") {
-  const Level level = sheet();
-  const auto counted = std::make_shared<Counted>(a_floor()->bind(level, Material()));
-  const Counted& floor = *counted;
-  const BoundContacts models = {counted};
-
-  const Positions x0 = at(level, 0, 0.5 * dhat), x1 = at(level, 3e-4, 0.4 * dhat);
-  ActiveContacts contacts(models);
-  contacts.begin_step(x0);
-  contacts.max_step(x0, x1);
-  contacts.barrier(x1);
-  contacts.begin_step(x1);
-  REQUIRE(contacts.has_friction());
-  const ContactMemory memory = contacts.memory();
-  CHECK(memory.candidates_begin == x0);
-  CHECK(memory.candidates_end == x1);
-  CHECK(memory.reference == x1);
-  REQUIRE(memory.tangential_displacements.size() == 1);
-  REQUIRE(memory.tangential_displacements[0].size() == 16);
-  for (const TangentialDisplacement& d : memory.tangential_displacements[0])
-    CHECK(d.displacement.norm() == Approx(epsilon));
-
-  contacts.max_step(x1, x1);
-  ActiveContacts again(models);
-  again.restore(memory, x1);
-  CHECK(floor.begin == x0);  // contacts' order may depend on it
-  CHECK(floor.end == x1);
-  const Positions x2 = at(level, 4e-4, 0.4 * dhat);
-  REQUIRE(contacts.friction(x2) > 0);
-  CHECK(again.friction(x2) == contacts.friction(x2));
-  CHECK(again.barrier(x1) == contacts.barrier(x1));
-  CHECK(again.memory().reference == memory.reference);
-  CHECK(again.memory().tangential_displacements[0][3].displacement ==
-        memory.tangential_displacements[0][3].displacement);
-}
-
 TEST_CASE("Between steps the stiffness rises of those models alone whose contacts press") {
   const Level level = sheet();
   // The sheet is close above the first, half of d̂ above the second, and the third's stiffness is given.
@@ -659,24 +399,4 @@ TEST_CASE("Between steps the stiffness rises of those models alone whose contact
 
   contacts.fix_stiffness();
   CHECK_FALSE(contacts.raise_stiffness(x1, 1e9));
-}
-
-TEST_CASE("A raised stiffness is restored with the contacts, bit for bit") {
-  const Level level = sheet();
-  const auto open_models = [&] {
-    return bound(level, {an_open_floor(0), make_plugin_from<ContactModel>("ipc")});
-  };
-  const Positions x0 = at(level, 0, 0.005 * dhat), x1 = at(level, epsilon / 2, 0.005 * dhat);
-  ActiveContacts contacts(open_models());
-  contacts.begin_step(x0);
-  contacts.max_step(x0, x1);
-  REQUIRE(contacts.raise_stiffness(x1, 1e9));
-  contacts.begin_step(x1);
-  const ContactMemory memory = contacts.memory();
-  ActiveContacts other(open_models());
-  other.restore(memory, x1);
-  CHECK(other.stiffness() == contacts.stiffness());
-  Positions g = Positions::Zero(x1.rows(), 3), same = g;
-  CHECK(other.add_gradient(x1, same) == contacts.add_gradient(x1, g));
-  CHECK(g == same);
 }

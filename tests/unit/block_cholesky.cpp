@@ -133,19 +133,6 @@ TEST_CASE("Block Cholesky gives the same bits with any number of threads, as far
   REQUIRE((ax + 0.1 * first - b).norm() < (solver == LinearSolver::mixed ? 1e-5 : 1e-10) * b.norm());
 }
 
-TEST_CASE("Block Cholesky reuses its analysis until the pattern or the fixed vertices change", "[cholesky]") {
-  const BlockMatrix a = random_matrix(30, 1);
-  std::vector<char> fixed(30, 0);
-  BlockCholesky cholesky(any_solver());
-  cholesky.analyse(a.pattern, fixed);
-  cholesky.analyse(a.pattern, fixed);
-  REQUIRE(cholesky.analyses() == 1);
-  fixed[4] = 1;
-  cholesky.analyse(a.pattern, fixed);
-  REQUIRE(cholesky.analyses() == 2);
-  REQUIRE(cholesky.unknowns() == 87);
-}
-
 TEST_CASE("Block Cholesky refuses an indefinite matrix wherever it is so, and then factorises a definite one",
           "[cholesky]") {
   const int side = 14, n = side * side;
@@ -252,31 +239,6 @@ TEST_CASE("Denormal numbers are flushed within a factorisation only, in every th
 #endif
   }
   set_thread_count(0);
-}
-
-TEST_CASE("Another solver takes over the analysis", "[cholesky]") {
-  const int side = 12, n = side * side;
-  const BlockMatrix a = random_matrix(n, shell(side, 4), 6);
-  const Positions b = Positions::Random(n, 3);
-  BlockCholesky alone(LinearSolver::supernodal), changed(LinearSolver::mixed);
-  Positions expected, x;
-  for (BlockCholesky* cholesky : {&alone, &changed}) {
-    cholesky->analyse(a.pattern, std::vector<char>(n, 0));
-    REQUIRE(cholesky->factorise(a, Eigen::VectorXd::Ones(n)));
-  }
-  alone.solve(b, expected);
-  changed.use(LinearSolver::supernodal);
-  REQUIRE(changed.solver() == LinearSolver::supernodal);
-  REQUIRE_FALSE(changed.has_factor());
-  REQUIRE(changed.factorise(a, Eigen::VectorXd::Ones(n)));
-  changed.solve(b, x);
-  REQUIRE(x == expected);
-  REQUIRE(changed.analyses() == 1);
-  changed.use(LinearSolver::mixed);
-  REQUIRE(changed.factorise(a, Eigen::VectorXd::Ones(n)));
-  REQUIRE(changed.solve(b, x));
-  REQUIRE(x != expected);
-  REQUIRE((x - expected).norm() < 1e-3 * expected.norm());
 }
 
 TEST_CASE("Block Cholesky with every vertex fixed has nothing to solve", "[cholesky]") {

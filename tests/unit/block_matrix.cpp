@@ -4,7 +4,6 @@
 #include <random>
 #include <set>
 
-#include "core/kernel/threads/parallel.h"
 #include "tests/support/dense_matrix.h"
 
 using namespace drape;
@@ -57,17 +56,6 @@ TEST_CASE("A block pattern is the union of the elements' pairs") {
     for (int j = i; j < n; ++j)
       if (!expected.count({i, j})) CHECK(pattern->find(i, j) == -1);
   CHECK(BlockPattern::of(3, {})->columns == std::vector<int>({0, 1, 2}));
-}
-
-TEST_CASE("A large block pattern does not depend on the number of threads") {
-  const std::vector<Stencils> stencils = {random_stencils(20000, 30000, 4, 3)};
-  set_thread_count(1);
-  const auto one = BlockPattern::of(20000, stencils);
-  set_thread_count(3);
-  const auto three = BlockPattern::of(20000, stencils);
-  set_thread_count(0);
-  CHECK(one->row_start == three->row_start);
-  CHECK(one->columns == three->columns);
 }
 
 TEST_CASE("Elements' blocks are summed into the right blocks, transposed where their vertices descend") {

@@ -3,10 +3,6 @@
 #include <catch2/catch.hpp>
 #include <random>
 
-#include "core/kernel/threads/parallel.h"
-#include "core/numerics/patterns/generate.h"
-#include "tests/support/processor_time.h"
-
 using namespace drape;
 
 namespace {
@@ -22,26 +18,6 @@ std::vector<Box> random_boxes(int count, double size, unsigned seed) {
   for (int i = 0; i < count; ++i) {
     const Vector low(place(random), place(random), place(random));
     boxes.push_back(Box::around(low, low + Vector(extent(random), extent(random), extent(random)), 0));
-  }
-  return boxes;
-}
-
-/// The triangles of a square cloth folded like a letter into `layers` layers that are 1 mm apart.
-std::vector<Box> folded_boxes(int layers, int columns, double wave, double margin) {
-  const TriangleMesh mesh = grid({1, 1}, columns, columns, Diagonals::criss_cross);
-  Positions x = mesh.vertices;
-  for (int i = 0; i < x.rows(); ++i) {
-    const double along = layers * mesh.vertices(i, 0);
-    const int layer = std::min(static_cast<int>(along), layers - 1);
-    const double part = along - layer;
-    x(i, 0) = (layer % 2 ? 1 - part : part) / layers;
-    x(i, 2) = 1e-3 * along + wave * std::sin(20 * x(i, 0) + 9 * x(i, 1));
-  }
-  std::vector<Box> boxes;
-  for (int t = 0; t < mesh.triangles.rows(); ++t) {
-    Box box;
-    for (const int v : mesh.triangles.row(t)) box.include(Box::around(x.row(v), x.row(v), margin));
-    boxes.push_back(box);
   }
   return boxes;
 }
@@ -214,33 +190,4 @@ TEST_CASE("broad phase: the limit on pairs, and kinds that differ") {
         make_broad_phase(kind == BroadPhaseKind::fcl ? BroadPhaseKind::bvh : BroadPhaseKind::fcl);
     CHECK_THROWS_WITH(phase->overlaps(*other, count, pairs), Catch::Contains("two kinds"));
   }
-}
-
-TEST_CASE("broad phase: eight folded layers of 50 thousand triangles") {
-  const std::vector<Box> flat = folded_boxes(1, 160, 0, 5e-4), boxes = folded_boxes(8, 160, 0.01, 5e-4);
-  REQUIRE(boxes.size() > 50000);
-  std::vector<AdjacencyList> found;
-  for (const BroadPhaseKind kind : kinds) {
-    const auto phase = make_broad_phase(kind);
-    ProcessorTime watch;
-    phase->update(flat);  // so that the tree is one of the flat cloth, as in a run
-    const double build = watch.seconds();
-    phase->update(boxes);
-    watch = ProcessorTime();
-    phase->update(boxes);
-    const double refit = watch.seconds();
-    watch = ProcessorTime();
-    found.push_back(pairs_of(*phase));
-    const double query = watch.seconds();
-    CAPTURE(static_cast<int>(kind), build, refit, query);
-    // On one idle core the own tree needs 7, 0.4 and 17 ms, FCL 22, 1.4 and 60 ms.
-    CHECK(build + refit + query < 2);
-  }
-  REQUIRE(found[0].items.size() > 10 * boxes.size());
-  check_same(found[1], found[0]);
-  set_thread_count(1);
-  const auto alone = make_broad_phase(BroadPhaseKind::bvh);
-  alone->update(boxes);
-  check_same(pairs_of(*alone), found[0]);
-  set_thread_count(0);
 }

@@ -5,6 +5,7 @@
 #include <catch2/catch.hpp>
 
 #include "tests/support/command.h"
+#include "tests/support/refusal.h"
 
 using namespace drape;
 using Catch::Matchers::Contains;
@@ -74,12 +75,7 @@ Checkpoint full() {
 }
 
 std::string error_of(const std::string& bytes) {
-  try {
-    decode(bytes);
-  } catch (const std::exception& error) {
-    return error.what();
-  }
-  return "";
+  return refusal_of([&] { decode(bytes); });
 }
 
 /// What `encode` writes after the header.
@@ -88,12 +84,7 @@ std::string body_of(const Checkpoint& checkpoint) {
 }
 
 std::string error_of_body(const std::string& bytes) {
-  try {
-    decode_body(bytes);
-  } catch (const std::runtime_error& error) {
-    return error.what();
-  }
-  return "";
+  return refusal_of([&] { decode_body(bytes); });
 }
 
 /// The place of the one byte in which two bodies differ.
@@ -106,13 +97,8 @@ std::size_t difference(const std::string& a, const std::string& b) {
 }
 
 std::string error_in(const std::filesystem::path& folder) {
-  try {
-    std::string warning;
-    load_checkpoint(folder, warning);
-  } catch (const std::exception& error) {
-    return error.what();
-  }
-  return "";
+  std::string warning;
+  return refusal_of([&] { load_checkpoint(folder, warning); });
 }
 
 }  // namespace

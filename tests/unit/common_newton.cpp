@@ -2,6 +2,7 @@
 
 #include <catch2/catch.hpp>
 
+#include "tests/support/refusal.h"
 #include "tests/support/solve.h"
 
 using namespace drape;
@@ -36,12 +37,8 @@ TEST_CASE("Every method has the experiment's newton, but for what it sets itself
 }
 
 TEST_CASE("A fault of the experiment's newton is told once, not by every method") {
-  std::string said;
-  try {
-    experiment_from(methods + "newton: {step_size: 0, max_step: 7}\n");
-  } catch (const std::exception& error) {
-    said = error.what();
-  }
+  const std::string said =
+      refusal_of([] { experiment_from(methods + "newton: {step_size: 0, max_step: 7}\n"); });
   CHECK_THAT(said, Catch::Contains(":7:21: \"step_size\" must be at least 1.0e-08 s, not 0\n"));
   CHECK_THAT(said, Catch::EndsWith(":7:24: unknown key \"max_step\" in newton; did you mean \"max_steps\"?"));
   CHECK(std::count(said.begin(), said.end(), '\n') == 1);

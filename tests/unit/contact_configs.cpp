@@ -136,10 +136,3 @@ TEST_CASE("A key of the friction changes every contact model, one of an obstacle
   CHECK(meshes[0].vertices == before.contacts()[1]->obstacles()[0].vertices);
   CHECK(meshes[1].vertices.col(0).mean() == Approx(1.5));
 }
-
-TEST_CASE("The keys that a contact model's section is said to know are its own") {
-  CHECK_THROWS_WITH(
-      experiment_from("name: a\nenergies: [gravity]\nmethods: {newton: {}}\n"
-                      "contact: {type: ipc, colour: 1}\n"),
-      Catch::Contains("unknown key \"colour\" in ipc; known keys are type, self_contact, dhat,"));
-}

@@ -37,14 +37,3 @@ TEST_CASE("What converges, however slowly, or stands still is no cycle") {
   CHECK(detected([](int k) { return -1e-9 * k; }, [](int k) { return 1.0 + k % 2; }) == -1);  // descends
   CHECK(detected([](int) { return std::nan(""); }) == -1);
 }
-
-TEST_CASE("A restored cycle detector continues the same, and a restarted one begins again") {
-  CycleDetector detector, other;
-  for (int k = 0; k < 13; ++k) detector.note(k % 2, k % 2);
-  CHECK(!detector.cycling());
-  other.restore(detector.state());
-  other.note(1, 1);
-  CHECK(other.cycling());
-  other.restart();
-  CHECK(!other.cycling());
-}

@@ -1,7 +1,6 @@
 #include "core/app/experiment/declared_metrics.h"
 
 #include <catch2/catch.hpp>
-#include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "core/app/experiment/error_measures.h"
@@ -9,7 +8,6 @@
 #include "core/app/report/run_table.h"
 #include "tests/support/command.h"
 #include "tests/support/declared_metrics.h"
-#include "tests/support/folders.h"
 
 using namespace drape;
 using Json = nlohmann::ordered_json;
@@ -152,24 +150,4 @@ TEST_CASE(
   CHECK(run_of({{"methods", Json::object()}}, header + row + row + "pcs,").errors[0].rows.size() == 2);
   CHECK_THROWS_WITH(run_of({{"methods", Json::object()}}, header + row + "pcs,\n" + row),
                     Contains("errors.csv:3: fewer cells than the header has; run the experiment again"));
-}
-
-TEST_CASE("the published Table 1 says what the supplement says: PCS lower in every measure") {
-  std::ifstream file(folders::source() + "/benchmarks/published_table1.json");
-  const Json scenes = Json::parse(file);
-  int rows = 0;
-  for (const auto& [scene, block] : scenes.items()) {
-    REQUIRE(block.size() % 2 == 0);
-    for (std::size_t k = 0; k < block.size(); k += 2) {
-      const Json &pcs = block[k], &other = block[k + 1];
-      INFO(scene << " " << pcs.dump());
-      CHECK(pcs["method"] == "PCS");
-      CHECK((pcs["coarse"] == other["coarse"] && pcs["fine"] == other["fine"]));
-      for (const char* measure : {"d_H_fit", "d_H_ddg", "d_K_fit", "d_K_ddg"})
-        CHECK(pcs[measure].get<double>() < other[measure].get<double>());
-      rows += 2;
-    }
-  }
-  CHECK(rows == 20);
-  CHECK(scenes.at("Bunny in Figure 12")[1]["d_K_ddg"] == 1.10e8);
 }

@@ -4,10 +4,6 @@
 #include <cmath>
 #include <limits>
 
-#include "core/numerics/model/level_model.h"
-#include "core/numerics/patterns/generate.h"
-#include "tests/support/registry.h"
-
 using namespace drape;
 
 namespace {
@@ -110,34 +106,4 @@ TEST_CASE("a state at the border of the domain is refused") {
   energy.limit = 0.3;
   CHECK_THROWS_WITH(check_derivatives(energy, state, 1e-3), Catch::Contains("not finite near x"));
   CHECK_THROWS_WITH(check_derivatives(energy, state, 0), Catch::Contains("a step above 0"));
-}
-
-TEST_CASE("the derivatives of a model's whole energy have limits and contacts in them") {
-  const Level level = Level::of(0, random_triangulation({0.4, 0.3}, 20, 3));
-  const auto stvk = make_plugin_from<Energy>("stvk");
-  const auto gravity = make_plugin_from<Energy>("gravity");
-  const auto limit = make_plugin_from<Energy>("{type: strain_limit, limit: 1.2}");
-  const auto floor = make_plugin_from<ContactModel>(
-      "{type: shapes, dhat: 0.05, obstacles: [{name: floor, shape: half_space, translate: [0, 0, -0.02], "
-      "normal: [0, 0, 1]}]}");
-  const LevelModel model(level, Material(), {{"stvk", stvk}, {"gravity", gravity}, {"limit", limit}}, {},
-                         {floor});
-  const Positions x = 1.03 * level.rest.vertices;
-  Positions g;
-  CHECK(model.energy_gradient(x, g) == Approx(model.energy(x)).epsilon(1e-14));
-  double barrier = 0;
-  for (const auto& [name, part] : model.energy_parts(x))
-    if (name == "contact") barrier = part;
-  REQUIRE(barrier > 0);
-
-  const BlockMatrix hessian = model.energy_hessian(x, Projection::none);
-  Positions direction = Positions::Zero(x.rows(), 3), product, forward, backward;
-  for (Eigen::Index i = 0; i < direction.size(); ++i) direction.data()[i] = std::sin(3.0 * double(i) + 1);
-  hessian.multiply(direction, product);
-  constexpr double h = 1e-6;
-  CHECK(std::isfinite(model.energy_gradient(x + h * direction, forward)));
-  model.energy_gradient(x - h * direction, backward);
-  const Positions expected = (forward - backward) / (2 * h);
-  REQUIRE(expected.norm() > 0);
-  CHECK((product - expected).norm() <= 1e-5 * expected.norm());
 }

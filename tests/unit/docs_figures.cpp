@@ -70,19 +70,6 @@ std::vector<Number> recorded(const std::vector<fs::path>& records, const std::st
 
 }  // namespace
 
-TEST_CASE("numbers are read with the precision that they are written to") {
-  const std::vector<Number> numbers = numbers_of("| sphere, 98K | 0.50 / -1.3e-6, 14 | 4 levels. |");
-  REQUIRE(numbers.size() == 4);
-  CHECK(numbers[0].value == 0.5);
-  CHECK(numbers[0].half_digit == Approx(0.005));
-  CHECK(numbers[1].value == -1.3e-6);
-  CHECK(numbers[1].half_digit == Approx(5e-8));
-  CHECK(numbers[2].value == 14);
-  CHECK(numbers[3].half_digit == 0.5);
-  CHECK(stands_in(numbers_of("77")[0], numbers_of("[77.16, 3]")));
-  CHECK_FALSE(stands_in(numbers_of("77.0")[0], numbers_of("[77.16, 3]")));
-}
-
 TEST_CASE("every figure of a table stands in the record that the table names") {
   const fs::path root = folders::source();
   int tables = 0, figures = 0;

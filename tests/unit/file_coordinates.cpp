@@ -7,6 +7,7 @@
 #include "core/numerics/patterns/generate.h"
 #include "core/numerics/patterns/primitives.h"
 #include "tests/support/command.h"
+#include "tests/support/refusal.h"
 #include "tests/support/solve.h"
 
 using namespace drape;
@@ -137,12 +138,7 @@ TEST_CASE("An obstacle's files are read in its unit and by its axis") {
 
 TEST_CASE("Units and axes without a file are refused") {
   const auto refusal = [](const std::string& cloth, const std::string& start, const std::string& more = "") {
-    try {
-      scene_from(experiment(cloth, start, more));
-    } catch (const std::exception& error) {
-      return std::string(error.what());
-    }
-    return std::string();
+    return refusal_of([&] { scene_from(experiment(cloth, start, more)); });
   };
   for (const char* key : {"unit: mm", "up: y", "scale: 2", "rotate: [0, 0, 9]"})
     CHECK_THAT(refusal(std::string("{shape: square, ") + key + "}", "{}"), Catch::Contains(":2:"));

@@ -8,6 +8,7 @@
 #include "core/numerics/mesh_files/io.h"
 #include "core/numerics/patterns/primitives.h"
 #include "tests/support/command.h"
+#include "tests/support/refusal.h"
 #include "tests/support/solve.h"
 
 using namespace drape;
@@ -86,13 +87,8 @@ void run_observed(Solved& s, IncrementObserver& observer) {
 }
 
 /// The first error of an experiment that is refused.
-std::string refusal_of(const std::string& text) {
-  try {
-    scene_from(text);
-  } catch (const std::exception& error) {
-    return error.what();
-  }
-  return "";
+std::string refusal(const std::string& text) {
+  return refusal_of([&] { scene_from(text); });
 }
 
 }  // namespace
@@ -168,27 +164,27 @@ TEST_CASE("vertices of the obstacle choose the triangles that a pin is attached 
 
 TEST_CASE("a pin that cannot follow is refused with the reason") {
   const std::string other = ball + ", {name: floor, meshed_shape: box, translate: [0, 0, -2]}";
-  CHECK_THAT(refusal_of(sheet_on(other, turn, "bdy")),
+  CHECK_THAT(refusal(sheet_on(other, turn, "bdy")),
              Contains(":5:67: pin 0 follows obstacle \"bdy\", which does not exist; did you mean \"body\"?"));
-  CHECK_THAT(refusal_of(sheet_on(other, turn, "{obstacle: 2}")),
+  CHECK_THAT(refusal(sheet_on(other, turn, "{obstacle: 2}")),
              Contains("which does not exist; the names are body, floor"));
-  CHECK_THAT(refusal_of(sheet_on(other, turn, "floor")),
+  CHECK_THAT(refusal(sheet_on(other, turn, "floor")),
              Contains("pin 0 follows obstacle \"floor\", which is 1.6 m away from vertex "));
-  CHECK_THAT(refusal_of(sheet_on(other, turn, "{obstacle: body, vertices: [3, 642]}")),
+  CHECK_THAT(refusal(sheet_on(other, turn, "{obstacle: body, vertices: [3, 642]}")),
              Contains("pin 0 follows obstacle \"body\", which has no vertex 642; they go from 0 to 641"));
   CHECK_THAT(
-      refusal_of(sheet_on(ball, turn, "body", "ipc",
-                          ", {parameter: pins.0.translate, times: [0, 1], values: [[0, 0, 0], [0, 0, 1]]}")),
+      refusal(sheet_on(ball, turn, "body", "ipc",
+                       ", {parameter: pins.0.translate, times: [0, 1], values: [[0, 0, 0], [0, 0, 1]]}")),
       Contains(
           "key \"pins.0.translate\" changes pin 0, which follows obstacle \"body\"; move the obstacle, or "
           "remove \"follow\""));
   std::string two_pins = sheet_on(other, turn, "body");
   two_pins.insert(two_pins.find("]\nenergies"), ", {region: nearest, point: [0.1, 0.1, 0]}");
   CHECK_THAT(
-      refusal_of(two_pins),
+      refusal(two_pins),
       Contains("pin 0 follows obstacle \"body\", which pin 1 does not follow, but both select vertex 40 "
                "of level 0; let their regions share no vertex"));
-  CHECK_THAT(refusal_of(R"(name: alone
+  CHECK_THAT(refusal(R"(name: alone
 pins: [{region: nearest, follow: body}]
 energies: [neo_hookean]
 methods: {newton: {}}

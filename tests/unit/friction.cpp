@@ -91,24 +91,6 @@ TEST_CASE("friction of a single point: zero at rest, full force above the smooth
   }
 }
 
-TEST_CASE("persistent contacts keep their friction forces from one step to the next") {
-  Sliding sliding(200);
-  const LaggedFriction before = sliding.energy();
-  const Positions x = sliding.moved(epsilon, 7);
-  const TangentialDisplacements displacements = before.tangential_displacements(x);
-  REQUIRE(displacements.size() == sliding.contacts.size());
-  for (const TangentialDisplacement& d : displacements) CHECK(d.displacement.norm() <= epsilon * (1 + 1e-12));
-  CHECK(std::ranges::is_sorted(displacements, {}, &TangentialDisplacement::contact));
-  const Positions f = gradient_of(before, x);
-  std::shuffle(sliding.contacts.begin(), sliding.contacts.end(), std::mt19937(2));
-  CHECK((gradient_of(LaggedFriction({sliding.contacts}, x, displacements, epsilon), x) - f).norm() <=
-        1e-9 * f.norm());
-  // A new contact has no displacement.
-  FrictionContact& added = sliding.contacts[0];
-  added.key[1] += 7;  // among the others
-  CHECK(gradient_of(LaggedFriction({{added}}, x, displacements, epsilon), x).norm() == 0);
-}
-
 TEST_CASE("friction's groups are summed apart, to the bits of each") {
   const Sliding all(5000);
   const std::vector<FrictionContact> first(all.contacts.begin(), all.contacts.begin() + 1500),
@@ -122,11 +104,6 @@ TEST_CASE("friction's groups are summed apart, to the bits of each") {
   const LaggedFriction both({first, rest}, all.reference, {}, epsilon);
   CHECK(gradient_of(both, x) == gradient_of(all.energy(), x));
   CHECK(both.stencils() == all.energy().stencils());
-}
-
-TEST_CASE("friction has the same bits with any number of threads") {
-  const Sliding sliding(5000);
-  check_threads(sliding.energy(), sliding.moved(epsilon, 3));
 }
 
 TEST_CASE("under-relaxed friction contacts are means, and those that have ended fade") {

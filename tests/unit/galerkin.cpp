@@ -2,7 +2,6 @@
 
 #include <catch2/catch.hpp>
 
-#include "core/numerics/hierarchy/transfer.h"
 #include "tests/support/dense_matrix.h"
 
 using namespace drape;
@@ -46,18 +45,4 @@ TEST_CASE("The Galerkin product is the dense triple product", "[galerkin]") {
   const Eigen::MatrixXd expected = P3.transpose() * dense(a) * P3;
   REQUIRE(expected.norm() > 1);
   REQUIRE((dense(c) - expected).norm() < 1e-12 * expected.norm());
-}
-
-TEST_CASE("A transfer applies its weights and their transpose", "[galerkin]") {
-  const ProlongationMatrix P = random_weights(50, 20);
-  const Transfer transfer(P);
-  const Positions x = Positions::Random(20, 3), g = Positions::Random(50, 3);
-  Positions y, r;
-  transfer.prolong(x, y);
-  transfer.restrict(g, r);
-  REQUIRE((y - P * x).norm() < 1e-14 * y.norm());
-  REQUIRE((r - P.transpose() * g).norm() < 1e-14 * r.norm());
-  REQUIRE(y.norm() > 1);
-  // ⟨P x, g⟩ = ⟨x, Pᵀ g⟩
-  REQUIRE(y.cwiseProduct(g).sum() == Approx(x.cwiseProduct(r).sum()));
 }

@@ -5,7 +5,6 @@
 #include <numbers>
 
 #include "core/kernel/interfaces/level.h"
-#include "core/numerics/hierarchy/midpoint.h"
 #include "core/numerics/mesh/check.h"
 #include "core/numerics/patterns/delaunay.h"
 
@@ -110,19 +109,6 @@ TEST_CASE("an equilateral triangulation has angles of 60 degrees, and halves at 
   // All others, two a strip, have a half or a whole triangle's angles.
   for (const double angle : angles_where(mesh, [](const Eigen::RowVector3d&) { return true; }))
     CHECK(std::min({std::abs(angle - 30), std::abs(angle - 60), std::abs(angle - 90)}) < 1e-9);
-}
-
-TEST_CASE("1→4 refinement keeps an equilateral triangulation, its corners and its sides", "[generate]") {
-  const Eigen::Vector2d size(0.8, 8 * std::sqrt(0.75) * 0.1);
-  const Level coarse = Level::of(0, equilateral(size, 9, 9));
-  const TriangleMesh mesh = refined_rest(coarse, midpoint_weights(coarse));
-  require_pattern(mesh, size.prod(), 0, 29.9);
-  const auto inside = [&](const Eigen::RowVector3d& p) {
-    return p.x() > 0.051 && p.x() < size.x() - 0.051;  // beyond the coarse half triangles
-  };
-  const std::vector<double> angles = angles_where(mesh, inside);
-  CHECK(angles.size() > 3 * 100);
-  for (const double angle : angles) CHECK(angle == Approx(60).epsilon(1e-9));
 }
 
 TEST_CASE("an equilateral triangulation is had in about the asked number, nearly equilateral", "[generate]") {

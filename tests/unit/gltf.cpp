@@ -73,24 +73,6 @@ TEST_CASE("a surface has its positions, normals and triangles with y upwards, an
   CHECK(glb.json.at("materials").at(primitive.at("material").get<int>()).at("doubleSided") == true);
 }
 
-TEST_CASE("scenes show their surfaces, and the last one is shown first") {
-  GltfSurface stone = surface("stone");
-  stone.material = GltfMaterial::obstacle;
-  stone.uv.resize(0, 2);
-  const Glb glb(glb_bytes({stone, surface("coarse"), surface("fine")}, {{"a", {0, 1}}, {"b", {0, 2}}}));
-  CHECK(glb.json.at("scene") == 1);
-  REQUIRE(glb.json.at("scenes").size() == 2);
-  CHECK(glb.json["scenes"][0].at("name") == "a");
-  CHECK((glb.json["scenes"][0].at("nodes") == nlohmann::json{0, 1}));
-  CHECK((glb.json["scenes"][1].at("nodes") == nlohmann::json{0, 2}));
-  REQUIRE(glb.json.at("nodes").size() == 3);
-  CHECK(glb.json["nodes"][2].at("name") == "fine");
-  CHECK(glb.json["meshes"].at(glb.json["nodes"][2].at("mesh").get<int>()).at("name") == "fine");
-  const auto& primitive = glb.json["meshes"][0]["primitives"][0];
-  CHECK_FALSE(primitive["attributes"].contains("TEXCOORD_0"));
-  CHECK(glb.json["materials"].at(primitive["material"].get<int>()).at("name") == "obstacle");
-}
-
 TEST_CASE("earlier states are morph targets, shown one after the other, and the last state at the end") {
   GltfSurface cloth = surface("cloth");
   cloth.earlier = {lifted_sheet(0), lifted_sheet(-0.7)};

@@ -105,30 +105,3 @@ TEST_CASE("the pattern stays while contacts slide, and drops blocks that were lo
   CHECK(dense(chain.with(again)) ==
         chain.springs.expected(ChainOfSprings::n) + again.expected(ChainOfSprings::n));
 }
-
-TEST_CASE("a restored extra pattern grows and shrinks as if not interrupted", "[hessian_assembler]") {
-  // Contacts that appear, slide, vanish for long and appear again.
-  std::vector<PairSprings> transient;
-  for (int k = 0; k < 60; ++k)
-    transient.emplace_back(k % 25 < 3   ? std::vector<std::pair<int, int>>{{2, 9 - k % 3}}
-                           : k % 7 == 0 ? std::vector<std::pair<int, int>>{{k % 4, 6 + k % 5}}
-                                        : std::vector<std::pair<int, int>>{});
-  ChainOfSprings whole;
-  std::vector<HessianAssembler::ExtraPattern> extras;
-  std::vector<std::vector<int>> columns;
-  std::size_t most = 0, shrunk = 0;
-  for (const PairSprings& springs : transient) {
-    extras.push_back(whole.assembler.extra());
-    columns.push_back(whole.with(springs).pattern->columns);
-    shrunk += columns.back().size() < most;
-    most = std::max(most, columns.back().size());
-  }
-  REQUIRE(shrunk > 0);
-  for (std::size_t k = 0; k < transient.size(); ++k) {
-    ChainOfSprings again;
-    const auto pattern = again.assembler.restore(again.pattern, extras[k]);
-    if (k > 0) CHECK(pattern->columns == columns[k - 1]);
-    for (std::size_t i = k; i < transient.size(); ++i)
-      REQUIRE(again.with(transient[i]).pattern->columns == columns[i]);
-  }
-}

@@ -6,6 +6,7 @@
 #include "core/numerics/hierarchy/midpoint.h"
 #include "core/numerics/mesh/check.h"
 #include "core/numerics/patterns/generate.h"
+#include "tests/support/refusal.h"
 
 using namespace drape;
 
@@ -39,13 +40,8 @@ struct Faulty : Refiner {
 }  // namespace
 
 TEST_CASE("what a faulty refiner returns is refused before anything is computed from it", "[hierarchy]") {
-  const auto refusal = [](void (*spoil)(ProlongationMatrix&)) -> std::string {
-    try {
-      Hierarchy::of(grid({2, 1}, 4, 3, Diagonals::criss_cross), Faulty(spoil), 2);
-      return "";
-    } catch (const std::runtime_error& error) {
-      return error.what();
-    }
+  const auto refusal = [](void (*spoil)(ProlongationMatrix&)) {
+    return refusal_of([&] { Hierarchy::of(grid({2, 1}, 4, 3, Diagonals::criss_cross), Faulty(spoil), 2); });
   };
   const std::string of_level = "the refiner's result for level 0: ";
   CHECK(refusal([](ProlongationMatrix&) {}).empty());

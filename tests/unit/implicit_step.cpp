@@ -38,16 +38,3 @@ TEST_CASE("The gradient of an implicit step is that of its energy, without fixed
   CHECK(step.gradient_norm_at(x, problem.iterate.gradient(), problem.iterate) ==
         Approx(step.gradient().norm()));
 }
-
-TEST_CASE("The static form has no inertia") {
-  const Positions rest = Level::of(0, grid({1, 1}, 4, 4, Diagonals::one_way)).rest.vertices;
-  NewtonProblem problem({std::make_shared<Wells>(rest.array() + 0.3, 10, 0.1)});
-  ImplicitStep step;
-  step.begin(rest, 1);
-  problem.move_to(rest.array() + 0.2);
-  step.evaluate(problem.iterate, 0);
-  REQUIRE(problem.iterate.gradient().norm() > 0);
-  CHECK(step.gradient() == problem.iterate.gradient());
-  CHECK(step.inertia() == 0);
-  CHECK(step.inertia_at(rest, problem.model.masses()) == 0);
-}

@@ -9,7 +9,6 @@
 #include <random>
 
 #include "core/numerics/patterns/generate.h"
-#include "tests/support/processor_time.h"
 
 using namespace drape;
 
@@ -146,24 +145,5 @@ TEST_CASE("intersections: triangles without area touch their neighbours") {
   CHECK(count(mesh) > 0);
   mesh.vertices = flat;
   mesh.vertices.row(5) = flat.row(6);  // two vertices in one place
-  CHECK(count(mesh) > 0);
-}
-
-TEST_CASE("intersections: 50 thousand triangles, flat, tilted and folded") {
-  TriangleMesh mesh = grid({1, 1}, 160, 160, Diagonals::one_way);
-  const Eigen::Matrix3d turn = Eigen::AngleAxisd(0.7, Vector(1, 2, 3).normalized()).toRotationMatrix();
-  const Positions flat = mesh.vertices;
-  for (const int layers : {1, 8}) {
-    for (int v = 0; v < flat.rows(); ++v) {
-      const double along = layers * flat(v, 0), phase = M_PI * along;
-      const Vector p(layers == 1 ? flat(v, 0) : 0.06 * std::cos(phase), flat(v, 1),
-                     layers == 1 ? 0 : 2e-3 * along + 5e-4 * std::sin(phase));
-      mesh.vertices.row(v) = (turn * p).transpose();
-    }
-    const ProcessorTime watch;
-    CHECK(count(mesh) == 0);
-    CHECK(watch.seconds() < 1.5);  // 0.1 on two idle cores
-  }
-  mesh.vertices.row(160 * 80 + 80).z() += 0.02;
   CHECK(count(mesh) > 0);
 }

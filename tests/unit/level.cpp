@@ -18,9 +18,3 @@ TEST_CASE("a level's vertex areas are thirds of its triangles", "[level]") {
   CHECK(level.vertex_area[0] == Approx(2 * 0.5 / 3).epsilon(1e-14));
   CHECK(level.vertex_area[2] == Approx(1 * 0.5 / 3).epsilon(1e-14));
 }
-
-TEST_CASE("vertex areas hold for tilted meshes", "[level]") {
-  TriangleMesh mesh = grid({2, 3}, 3, 4, Diagonals::criss_cross);
-  mesh.vertices.col(2) = 0.75 * mesh.vertices.col(0);  // stretches x by 1.25
-  CHECK(Level::of(0, mesh).vertex_area.sum() == Approx(6 * 1.25).epsilon(1e-14));
-}

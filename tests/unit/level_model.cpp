@@ -4,6 +4,7 @@
 
 #include "core/numerics/elements/linear_energy.h"
 #include "core/numerics/patterns/generate.h"
+#include "tests/support/refusal.h"
 
 using namespace drape;
 
@@ -76,28 +77,6 @@ struct Shell : OriginSprings {
   }
 };
 
-/// Nothing to collide with; knows what it was bound from.
-class Traced : public ContactModel {
- public:
-  struct Bound : BoundContact {
-    const BoundContact* from = nullptr;
-    std::unique_ptr<CollisionCandidates> build_candidates(const Positions&, const Positions&) const override {
-      return nullptr;
-    }
-    std::vector<Intersection> intersections(const Positions&) const override { return {}; }
-    std::vector<TriangleMesh> obstacles() const override { return {}; }
-  };
-  std::unique_ptr<BoundContact> bind(const Level&, const Material&) const override {
-    return std::make_unique<Bound>();
-  }
-  std::unique_ptr<BoundContact> rebind(const Level&, const Material&,
-                                       const BoundContact& before) const override {
-    auto bound = std::make_unique<Bound>();
-    bound->from = &before;
-    return bound;
-  }
-};
-
 /// Binds to this, or throws without it.
 struct Binding : Energy {
   std::unique_ptr<BoundEnergy> (*make)();
@@ -121,15 +100,11 @@ struct NotLinear : BoundEnergy {
 
 TEST_CASE("an energy that cannot be bound, or is not what it says, is refused by name", "[level_model]") {
   const Level level = Level::of(0, grid({2, 1}, 4, 3, Diagonals::one_way));
-  const auto refusal = [&](std::unique_ptr<BoundEnergy> (*make)()) -> std::string {
-    try {
-      const LevelModel model(
-          level, Material(),
-          {{"slope", std::make_shared<Slope>(2, 0)}, {"wind", std::make_shared<Binding>(make)}}, {});
-      return "";
-    } catch (const std::runtime_error& error) {
-      return error.what();
-    }
+  const auto refusal = [&](std::unique_ptr<BoundEnergy> (*make)()) {
+    return refusal_of([&] {
+      LevelModel(level, Material(),
+                 {{"slope", std::make_shared<Slope>(2, 0)}, {"wind", std::make_shared<Binding>(make)}}, {});
+    });
   };
   CHECK(refusal([]() -> std::unique_ptr<BoundEnergy> { return nullptr; }) ==
         "energy wind: bind returned null; return an object, which may have no elements");
@@ -175,31 +150,6 @@ TEST_CASE("the parts of the energy have names of their own and sum to it", "[lev
     CHECK(names == std::vector<std::string>{"load", "load 2", "load 3", "other"});
     CHECK(sum == Approx(own->energy(x)).epsilon(1e-12));
   }
-}
-
-TEST_CASE("A model shares with another what is equal, and binds contacts from those before",
-          "[level_model]") {
-  const Level level = Level::of(0, grid({2, 1}, 4, 3, Diagonals::one_way));
-  const std::vector<NamedEnergy> energies = {
-      {"limit", std::make_shared<OriginSprings>(EnergyRole::limit, 0)}};
-  const auto kept = std::make_shared<Traced>(), changed = std::make_shared<Traced>();
-  const auto from = [](const LevelModel& model, std::size_t k) {
-    return dynamic_cast<const Traced::Bound&>(*model.contacts().at(k)).from;
-  };
-  const LevelModel first(level, Material(), energies, {}, {kept, kept});
-  CHECK(from(first, 0) == nullptr);
-  const LevelModel next(level, Material(), energies, {{3, {0, 0, 1}, 0}}, {kept, changed}, &first);
-  CHECK(next.pattern() == first.pattern());
-  CHECK(next.limits() == first.limits());
-  CHECK(next.contacts()[0] == first.contacts()[0]);
-  CHECK(from(next, 1) == first.contacts()[1].get());
-  CHECK(next.dirichlet().size() == 1);
-  CHECK(first.dirichlet().empty());
-  Material heavier;
-  heavier.density *= 2;
-  const LevelModel heavy(level, heavier, energies, {}, {kept, changed}, &next);
-  CHECK(heavy.limits() != next.limits());
-  CHECK(from(heavy, 0) == next.contacts()[0].get());
 }
 
 TEST_CASE("A model refuses an energy whose stencils differ from those of the model before", "[level_model]") {

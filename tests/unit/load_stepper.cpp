@@ -72,51 +72,6 @@ struct StepperCase {
 
 }  // namespace
 
-TEST_CASE("Without load stepping there are no increments") {
-  StepperCase c;
-  LoadStepper none(nullptr, c.problem.iterate, c.dirichlet, c.clock, c.observer);
-  CHECK(!none.has_schedule());
-  CHECK(!none.loading());
-  CHECK(!none.advances_at_once());
-  CHECK(!none.time());
-  none.report_increment();
-  CHECK(c.observer.rows.empty());
-  LevelResult result;
-  result.load_stepping.increment = 7;
-  none.store_progress(result);
-  CHECK(result.load_stepping.increment == 7);
-}
-
-TEST_CASE("Each increment that ends is reported with its own counts") {
-  StepperCase c;
-  c.problem.result.level = 2;
-  c.problem.result.steps = 4;
-  c.problem.result.iterations = 6;
-  CHECK(c.stepper.loading());
-  CHECK(c.stepper.steps() == 4);
-  c.stepper.advance(true);
-  CHECK(c.stepper.steps() == 0);
-  c.problem.result.steps += 3;
-  c.problem.result.iterations += 5;
-  c.stepper.advance(true);
-  REQUIRE(c.observer.rows.size() == 2);
-  CHECK(c.observer.rows[0].increment == 0);
-  CHECK(c.observer.rows[0].steps == 4);
-  CHECK(c.observer.rows[1].level == 2);
-  CHECK(c.observer.rows[1].increment == 1);
-  CHECK(c.observer.rows[1].time == 10);
-  CHECK(c.observer.rows[1].steps == 3);
-  CHECK(c.observer.rows[1].iterations == 5);
-  CHECK(c.observer.rows[1].energy == c.problem.iterate.energy());
-  CHECK(c.observer.rows[1].force_residual == c.problem.iterate.force_residual());
-  CHECK(c.stepper.loading());
-  c.stepper.advance(true);
-  CHECK(!c.stepper.loading());
-  CHECK(*c.stepper.time() == 30);
-  c.stepper.store_progress(c.problem.result);
-  CHECK(c.problem.result.load_stepping.increment == 3);
-}
-
 TEST_CASE("The seconds of a level's first increment are without those of coarser levels") {
   StepperCase c;
   const Stopwatch method(1000);
@@ -125,18 +80,6 @@ TEST_CASE("The seconds of a level's first increment are without those of coarser
   REQUIRE(c.observer.rows.size() == 1);
   CHECK(c.observer.rows[0].seconds >= 0);
   CHECK(c.observer.rows[0].seconds < 500);
-}
-
-TEST_CASE("Without equilibrium the next increment begins at once, but never the rest of one") {
-  StepperCase c;
-  CHECK(!c.stepper.advances_at_once());
-  c.loads.to_equilibrium = false;
-  CHECK(c.stepper.advances_at_once());
-  c.loads.allowed = 0.5;
-  c.stepper.advance(false);
-  CHECK(c.observer.rows.empty());  // increment 0 ends with its equilibrium
-  CHECK(!c.stepper.advances_at_once());
-  CHECK(c.stepper.state().response.fraction == 0);
 }
 
 TEST_CASE("The rest of an increment takes the cloth along by its response to the first part") {
@@ -175,20 +118,6 @@ TEST_CASE("A prediction that equilibrium corrects is trusted less") {
   REQUIRE(!c.loads.fractions.empty());
   CHECK(c.loads.fractions[0] == Approx(0.25 * 0.1 / 0.9));
   CHECK(c.stepper.state().response.fraction > c.loads.fractions[0]);
-}
-
-TEST_CASE("If the obstacles cannot follow the cloth, they advance without it") {
-  StepperCase c;
-  c.loads.allowed = 0.4;
-  c.stepper.advance(true);
-  c.move(0.02);
-  const Positions x = c.problem.iterate.x();
-  c.loads.follows = false;
-  c.loads.allowed = 0.5;
-  c.stepper.advance(true);
-  CHECK(c.problem.iterate.x() == x);
-  CHECK(c.stepper.state().response.fraction == 0.5);
-  CHECK(!c.loads.complete());
 }
 
 TEST_CASE("An increment that twenty attempts hardly advance is blocked") {

@@ -4,6 +4,7 @@
 
 #include "core/numerics/model/level_model.h"
 #include "core/numerics/patterns/generate.h"
+#include "tests/support/refusal.h"
 
 using namespace drape;
 using Catch::Matchers::Contains;
@@ -29,12 +30,7 @@ std::string refusal(MetricResult result) {
   const LevelModel model(level, Material(), {}, {});
   Given metric;
   metric.result = std::move(result);
-  try {
-    metric.evaluate({level, model, level.rest.vertices});
-    return "";
-  } catch (const std::runtime_error& error) {
-    return error.what();
-  }
+  return refusal_of([&] { metric.evaluate({level, model, level.rest.vertices}); });
 }
 
 const Eigen::VectorXd of_level = Eigen::VectorXd::Zero(9);

@@ -6,6 +6,7 @@
 #include "core/kernel/files/message_text.h"
 #include "core/numerics/patterns/generate.h"
 #include "core/numerics/solve/newton_state.h"
+#include "tests/support/limiter.h"
 #include "tests/support/weight.h"
 #include "tests/support/wells.h"
 
@@ -210,67 +211,6 @@ TEST_CASE("NaN in the Hessian at a fixed vertex is not part of the Newton matrix
   CHECK(r.outcome == Outcome::converged);
 }
 
-namespace {
-
-/// Increments that change nothing, each followed by one implicit step.
-class Idle : public LoadStepping {
- public:
-  explicit Idle(std::shared_ptr<const LevelModel> model) : model_(std::move(model)) {}
-  int increment_count() const override { return 3; }
-  bool equilibrates() const override { return false; }
-  void begin(int, bool) override { increment_ = 0; }
-  LoadSteppingState state() const override { return {increment_, {}}; }
-  void restore(int, const LoadSteppingState& state) override { increment_ = state.increment; }
-  std::shared_ptr<const LevelModel> model(int) override { return model_; }
-  int increment() const override { return increment_; }
-  bool complete() const override { return true; }
-  double time() const override { return increment_; }
-  StepLimit advance(int, const Positions&) override { return ++increment_, StepLimit(); }
-  bool advance_by(double, int, const Positions&) override { return false; }
-
- private:
-  const std::shared_ptr<const LevelModel> model_;
-  int increment_ = 0;
-};
-
-}  // namespace
-
-TEST_CASE("Steps from an equilibrium in doubles change nothing and do not fail", "[newton]") {
-  for (const NewtonForm form : {NewtonForm::quasistatic, NewtonForm::statics})
-    for (const double away : {0.0, 1e-15}) {
-      NewtonCase c;
-      NewtonParameters p;
-      p.form = form;
-      const std::vector<NamedEnergy> wells = {{"wells", std::make_shared<Wells>(c.centres, 1e7, 0.1)}};
-      const auto model =
-          std::make_shared<const LevelModel>(c.level, Material(), wells, std::vector<DirichletVertex>());
-      PlainObjective objective(model);
-      Idle idle(model);
-      // At the minimum up to round-off: in the ring around each centre.
-      Positions x = c.centres;
-      x.col(2).array() += 0.1 + away;
-      const LevelResult r = minimise(objective, x, p, {Stopwatch(), c.observer, false, {}, nullptr, &idle});
-      INFO(r.message);
-      CHECK(r.outcome == Outcome::converged);
-      CHECK(r.load_stepping.increment == 3);
-      CHECK((r.x - x).cwiseAbs().maxCoeff() < 1e-12);
-    }
-}
-
-TEST_CASE("Reusing a factor over several iterations reaches the same minimum with fewer factorisations",
-          "[newton]") {
-  NewtonCase updated, reused;
-  NewtonParameters p = tight();
-  p.hessian_update_interval = 1;
-  const LevelResult a = updated.solve(p, 0.4);
-  p.hessian_update_interval = 3;
-  const LevelResult b = reused.solve(p, 0.4);
-  REQUIRE(a.outcome == Outcome::converged);
-  REQUIRE(b.outcome == Outcome::converged);
-  REQUIRE(b.factorisations < b.iterations);
-  REQUIRE(a.factorisations >= a.iterations);
-}
-
 TEST_CASE("A stop, and a cloth that nothing holds, end an implicit step between its iterations", "[newton]") {
   NewtonParameters p = tight();
   p.iterations_per_step = 1000;
@@ -306,37 +246,20 @@ TEST_CASE("An implicit step ends when it is solved, however many iterations it m
   }
 }
 
-TEST_CASE("The smooth part is evaluated once for the same x, and again for another model", "[newton]") {
-  struct Counted : PlainObjective {
-    using PlainObjective::PlainObjective;
-    int evaluated = 0;
-    double smooth_gradient(const Positions& x, Positions& g) override {
-      ++evaluated;
-      return PlainObjective::smooth_gradient(x, g);
-    }
-  };
-  NewtonCase c;
-  const auto model_of = [&](double k) {
-    const std::vector<NamedEnergy> wells = {{"wells", std::make_shared<Wells>(c.centres, k, 0)}};
-    return std::make_shared<const LevelModel>(c.level, Material(), wells, std::vector<DirichletVertex>());
-  };
-  Counted objective(model_of(10));
-  const Positions x = c.level.rest.vertices;
-  Positions first, again;
-  const double energy = objective.gradient(x, first);
-  REQUIRE(energy > 0);
-  CHECK(objective.gradient(x, again) == energy);
-  CHECK(again == first);
-  CHECK(objective.evaluated == 1);
-  objective.gradient(x + x, again);
-  CHECK(objective.evaluated == 2);
-  CHECK(objective.gradient(x, again) == energy);
-  CHECK(objective.evaluated == 3);
-
-  objective.set_model(model_of(20), x, x);
-  CHECK(objective.gradient(x, again) == Approx(2 * energy));
-  CHECK((again - 2 * first).norm() <= 1e-12 * first.norm());
-  CHECK(objective.evaluated == 4);
+TEST_CASE("A level that ends without descent names what limits the step", "[newton]") {
+  for (const NewtonForm form : {NewtonForm::quasistatic, NewtonForm::statics}) {
+    NewtonCase c;
+    const LevelModel model(
+        c.level, Material(),
+        {{"wells", std::make_shared<Wells>(c.centres, 10, 0)}, {"limit", std::make_shared<Limiter>(0)}}, {});
+    PlainObjective objective(model);
+    NewtonParameters p = tight();
+    p.form = form;
+    const LevelResult r = minimise(objective, c.level.rest.vertices, p, {Stopwatch(), c.observer});
+    CHECK(r.outcome == Outcome::stalled);
+    CHECK_THAT(r.message, Catch::StartsWith("the line search found no descent") &&
+                              Catch::EndsWith("; the step is limited by the limiter"));
+  }
 }
 
 TEST_CASE("A cloth that nothing holds is detected, in both forms", "[newton]") {

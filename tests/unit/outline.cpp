@@ -4,8 +4,6 @@
 #include <cmath>
 #include <vector>
 
-#include "core/kernel/threads/parallel.h"
-
 using namespace drape;
 
 namespace {
@@ -92,18 +90,4 @@ TEST_CASE("a mesh that the camera does not see changes no pixel") {
     draw_outline(image, other, camera, red);
     CHECK(image.pixels == grey().pixels);
   }
-}
-
-TEST_CASE("an outline has the same bits on any number of threads") {
-  TriangleMesh square = unit_square();
-  square.vertices.col(2) = 0.3 * square.vertices.col(0).cwiseProduct(square.vertices.col(1));
-  const Camera camera = Camera::around({&square.vertices}, {0.55, -1, 0.68}, 1);
-  Image one = grey(), three = grey();
-  set_thread_count(1);
-  draw_outline(one, square, camera, red);
-  set_thread_count(3);
-  draw_outline(three, square, camera, red);
-  set_thread_count(0);
-  CHECK(one.pixels == three.pixels);
-  CHECK(one.pixels != grey().pixels);
 }

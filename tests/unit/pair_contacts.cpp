@@ -2,7 +2,6 @@
 
 #include <Eigen/Geometry>
 #include <map>
-#include <set>
 
 #include "core/numerics/contact/pair_geometry.h"
 #include "core/numerics/contact_forces/friction.h"
@@ -275,93 +274,6 @@ TEST_CASE("the force is -κ weight b'(s), along the shortest vector, and sums to
   }
 }
 
-namespace {
-
-/// Many pairs over shared vertices of a small box, some of them an obstacle's.
-struct ManyPairs {
-  Positions x, obstacle;
-  std::vector<ContactPair> pairs;
-  BarrierParameters parameters;
-
-  ManyPairs(int cloth, int fixed, int count, unsigned seed) {
-    parameters.dhat = 0.1;
-    parameters.stiffness = 2;
-    std::mt19937 random(seed);
-    std::uniform_real_distribution<double> unit(0, 1);
-    x = Positions::NullaryExpr(cloth, 3, [&](Eigen::Index, Eigen::Index) { return unit(random); });
-    obstacle = Positions::NullaryExpr(fixed, 3, [&](Eigen::Index, Eigen::Index) { return unit(random); });
-    const auto vertex = [&](bool own) {
-      return own ? static_cast<int>(random() % cloth) : cloth + static_cast<int>(random() % fixed);
-    };
-    while (static_cast<int>(pairs.size()) < count) {
-      ContactPair pair;
-      pair.kind = static_cast<PairKind>(random() % 3);
-      const int first = first_primitive_size(pair.kind),
-                owner = pair.kind == PairKind::point_plane ? 0 : random() % 3;
-      for (int k = 0; k < 4; ++k) pair.vertices[k] = vertex(owner == 2 || (k < first) == (owner == 0));
-      const std::set<int> different(pair.vertices.begin(), pair.vertices.end());
-      if (different.size() < 4) continue;
-      pair.weight = unit(random);
-      pair.dhat = parameters.dhat;
-      pair.offset = random() % 2 ? 0 : 0.01 * unit(random);
-      pair.mollifier = 0.02 * unit(random);
-      pair.friction = random() % 2 ? 0 : 0.3;
-      const PairPositions at = positions_of(pair, x, obstacle);
-      if (connection(at, closest(pair.kind, at)).norm() < pair.offset + 1e-4) continue;
-      pairs.push_back(pair);
-    }
-  }
-  std::unique_ptr<Collisions> set() const { return make_pair_contacts(x, obstacle, pairs, parameters); }
-};
-
-}  // namespace
-
-TEST_CASE("collisions are the sum over the pairs within dhat, in their order") {
-  const ManyPairs many(40, 20, 6000, 7);
-  const auto all = many.set();
-  int count = 0;
-  double value = 0, smallest = std::numeric_limits<double>::infinity();
-  Positions gradient = Positions::Zero(40, 3);
-  Eigen::MatrixXd hessian = Eigen::MatrixXd::Zero(120, 120);
-  std::vector<int> order;
-  for (const ContactPair& pair : many.pairs) {
-    const PairPositions at = positions_of(pair, many.x, many.obstacle);
-    const double gap = connection(at, closest(pair.kind, at)).norm() - pair.offset;
-    const auto one = make_pair_contacts(many.x, many.obstacle, {pair}, many.parameters);
-    REQUIRE(one->contact_count() == (gap < many.parameters.dhat ? 1 : 0));
-    if (one->contact_count() == 0) continue;
-    ++count;
-    smallest = std::min(smallest, gap);
-    value += one->value(many.x);
-    gradient += gradient_of(*one, many.x);
-    hessian += dense(hessian_of(*one, many.x, Projection::clamp));
-    for (const int v : pair.vertices) order.push_back(v < 40 ? v : -1);
-  }
-  REQUIRE(count > 300);
-  REQUIRE(count < 5000);
-  REQUIRE(smallest > 0);
-  CHECK(all->contact_count() == count);
-  CHECK(all->smallest_gap() == Approx(smallest).epsilon(1e-9));
-  CHECK(all->value(many.x) == Approx(value).epsilon(1e-12));
-  CHECK((gradient_of(*all, many.x) - gradient).norm() <= 1e-12 * gradient.norm());
-  CHECK((dense(hessian_of(*all, many.x, Projection::clamp)) - hessian).norm() <= 1e-12 * hessian.norm());
-  const Stencils stencils = all->stencils();
-  CHECK(std::vector<int>(stencils.data(), stencils.data() + stencils.size()) == order);
-}
-
-TEST_CASE("contacts are bit for bit the same with any number of threads") {
-  const ManyPairs many(200, 50, 60000, 8);
-  std::vector<double> values;
-  for (const int threads : {1, 2, 3}) {
-    set_thread_count(threads);
-    values.push_back(many.set()->value(many.x));
-  }
-  CHECK(values[0] == values[1]);
-  CHECK(values[0] == values[2]);
-  REQUIRE(many.set()->contact_count() > 5000);
-  check_threads(*many.set(), many.x);
-}
-
 TEST_CASE("the barrier is zero beyond dhat and infinite at contact") {
   const Vector3d o(0, 0, 0), e1(0.01, 0, 0), e2(0, 0.01, 0);
   OnePair one(PairKind::point_triangle, columns(0.3 * (e1 + e2) + Vector3d(0, 0, 1e-3), o, e1, e2));
@@ -421,22 +333,4 @@ TEST_CASE("a contact's friction is at most μ times its force and opposes the mo
     ++checked;
   }
   CHECK(checked == 90);
-}
-
-TEST_CASE("pair contacts without friction give friction no group of contacts") {
-  PairPositions at;
-  at.col(0) << 0.3, 0.3, 0.1;
-  at.col(1) << 0, 0, 0;
-  at.col(2) << 1, 0, 0;
-  at.col(3) << 0, 1, 0;
-  OnePair c(PairKind::point_triangle, at);
-  c.with_gap_part(0.5);
-  for (const double mu : {0.0, 0.3}) {
-    c.pair.friction = mu;
-    FrictionContacts groups;
-    const auto set = c.set();
-    REQUIRE(set->contact_count() == 1);
-    set->append_friction_contacts(groups);
-    CHECK(groups.size() == (mu > 0 ? 1 : 0));
-  }
 }

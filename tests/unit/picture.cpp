@@ -4,11 +4,9 @@
 #include <cmath>
 #include <cstdlib>
 #include <limits>
-#include <set>
 
 #include "core/app/picture/ray_scene.h"
 #include "core/app/picture/render.h"
-#include "core/app/picture/sampling.h"
 #include "core/app/picture/surface.h"
 #include "core/kernel/threads/parallel.h"
 #include "core/numerics/patterns/generate.h"
@@ -226,25 +224,6 @@ TEST_CASE("a picture is left when asked, and triangles that are not finite are l
   CHECK(brightness(hole, 25, 25) == brightness(hole, 0, 0));  // the backdrop
   CHECK(brightness(whole, 25, 25) != brightness(whole, 0, 0));
   CHECK(brightness(hole, 5, 40) == brightness(whole, 5, 40));
-}
-
-TEST_CASE("aligned groups of sample points are spread over every box of their size") {
-  for (const int group : {0, 1, 5, 1000}) {
-    CAPTURE(group);
-    std::set<int> columns, rows, cells;
-    for (int k = 0; k < 16; ++k) {
-      const Eigen::Vector2f p = sample_point(16 * group + k, 77);
-      columns.insert(static_cast<int>(16 * p[0]));
-      rows.insert(static_cast<int>(16 * p[1]));
-      cells.insert(static_cast<int>(4 * p[0]) * 4 + static_cast<int>(4 * p[1]));
-      CHECK(on_disc(p).norm() <= 1);
-    }
-    CHECK(columns.size() == 16);
-    CHECK(rows.size() == 16);
-    CHECK(cells.size() == 16);
-  }
-  CHECK(morton_number(3, 5) == 0b100111);
-  CHECK(sample_point(3, 1) != sample_point(3, 2));
 }
 
 TEST_CASE("normals are smooth over a dome and stop at a cube's edges") {

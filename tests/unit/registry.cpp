@@ -7,6 +7,7 @@
 #include "core/app/files/yaml_file.h"
 #include "core/kernel/interfaces/refiner.h"
 #include "core/kernel/plugin/make.h"
+#include "tests/support/refusal.h"
 
 using namespace drape;
 
@@ -153,12 +154,7 @@ template <int fault>
 std::string refusal(const std::string& name = "declared") {
   Registry registry;
   registry.current_library = "lib.so";
-  try {
-    registry.add<Refiner, Declared<fault>>(name, "One sentence.");
-    return "";
-  } catch (const std::runtime_error& error) {
-    return error.what();
-  }
+  return refusal_of([&] { registry.add<Refiner, Declared<fault>>(name, "One sentence."); });
 }
 
 }  // namespace

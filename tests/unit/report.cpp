@@ -1,7 +1,5 @@
 #include "core/app/report/report.h"
 
-#include <unistd.h>
-
 #include <Eigen/Geometry>
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -14,11 +12,12 @@
 #include "core/app/report/text_table.h"
 #include "core/app/view/colours.h"
 #include "core/kernel/files/file.h"
-#include "core/kernel/interfaces/topology.h"
 #include "core/kernel/threads/parallel.h"
+#include "core/numerics/hierarchy/midpoint.h"
 #include "core/numerics/mesh_files/base64.h"
 #include "core/numerics/mesh_files/io.h"
 #include "core/numerics/patterns/generate.h"
+#include "tests/support/command.h"
 #include "tests/support/declared_metrics.h"
 #include "tests/support/page_data.h"
 
@@ -28,25 +27,9 @@ using Json = nlohmann::ordered_json;
 
 namespace {
 
-/// The 1→4 split at midpoints, numbered as Refinement is.
 TriangleMesh split(const TriangleMesh& coarse) {
-  const int n = static_cast<int>(coarse.vertices.rows());
-  const Topology topology = Topology::of(coarse.triangles, n);
-  TriangleMesh fine{Positions(n + topology.edges.rows(), 3), Triangles(4 * coarse.triangles.rows(), 3)};
-  fine.vertices.topRows(n) = coarse.vertices;
-  for (int e = 0; e < topology.edges.rows(); ++e) {
-    fine.vertices.row(n + e) =
-        (coarse.vertices.row(topology.edges(e, 0)) + coarse.vertices.row(topology.edges(e, 1))) / 2;
-  }
-  for (int t = 0; t < coarse.triangles.rows(); ++t) {
-    const auto v = coarse.triangles.row(t);
-    const Eigen::RowVector3i m = topology.triangle_edges.row(t).array() + n;
-    fine.triangles.row(4 * t) << v[0], m[2], m[1];
-    fine.triangles.row(4 * t + 1) << v[1], m[0], m[2];
-    fine.triangles.row(4 * t + 2) << v[2], m[1], m[0];
-    fine.triangles.row(4 * t + 3) = m;
-  }
-  return fine;
+  const Refinement refinement = midpoint_refinement(Level::of(0, coarse));
+  return {refinement.weights * coarse.vertices, refinement.triangles};
 }
 
 Positions rippled(const Positions& rest, double waves) {
@@ -63,12 +46,11 @@ constexpr int small_pictures = 300;  // pixels wide, in a ninth of the default's
 
 /// A run of two methods on two levels, in a folder of its own that goes with it.
 struct SampleRun {
-  // By process, so that several runs of the tests on one machine keep apart.
-  fs::path folder = fs::temp_directory_path() / ("drape_report_test_" + std::to_string(::getpid()));
+  Scratch scratch;
+  const fs::path& folder = scratch.path;
   Json results;
 
   SampleRun() {
-    fs::remove_all(folder);
     for (const char* name : {"levels", "fields", "rest"}) fs::create_directories(folder / name);
     const TriangleMesh rest[2] = {grid({1, 1}, 13, 13, Diagonals::one_way),
                                   split(grid({1, 1}, 13, 13, Diagonals::one_way))};
@@ -131,7 +113,6 @@ struct SampleRun {
     write_file(folder / "iterations.csv", steps);
     write_file(folder / "config.yaml", "cloth: {size: 1 m}\n");
   }
-  ~SampleRun() { fs::remove_all(folder); }
 
   /// The page, after writing the report.
   std::string page(bool with_pictures = false, std::optional<int> width = small_pictures) const {
@@ -305,14 +286,6 @@ TEST_CASE("methods of different names have different pictures") {
   for (const std::string& a : names)
     for (const std::string& b : names)
       for (std::size_t k = 0; k < 2; ++k) CHECK((pictures(a)[k] == pictures(b)[k]) == (a == b));
-}
-
-TEST_CASE("a report needs results.json") {
-  const SampleRun run;
-  CHECK_THROWS_WITH(write_report(run.folder), Catch::Contains("neither results.json nor sweep.json here"));
-  write_file(run.folder / "results.json", "{\"experiment\": ");
-  CHECK_THROWS_WITH(write_report(run.folder), Catch::Contains("not a JSON object"));
-  CHECK_FALSE(fs::exists(run.folder / "report.html"));
 }
 
 TEST_CASE("figures in a table have three digits") {

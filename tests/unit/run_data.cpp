@@ -3,6 +3,7 @@
 #include <catch2/catch.hpp>
 
 #include "tests/support/command.h"
+#include "tests/support/refusal.h"
 
 using namespace drape;
 
@@ -13,14 +14,8 @@ std::string said_of(const std::string& results, const std::string& steps = "") {
   const Scratch folder;
   folder.write("results.json", results);
   folder.write("iterations.csv", steps);
-  try {
-    read_run(folder.path);
-  } catch (const std::runtime_error& error) {
-    const std::string prefix = folder.path.string() + "/";
-    const std::string text = error.what();
-    return text.starts_with(prefix) ? text.substr(prefix.size()) : text;
-  }
-  return "";
+  const std::string prefix = folder.path.string() + "/", text = refusal_of([&] { read_run(folder.path); });
+  return text.starts_with(prefix) ? text.substr(prefix.size()) : text;
 }
 
 std::string said_of_level(const std::string& level) {

@@ -245,18 +245,6 @@ TEST_CASE("A stretched disc is refined within its strain limit, although refinem
         0.5 * largest_distance(cloth.midpoint(x), cloth.target(x)));
 }
 
-TEST_CASE("Strain limit, obstacle and self-contact at once") {
-  const TwoLevels cloth(grid({0.6, 0.6}, 9, 9, Diagonals::one_way),
-                        {"{type: ipc, friction: 0.2}", ball_contact}, {"{type: strain_limit, limit: 1.2}"});
-  const Positions x = over_the_ball(cloth);
-  REQUIRE(cloth.violations(0, x) == 0);
-  REQUIRE(cloth.intersections(1, cloth.target(x)) > 0);
-  const Refined refined = cloth.refine(x);
-  CHECK(refined.fault.empty());
-  CHECK(cloth.intersections(1, refined.x) == 0);
-  CHECK(cloth.violations(1, refined.x) == 0);
-}
-
 namespace {
 
 /// Fine vertices 0 and 1 are two fine edges apart; their targets 1.5 times as far.

@@ -4,7 +4,6 @@
 #include <catch2/catch.hpp>
 #include <random>
 
-#include "core/kernel/threads/parallel.h"
 #include "core/numerics/contact/candidate_pairs.h"
 #include "core/numerics/contact/moving_pairs.h"
 #include "core/numerics/contact/pair_geometry.h"
@@ -150,33 +149,6 @@ TEST_CASE("self pairs: every kind of broad phase finds those of a brute-force se
           for (const ContactPair& pair : found.pairs) CHECK((pair.dhat == dhat && pair.friction == 0.5));
         }
       }
-}
-
-TEST_CASE("self pairs: on any number of threads, after other searches, and up to the limits") {
-  const Crumpled cloth;
-  const Positions x0 = cloth.at(0.3, 1), x1 = cloth.at(0.3, 3);
-  const LinearMotion motion = cloth.motion(x0, x1, 0.01);
-  SelfPairSearch search(cloth.surface, BroadPhaseKind::bvh);
-  const auto find = [&](const LinearMotion& of, const PairCounts& limits, PairCounts& counts,
-                        BroadPhasePairs& found) { return search.find(of, 0, limits, counts, found); };
-  BroadPhasePairs first, other, again;
-  PairCounts counts, more, same;
-  REQUIRE(find(motion, unlimited, counts, first));
-  REQUIRE(find(cloth.motion(x1, x1, 0.2), unlimited, more, other));
-  set_thread_count(1);
-  REQUIRE(find(motion, unlimited, same, again));
-  set_thread_count(0);
-  check_same(again.pairs, first.pairs);
-  CHECK(same == counts);
-  REQUIRE(counts.boxes > counts.primitives);
-  const auto fits = [&](const PairCounts& limits) {
-    BroadPhasePairs found;
-    PairCounts count;
-    return find(motion, limits, count, found);
-  };
-  CHECK(fits(counts));
-  CHECK(!fits({counts.boxes - 1, counts.primitives}));
-  CHECK(!fits({counts.boxes, counts.primitives - 1}));
 }
 
 TEST_CASE("self pairs: SIMD's bounds decide nothing that the exact functions contradict") {

@@ -2,6 +2,7 @@
 
 #include <catch2/catch.hpp>
 
+#include "tests/support/refusal.h"
 #include "tests/support/solve.h"
 
 using namespace drape;
@@ -19,12 +20,7 @@ std::string two_sides(const std::string& left, const std::string& lower, const s
 }
 
 std::string refusal(const std::string& experiment) {
-  try {
-    scene_from(experiment);
-  } catch (const std::exception& error) {
-    return error.what();
-  }
-  return "";
+  return refusal_of([&] { scene_from(experiment); });
 }
 
 }  // namespace

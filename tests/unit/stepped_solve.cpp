@@ -11,7 +11,7 @@ using namespace drape;
 
 namespace {
 
-ConfigNode small_experiment() {
+ConfigNode small_config() {
   ConfigErrors errors;
   ConfigNode source =
       read_yaml(std::filesystem::path(folders::source()) / "tests/configs/data/small.yaml", errors);
@@ -28,7 +28,7 @@ struct Stepped {
   }
   static Experiment valid_experiment() {
     ConfigErrors errors;
-    auto experiment = read_experiment(small_experiment(), test_registry(), errors);
+    auto experiment = read_experiment(small_config(), test_registry(), errors);
     throw_errors(errors);
     return std::move(*experiment);
   }

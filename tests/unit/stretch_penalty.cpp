@@ -26,10 +26,6 @@ TEST_CASE("stretch penalty: derivatives are those of the value") {
   for (const auto& x : states()) Check::derivatives(x, rest, 1e-4, 1e-6);
 }
 
-TEST_CASE("stretch penalty: lanes compute what double does") {
-  for (const auto& x : states()) Check::all_lanes(x, rest, 1);
-}
-
 TEST_CASE("stretch penalty: projection is that of the full element matrix") {
   double smallest = 0;
   for (const auto& x : states()) {

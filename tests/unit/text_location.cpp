@@ -1,10 +1,9 @@
 #include "core/kernel/plugin/text_location.h"
 
 #include <catch2/catch.hpp>
-#include <filesystem>
-#include <fstream>
 
 #include "core/app/files/yaml_file.h"
+#include "tests/support/command.h"
 
 using namespace drape;
 
@@ -12,14 +11,12 @@ namespace {
 
 /// "line:column" of the first `$` in the value of the key `text`.
 std::string place_of_dollar(const std::string& yaml) {
-  const auto file = std::filesystem::temp_directory_path() / "drape_text_location.yaml";
-  std::ofstream(file) << yaml;
+  const Scratch folder(yaml);
   ConfigErrors errors;
-  const ConfigNode config = read_yaml(file, errors);
+  const ConfigNode config = read_yaml(folder / "e.yaml", errors);
   REQUIRE(errors.empty());
   const ConfigNode& text = *config.find("text");
   const Location where = location_in_text(text, text.scalar.find('$'));
-  std::filesystem::remove(file);
   return std::to_string(where.line) + ":" + std::to_string(where.column);
 }
 

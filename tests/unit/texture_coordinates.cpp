@@ -2,21 +2,17 @@
 
 #include "core/numerics/mesh/texture_coordinates.h"
 
-#include <unistd.h>
-
 #include <Eigen/Geometry>
 #include <catch2/catch.hpp>
-#include <cstring>
-#include <fstream>
 
 #include "core/numerics/hierarchy/hierarchy.h"
 #include "core/numerics/hierarchy/midpoint.h"
 #include "core/numerics/mesh/split_triangles.h"
 #include "core/numerics/mesh_files/io.h"
 #include "core/numerics/patterns/generate.h"
+#include "tests/support/command.h"
 
 using namespace drape;
-namespace fs = std::filesystem;
 
 namespace {
 
@@ -27,25 +23,15 @@ constexpr const char* two_squares =
     "f 1/1 2/2 5/3 4/4\nf 2/-4/1 3/6 6/7/1\nf 2/5 6/7 5/8\n";
 
 TriangleMesh mesh_of(const std::string& text, const std::string& extension = ".obj") {
-  const fs::path file = fs::temp_directory_path() / ("drape_uv_" + std::to_string(::getpid()) + extension);
-  std::ofstream(file, std::ios::binary) << text;
-  try {
-    TriangleMesh mesh = read_mesh(file);
-    fs::remove(file);
-    return mesh;
-  } catch (...) {
-    fs::remove(file);
-    throw;
-  }
+  const Scratch folder;
+  folder.write("m" + extension, text);
+  return read_mesh(folder / ("m" + extension));
 }
 
 TriangleMesh written_and_read(const TriangleMesh& mesh, const std::string& extension) {
-  const fs::path file =
-      fs::temp_directory_path() / ("drape_uv_" + std::to_string(::getpid()) + "_out" + extension);
-  write_mesh(file, mesh);
-  TriangleMesh read = read_mesh(file);
-  fs::remove(file);
-  return read;
+  const Scratch folder;
+  write_mesh(folder / ("m" + extension), mesh);
+  return read_mesh(folder / ("m" + extension));
 }
 
 struct MidpointSplit : Refiner {
@@ -133,18 +119,6 @@ TEST_CASE("uv are refined linearly in each triangle, and a seam keeps both of it
     CHECK(read.uv == finest.uv);
   }
   CHECK(Hierarchy::of(banner, MidpointSplit(), 2).levels[1].rest.uv.rows() == 0);
-}
-
-TEST_CASE("OBJ and PLY keep the bits of uv") {
-  TriangleMesh mesh = random_triangulation({1, 1}, 40, 3);
-  mesh.uv = CornerUv::Random(mesh.triangles.rows(), 6) / 3;
-  mesh.uv(1, 1) = -0.0;
-  mesh.uv(2, 3) = 1e-300;
-  for (const char* extension : {".obj", ".ply"}) {
-    const CornerUv read = written_and_read(mesh, extension).uv;
-    REQUIRE(read.rows() == mesh.uv.rows());
-    CHECK(std::memcmp(read.data(), mesh.uv.data(), mesh.uv.size() * sizeof(double)) == 0);
-  }
 }
 
 TEST_CASE("a PLY has uv at the corners of its faces or at its vertices") {

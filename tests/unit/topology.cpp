@@ -1,6 +1,5 @@
 #include "core/kernel/interfaces/topology.h"
 
-#include <algorithm>
 #include <catch2/catch.hpp>
 #include <set>
 #include <utility>
@@ -65,33 +64,6 @@ TEST_CASE("hinges keep the mesh's orientation", "[topology]") {
   for (int h = 0; h < many.rows(); ++h) {
     CHECK(rotations.count({many(h, 0), many(h, 1), many(h, 2)}) == 1);
     CHECK(rotations.count({many(h, 1), many(h, 0), many(h, 3)}) == 1);
-  }
-}
-
-TEST_CASE("topology of a grid is consistent", "[topology]") {
-  const auto diagonals = GENERATE(Diagonals::one_way, Diagonals::criss_cross);
-  const TriangleMesh mesh = grid({1, 2}, 7, 9, diagonals);
-  const Topology topology = Topology::of(mesh.triangles, 63);
-  CHECK(63 - topology.edges.rows() + mesh.triangles.rows() == 1);  // Euler characteristic of a disc
-
-  int next = 0;  // edges are numbered in order of first appearance
-  for (int t = 0; t < mesh.triangles.rows(); ++t)
-    for (int k = 0; k < 3; ++k) {
-      const int e = topology.triangle_edges(t, k);
-      REQUIRE(e <= next);
-      if (e == next) ++next;
-      const std::set<int> ends{topology.edges(e, 0), topology.edges(e, 1)};
-      CHECK(ends == std::set<int>{mesh.triangles(t, (k + 1) % 3), mesh.triangles(t, (k + 2) % 3)});
-      CHECK((topology.edge_triangles(e, 0) == t || topology.edge_triangles(e, 1) == t));
-    }
-  CHECK(next == topology.edges.rows());
-  for (int v = 0; v < 63; ++v) {
-    const bool border = v % 7 == 0 || v % 7 == 6 || v / 7 == 0 || v / 7 == 8;
-    CHECK(static_cast<bool>(topology.on_border[v]) == border);
-    const auto neighbours = row(topology.vertex_vertices, v), around = row(topology.vertex_triangles, v);
-    CHECK(std::is_sorted(neighbours.begin(), neighbours.end()));
-    CHECK(std::is_sorted(around.begin(), around.end()));
-    CHECK(neighbours.size() == around.size() + border);
   }
 }
 

@@ -1,8 +1,8 @@
 #include "core/app/files/yaml_file.h"
 
 #include <catch2/catch.hpp>
-#include <filesystem>
-#include <fstream>
+
+#include "tests/support/command.h"
 
 using namespace drape;
 namespace fs = std::filesystem;
@@ -97,9 +97,8 @@ TEST_CASE("infinite and huge aliases are refused") {
 }
 
 TEST_CASE("files are read with their name, and unreadable ones reported") {
-  const fs::path folder = fs::temp_directory_path();
-  const fs::path file = folder / "drape_yaml_file_test.yaml";
-  std::ofstream(file) << "a: {b: [1, 2]}\n";
+  const Scratch folder("a: {b: [1, 2]}\n");
+  const fs::path file = folder / "e.yaml";
   ConfigErrors errors;
   const ConfigNode node = read_yaml(file, errors);
   CHECK(errors.empty());
@@ -109,11 +108,11 @@ TEST_CASE("files are read with their name, and unreadable ones reported") {
   read_yaml(file, errors);
   fs::remove(file);
   read_yaml(file, errors);
-  read_yaml(folder, errors);
+  read_yaml(folder.path, errors);
   REQUIRE(errors.size() == 3);
   CHECK(errors[0].text() == file.string() + ": is empty; a config is a map of keys and values");
   CHECK(errors[1].text() == file.string() + ": no such file");
-  CHECK(errors[2].text() == folder.string() + ": is a folder, not a file");
+  CHECK(errors[2].text() == folder.path.string() + ": is a folder, not a file");
 }
 
 TEST_CASE("a node is written in block style, and reads back the same") {
