@@ -10,7 +10,7 @@ using Eigen::Vector3d;
 
 namespace {
 
-constexpr double epsilon = 1e-4;  // friction smoothing distance [m]
+constexpr double smoothing = 1e-4;  // friction smoothing distance [m]
 
 struct Sliding {
   std::vector<FrictionContact> contacts;
@@ -37,7 +37,7 @@ struct Sliding {
     return reference + by * Eigen::Map<const Positions>(normal_numbers(reference.size(), seed).data(),
                                                         reference.rows(), 3);
   }
-  LaggedFriction energy() const { return LaggedFriction({contacts}, reference, {}, epsilon); }
+  LaggedFriction energy() const { return LaggedFriction({contacts}, reference, {}, smoothing); }
 };
 
 }  // namespace
@@ -47,7 +47,7 @@ TEST_CASE("friction's derivatives, sticking and sliding") {
     const Sliding sliding(1 + i % 5, i);
     const LaggedFriction energy = sliding.energy();
     for (const double by : {0.01, 0.3, 3.0}) {
-      const Positions x = sliding.moved(by * epsilon, 100 + i);
+      const Positions x = sliding.moved(by * smoothing, 100 + i);
       const Positions g = gradient_of(energy, x);
       const Eigen::MatrixXd h = dense(hessian_of(energy, x, Projection::none));
       REQUIRE(g.norm() > 0);
@@ -70,24 +70,24 @@ TEST_CASE("friction of a single point: zero at rest, full force above the smooth
   contact.normal = {0, 0, 1};
   contact.force = 0.25;
   const Positions reference = Positions::Zero(1, 3);
-  const LaggedFriction energy({{contact}}, reference, {}, epsilon);
+  const LaggedFriction energy({{contact}}, reference, {}, smoothing);
   const auto at = [&](double x, double y, double z) {
     return Positions(reference + Positions(Eigen::RowVector3d(x, y, z)));
   };
   CHECK(energy.value(reference) == 0);
   CHECK(gradient_of(energy, reference).norm() == 0);
   CHECK(energy.value(at(0, 0, 1)) == 0);
-  const Eigen::Matrix3d expected = Vector3d(1, 1, 0).asDiagonal() * (2 * 0.25 / epsilon);
+  const Eigen::Matrix3d expected = Vector3d(1, 1, 0).asDiagonal() * (2 * 0.25 / smoothing);
   CHECK((dense(hessian_of(energy, reference, Projection::none)) - expected).norm() <= 1e-10);
   for (const double part : {1e-6, 0.1, 0.5, 0.999}) {
-    const Positions g = gradient_of(energy, at(0.6 * part * epsilon, 0.8 * part * epsilon, 2));
+    const Positions g = gradient_of(energy, at(0.6 * part * smoothing, 0.8 * part * smoothing, 2));
     const double f = 0.25 * part * (2 - part);
     CHECK((g - Eigen::RowVector3d(0.6 * f, 0.8 * f, 0)).norm() <= 1e-9 * f);
   }
   for (const double part : {1.0, 1.001, 10.0, 1e4}) {
-    const Positions x = at(0, part * epsilon, 0);
+    const Positions x = at(0, part * smoothing, 0);
     CHECK(gradient_of(energy, x).norm() == Approx(0.25).epsilon(1e-10));
-    CHECK(energy.value(x) == Approx(0.25 * epsilon * (part - 1.0 / 3)));
+    CHECK(energy.value(x) == Approx(0.25 * smoothing * (part - 1.0 / 3)));
   }
 }
 
@@ -95,13 +95,13 @@ TEST_CASE("friction's groups are summed apart, to the bits of each") {
   const Sliding all(5000);
   const std::vector<FrictionContact> first(all.contacts.begin(), all.contacts.begin() + 1500),
       rest(all.contacts.begin() + 1500, all.contacts.end());
-  const Positions x = all.moved(epsilon, 3);
+  const Positions x = all.moved(smoothing, 3);
   const auto value = [&](const FrictionContacts& groups) {
-    return LaggedFriction(groups, all.reference, {}, epsilon).value(x);
+    return LaggedFriction(groups, all.reference, {}, smoothing).value(x);
   };
   REQUIRE(value({first}) > 0);
   CHECK(value({first, rest}) == value({first}) + value({rest}));
-  const LaggedFriction both({first, rest}, all.reference, {}, epsilon);
+  const LaggedFriction both({first, rest}, all.reference, {}, smoothing);
   CHECK(gradient_of(both, x) == gradient_of(all.energy(), x));
   CHECK(both.stencils() == all.energy().stencils());
 }

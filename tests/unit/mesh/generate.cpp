@@ -45,7 +45,7 @@ void require_pattern(const TriangleMesh& mesh, double area, int holes, double an
   CHECK(smallest_angle(mesh) > angle);
 }
 
-const Polygon square{{0, 0}, {1, 0}, {1, 1}, {0, 1}};
+const Polygon unit_square{{0, 0}, {1, 0}, {1, 1}, {0, 1}};
 const Polygon hole{{.3, .3}, {.5, .3}, {.5, .6}, {.3, .6}};
 
 }  // namespace
@@ -144,17 +144,17 @@ TEST_CASE("Delaunay patterns meet the count, the area and the angle", "[generate
     return std::abs(mesh.vertices.rows() - count) <= 0.15 * count;
   };
 
-  const TriangleMesh plain = delaunay_polygon({square}, count, 1);
+  const TriangleMesh plain = delaunay_polygon({unit_square}, count, 1);
   CHECK(near(plain));
   require_pattern(plain, 1, 0, 20);
 
   Polygon backwards(hole.rbegin(), hole.rend());
-  const TriangleMesh holed = delaunay_polygon({square, backwards}, count, 1);
+  const TriangleMesh holed = delaunay_polygon({unit_square, backwards}, count, 1);
   CHECK(near(holed));
   require_pattern(holed, 0.94, 1, 20);
-  CHECK(same(holed, delaunay_polygon({square, backwards}, count, 1)));
+  CHECK(same(holed, delaunay_polygon({unit_square, backwards}, count, 1)));
 
-  const TriangleMesh other = delaunay_polygon({square}, count, 2);
+  const TriangleMesh other = delaunay_polygon({unit_square}, count, 2);
   CHECK(near(other));
   CHECK_FALSE(same(plain, other));
 }
@@ -254,12 +254,13 @@ TEST_CASE("patterns refuse what cannot be meshed, naming the loop", "[generate]"
                     "polygon: loop 0 (the outer border) crosses or touches itself");
   CHECK_THROWS_WITH(mesh({{{0, 0}, {1, NAN}, {2, 0}}}),
                     "polygon: loop 0 (the outer border) has a coordinate that is not finite");
-  CHECK_THROWS_WITH(mesh({square, {{2, 2}, {3, 2}, {3, 3}}}), "polygon: loop 1 (a hole) lies outside loop 0");
-  CHECK_THROWS_WITH(mesh({square, hole, {{.9, .5}, {1.2, .5}, {.9, .6}}}),
+  CHECK_THROWS_WITH(mesh({unit_square, {{2, 2}, {3, 2}, {3, 3}}}),
+                    "polygon: loop 1 (a hole) lies outside loop 0");
+  CHECK_THROWS_WITH(mesh({unit_square, hole, {{.9, .5}, {1.2, .5}, {.9, .6}}}),
                     "polygon: loop 2 (a hole) crosses or touches loop 0");
-  CHECK_THROWS_WITH(mesh({square, hole, {{.4, .4}, {.45, .4}, {.4, .5}}}),
+  CHECK_THROWS_WITH(mesh({unit_square, hole, {{.4, .4}, {.45, .4}, {.4, .5}}}),
                     "polygon: loop 2 (a hole) and loop 1 lie one inside the other");
-  CHECK_THROWS_WITH(delaunay_polygon({square}, 2, 0), "polygon: at least three vertices are needed");
+  CHECK_THROWS_WITH(delaunay_polygon({unit_square}, 2, 0), "polygon: at least three vertices are needed");
 
   Polygon comb;  // 43 corners
   for (int i = 0; i < 20; ++i) comb.insert(comb.end(), {{i / 20., 0}, {(i + 0.5) / 20, 0.1}});

@@ -25,7 +25,7 @@ TriangleMesh dome(int n) {
 }
 
 /// A sphere of radius 1 about the origin, poles on the z axis.
-TriangleMesh ball(int meridians, int rings) {
+TriangleMesh round_ball(int meridians, int rings) {
   TriangleMesh mesh{Positions(meridians * rings + 2, 3), Triangles(2 * meridians * rings, 3)};
   const int north = meridians * rings, south = north + 1;
   mesh.vertices.row(north) << 0, 0, 1;
@@ -158,7 +158,7 @@ TEST_CASE("a floor shows shadows and nothing else") {
 }
 
 TEST_CASE("a coarse ball's flat triangles do not shadow the light that reaches its smooth normals") {
-  const TriangleMesh mesh = ball(16, 9);
+  const TriangleMesh mesh = round_ball(16, 9);
   const RayScene scene(Drawing{mesh});
   const Eigen::Vector3f light = Eigen::Vector3f(-0.6f, 0.1f, 0.5f).normalized();
   int lit = 0, blocked = 0, dark = 0;
