@@ -258,6 +258,20 @@ Tally check_queries(int count, unsigned seed) {
   return tally;
 }
 
+/// The time of impact from below, to nine digits; 1 without an impact.
+double impact(Query q) {
+  q.min_gap_fraction = 0;
+  const PairPositions x0 = q.x0;
+  double time = 0;
+  for (int i = 0; i < 100 && time < 1; ++i) {
+    q.x0 = x0 + time * (q.x1 - x0);
+    const double part = q.time() * (1 - time);
+    time += part;
+    if (part <= 1e-10 * time) break;
+  }
+  return time;
+}
+
 /// A point over a triangle that lies in the plane z = 0.
 Query point_over_triangle(double height, const Vector3d& motion) {
   Query q;
@@ -287,6 +301,31 @@ TEST_CASE("the exact check detects intersections") {
   rounded.offset = 0.25;
   CHECK(safe(rounded, 0.249));
   CHECK_FALSE(safe(rounded, 0.251));
+}
+
+TEST_CASE("how close to the impact the step ends") {
+  std::mt19937 random(2);
+  std::vector<double> all;
+  int straight = 0;
+  for (int i = 0; i < 12000; ++i) {
+    Query q = random_query(random, i % families);
+    q.min_gap_fraction = 0.1;
+    const double t = q.time();
+    if (t == 0 || t == 1) continue;
+    const double end = impact(q);
+    if (end == 1) continue;
+    all.push_back(t / end);
+    if (i % families != 1) continue;  // these close at a constant speed
+    ++straight;
+    CHECK(t / end >= 0.88 - 1e-9);
+    CHECK(t / end <= 0.9 + 1e-9);
+  }
+  CHECK(straight > 300);
+  REQUIRE(all.size() > 3000);
+  std::sort(all.begin(), all.end());
+  CHECK(all.back() <= 1);
+  CHECK(all[all.size() / 2] > 0.88);
+  CHECK(all[all.size() / 100] > 0.5);
 }
 
 TEST_CASE("fractions that are known in closed form") {
