@@ -72,6 +72,36 @@ struct StepperCase {
 
 }  // namespace
 
+TEST_CASE("Each increment that ends is reported with its own counts") {
+  StepperCase c;
+  c.problem.result.level = 2;
+  c.problem.result.steps = 4;
+  c.problem.result.iterations = 6;
+  CHECK(c.stepper.loading());
+  CHECK(c.stepper.steps() == 4);
+  c.stepper.advance(true);
+  CHECK(c.stepper.steps() == 0);
+  c.problem.result.steps += 3;
+  c.problem.result.iterations += 5;
+  c.stepper.advance(true);
+  REQUIRE(c.observer.rows.size() == 2);
+  CHECK(c.observer.rows[0].increment == 0);
+  CHECK(c.observer.rows[0].steps == 4);
+  CHECK(c.observer.rows[1].level == 2);
+  CHECK(c.observer.rows[1].increment == 1);
+  CHECK(c.observer.rows[1].time == 10);
+  CHECK(c.observer.rows[1].steps == 3);
+  CHECK(c.observer.rows[1].iterations == 5);
+  CHECK(c.observer.rows[1].energy == c.problem.iterate.energy());
+  CHECK(c.observer.rows[1].force_residual == c.problem.iterate.force_residual());
+  CHECK(c.stepper.loading());
+  c.stepper.advance(true);
+  CHECK(!c.stepper.loading());
+  CHECK(*c.stepper.time() == 30);
+  c.stepper.store_progress(c.problem.result);
+  CHECK(c.problem.result.load_stepping.increment == 3);
+}
+
 TEST_CASE("The seconds of a level's first increment are without those of coarser levels") {
   StepperCase c;
   const Stopwatch method(1000);
