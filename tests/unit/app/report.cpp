@@ -28,8 +28,8 @@ using Json = nlohmann::ordered_json;
 namespace {
 
 TriangleMesh split(const TriangleMesh& coarse) {
-  const Refinement refinement = midpoint_refinement(Level::of(0, coarse));
-  return {refinement.weights * coarse.vertices, refinement.triangles};
+  const Level level = Level::of(0, coarse);
+  return refined_rest(level, midpoint_weights(level));
 }
 
 Positions rippled(const Positions& rest, double waves) {

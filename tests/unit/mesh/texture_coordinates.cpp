@@ -7,7 +7,6 @@
 
 #include "core/numerics/hierarchy/hierarchy.h"
 #include "core/numerics/hierarchy/midpoint.h"
-#include "core/numerics/mesh/split_triangles.h"
 #include "core/numerics/mesh_files/io.h"
 #include "core/numerics/patterns/generate.h"
 #include "tests/support/command.h"
