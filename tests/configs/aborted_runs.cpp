@@ -142,8 +142,7 @@ TEST_CASE("A folder that is deleted during a run aborts it with its own code, an
 }
 
 TEST_CASE("A full disk aborts the run with its own code; once there is room it can be resumed") {
-  const Scratch folder;
-  folder.write("e.yaml", small_experiment());
+  const Scratch folder(small_experiment());
   const std::string arguments =
       " run e.yaml --method all --quiet --no-report --threads 1 --set cloth.columns=24 --set cloth.rows=24 "
       "--set newton.max_steps=3 --set snapshots=0 --out ";

@@ -34,8 +34,7 @@ std::string refused(const Scratch& folder, const std::string& arguments,
 
 /// The same of `drape run e.yaml`, where e.yaml is this text.
 std::string said_of(const std::string& experiment, const std::string& arguments = "") {
-  const Scratch folder;
-  folder.write("e.yaml", experiment);
+  const Scratch folder(experiment);
   return refused(folder, "run e.yaml --out out " + arguments);
 }
 
@@ -45,6 +44,16 @@ std::string said_of_edit(const std::string& from, const std::string& to) {
 
 std::string said_of_set(const std::string& set) { return said_of(small_experiment(), "--set '" + set + "'"); }
 
+/// A text of the experiment, what stands there instead, and the refusal after "error: e.yaml:".
+struct Edit {
+  std::string from, to, refusal;
+};
+
+void check_refused(const std::vector<Edit>& edits) {
+  for (const Edit& edit : edits)
+    CHECK(said_of_edit(edit.from, edit.to) == "error: e.yaml:" + edit.refusal + "\n");
+}
+
 const std::string top_keys =
     "name, description, cloth, levels, material, start, pins, handles, schedule, energies, "
     "refiner, contact, obstacles, friction, newton, "
@@ -53,8 +62,7 @@ const std::string top_keys =
 }  // namespace
 
 TEST_CASE("the base file of these cases is valid: each case has exactly one fault") {
-  const Scratch folder;
-  folder.write("e.yaml", small_experiment());
+  const Scratch folder(small_experiment());
   const Ended ended = drape_with("check e.yaml", folder.path);
   CHECK(ended.exit_code == 0);
   CHECK(ended.err == "");
@@ -103,16 +111,13 @@ TEST_CASE("a config that is not a regular file is refused without blocking") {
 }
 
 TEST_CASE("a start or a reference that is no regular file, or is not finite") {
-  const Scratch folder;
-  folder.write("e.yaml", small_experiment());
+  const Scratch folder(small_experiment());
   REQUIRE(mkfifo((folder / "pipe.ply").c_str(), 0600) == 0);
   for (const std::string key : {"start", "reference"}) {
     const std::string said = drape_with("check e.yaml --set '" + key + "={file: pipe.ply}'", folder.path).err;
     CHECK_THAT(said, Catch::Matchers::Contains("pipe.ply: is a pipe or a device"));
   }
-  REQUIRE(
-      drape_with("run e.yaml --out out --quiet --no-report --levels 1 --method pcs", folder.path).exit_code ==
-      0);
+  drape_ends("run e.yaml --out out --quiet --no-report --levels 1 --method pcs", folder);
   const std::string rest = text_of(folder / "out/rest/l0.ply");
   const std::size_t third_vertex = rest.find("end_header\n") + 11 + 3 * 24;
   const auto said_with = [&](double coordinate) {
@@ -190,135 +195,83 @@ TEST_CASE("errors of the file system are sentences") {
   }
 }
 
-TEST_CASE("unknown, misspelt, repeated and missing keys") {
-  CHECK(said_of_edit("levels: 2", "wind: 2") ==
-        "error: e.yaml:3:1: unknown key \"wind\"; known keys are " + top_keys + "\n");
-  CHECK(said_of_edit("levels: 2", "lvels: 2") ==
-        "error: e.yaml:3:1: unknown key \"lvels\"; did you mean \"levels\"?\n");
-  CHECK(said_of_edit("force_tolerance", "force_tolerence") ==
-        "error: e.yaml:9:10: unknown key \"force_tolerence\" in newton; did you mean \"force_tolerance\"?\n");
-  CHECK(said_of_edit("levels: 2", "levels: 2\nlevels: 3") ==
-        "error: e.yaml:4:1: repeated key \"levels\"; it is first set at e.yaml:3:1\n");
-  CHECK(said_of_edit("name: small\n", "") == "error: e.yaml:1:1: \"name\" is required and missing\n");
-  CHECK(said_of_edit("energies: [neo_hookean, hinge, gravity]\n", "") ==
-        "error: e.yaml:1:1: \"energies\" is required and missing\n");
-}
-
-TEST_CASE("values out of range or of the wrong type") {
-  CHECK(said_of_edit("levels: 2", "levels: 20") ==
-        "error: e.yaml:3:9: \"levels\" must be at most 10, not 20\n");
-  CHECK(said_of_edit("levels: 2", "levels: two") ==
-        "error: e.yaml:3:9: \"levels\" must be an integer, not \"two\"\n");
-  CHECK(said_of_edit("levels: 2", "levels: [2]") ==
-        "error: e.yaml:3:9: \"levels\" must be an integer, not a list\n");
-  CHECK(said_of_edit("side: 1,", "side: 0,") ==
-        "error: e.yaml:2:30: \"side\" must be at least 1.0e-06 m, not 0\n");
-  CHECK(said_of_edit("side: 1,", "side: .nan,") ==
-        "error: e.yaml:2:30: \"side\" must be a finite number, not \".nan\"\n");
-  CHECK(said_of_edit("[0.9, 0.9, 1]", "[0.9, 0.9]") ==
-        "error: e.yaml:4:16: \"scale\" must be a list of 3 numbers, not of 2\n");
-  CHECK(said_of_edit("[0.9, 0.9, 1]", "[0.9, nan, 1]") ==
-        "error: e.yaml:4:22: item 2 of \"scale\" must be a finite number, not nan\n");
-  CHECK(said_of_edit("shape: square", "shape: sqare") ==
-        "error: e.yaml:2:16: \"shape\" must be \"square\", \"rectangle\", \"disc\", \"polygon\" or \"file\", "
-        "not "
-        "\"sqare\"; did you mean \"square\"?\n");
-  CHECK(said_of_set("material.poisson_ratio=0.5") ==
-        "error: --set material.poisson_ratio: \"poisson_ratio\" must be below 0.5, not 0.5\n");
-  CHECK(said_of_edit("columns: 6, rows: 6", "columns: 1, rows: 6") ==
-        "error: e.yaml:2:8: grid: at least 2 × 2 vertices are needed\n");
-  CHECK(said_of_edit("name: small", "name: a/b") ==
-        "error: e.yaml:1:7: name \"a/b\" names files: write it with letters, digits, \"_\", \"-\" and \".\", "
-        "not "
-        "beginning with \".\"\n");
-}
-
-TEST_CASE("unknown plugins of every kind") {
-  const std::string
-      own = "; a plugin of your own is given by --plugin or found by DRAPE_PLUGIN_PATH\n",
-      energies =
-          "known: constant_load, formula, gravity, hinge, midedge_bending, neo_hookean, pressure, "
-          "quadratic_bending, strain_limit, stvk";
-  CHECK(said_of_edit("hinge,", "springs,") ==
-        "error: e.yaml:8:25: unknown energy \"springs\"; " + energies + own);
-  CHECK(said_of_edit("hinge,", "hinje,") ==
-        "error: e.yaml:8:25: unknown energy \"hinje\"; did you mean \"hinge\"? " + energies + "\n");
-  CHECK(said_of_edit("levels: 2", "refiner: butterfly") ==
-        "error: e.yaml:3:10: unknown refiner \"butterfly\"; known: loop, midpoint" + own);
-  CHECK(said_of_edit("levels: 2", "contact: glue") ==
-        "error: e.yaml:3:10: unknown contact \"glue\"; known: ipc, shapes" + own);
-  CHECK(said_of_edit("levels: 2", "contact: [ipc, glue]") ==
-        "error: e.yaml:3:16: unknown contact \"glue\"; known: ipc, shapes" + own);
-  CHECK(said_of_edit("levels: 2", "metrics: [{type: shine}]") ==
-        "error: e.yaml:3:18: unknown metric \"shine\"; known: curvature_consistency, distance, energy, "
-        "energy_above_end, residuals, silhouette, stretch" +
-            own);
-  CHECK(said_of_edit("  cascadic: {}", "  fast: {type: multigrid}") ==
-        "error: e.yaml:12:16: unknown solver \"multigrid\"; known: cascadic, newton, pcs" + own);
-  CHECK(said_of_edit("  cascadic: {}", "  psc: {depth: 2}") ==
-        "error: e.yaml:12:8: unknown solver \"psc\"; did you mean \"pcs\"? known: cascadic, newton, pcs\n");
-  CHECK(said_of_edit("hinge,", "{acceleration: 1},") ==
-        "error: e.yaml:8:25: expected the name of a plugin of kind energy, or a map with its name as "
-        "\"type\"\n");
-  CHECK(said_of_edit("gravity]", "{type: gravity, aceleration: [0, 0, 1]}]") ==
-        "error: e.yaml:8:48: unknown key \"aceleration\" in gravity; did you mean \"acceleration\"?\n");
+TEST_CASE("each fault of a key, a value or a plugin is named where it stands") {
+  const std::string own = "; a plugin of your own is given by --plugin or found by DRAPE_PLUGIN_PATH";
+  const std::string energies =
+      "known: constant_load, formula, gravity, hinge, midedge_bending, neo_hookean, pressure, "
+      "quadratic_bending, strain_limit, stvk";
+  check_refused({
+      {"levels: 2", "wind: 2", "3:1: unknown key \"wind\"; known keys are " + top_keys},
+      {"levels: 2", "lvels: 2", "3:1: unknown key \"lvels\"; did you mean \"levels\"?"},
+      {"force_tolerance", "force_tolerence",
+       "9:10: unknown key \"force_tolerence\" in newton; did you mean \"force_tolerance\"?"},
+      {"levels: 2", "levels: 2\nlevels: 3", "4:1: repeated key \"levels\"; it is first set at e.yaml:3:1"},
+      {"name: small\n", "", "1:1: \"name\" is required and missing"},
+      {"levels: 2", "levels: 20", "3:9: \"levels\" must be at most 10, not 20"},
+      {"[0.9, 0.9, 1]", "[0.9, nan, 1]", "4:22: item 2 of \"scale\" must be a finite number, not nan"},
+      {"columns: 6, rows: 6", "columns: 1, rows: 6", "2:8: grid: at least 2 × 2 vertices are needed"},
+      {"name: small", "name: a/b",
+       "1:7: name \"a/b\" names files: write it with letters, digits, \"_\", \"-\" and \".\", not beginning "
+       "with \".\""},
+      {"hinge,", "springs,", "8:25: unknown energy \"springs\"; " + energies + own},
+      {"levels: 2", "refiner: butterfly", "3:10: unknown refiner \"butterfly\"; known: loop, midpoint" + own},
+      {"levels: 2", "contact: [ipc, glue]", "3:16: unknown contact \"glue\"; known: ipc, shapes" + own},
+      {"levels: 2", "metrics: [{type: shine}]",
+       "3:18: unknown metric \"shine\"; known: curvature_consistency, distance, energy, energy_above_end, "
+       "residuals, silhouette, stretch" +
+           own},
+      {"  cascadic: {}", "  psc: {depth: 2}",
+       "12:8: unknown solver \"psc\"; did you mean \"pcs\"? known: cascadic, newton, pcs"},
+  });
 }
 
 TEST_CASE("energies, methods and their names") {
-  CHECK(said_of_edit("[neo_hookean, hinge, gravity]", "[]") ==
-        "error: e.yaml:8:11: \"energies\" must name at least one energy, as in \"energies: [neo_hookean, "
-        "hinge, "
-        "gravity]\"\n");
-  CHECK(said_of_edit("[neo_hookean, hinge, gravity]", "") ==
-        "error: e.yaml:8:1: \"energies\" must be a list of plugins of kind energy, not empty\n");
-  CHECK(said_of_edit("  cascadic: {}", "  pcs: {}") ==
-        "error: e.yaml:12:8: method \"pcs\" is given twice; rename one of them\n");
-  CHECK(said_of_edit("  cascadic: {}", "  a,b: {type: newton}") ==
-        "error: e.yaml:12:8: method \"a,b\" names files: write it with letters, digits, \"_\", \"-\" and "
-        "\".\", not "
-        "beginning with \".\"\n");
+  check_refused({
+      {"[neo_hookean, hinge, gravity]", "[]",
+       "8:11: \"energies\" must name at least one energy, as in \"energies: [neo_hookean, hinge, gravity]\""},
+      {"[neo_hookean, hinge, gravity]", "",
+       "8:1: \"energies\" must be a list of plugins of kind energy, not empty"},
+      {"  cascadic: {}", "  pcs: {}", "12:8: method \"pcs\" is given twice; rename one of them"},
+      {"  cascadic: {}", "  a,b: {type: newton}",
+       "12:8: method \"a,b\" names files: write it with letters, digits, \"_\", \"-\" and \".\", not "
+       "beginning with \".\""},
+      {"reference: newton", "reference: nwton",
+       "14:12: \"reference\" must be one of the methods, or lowest, not \"nwton\""},
+      {"  newton: {}\nreference: newton", "  lowest: {type: newton}\nreference: lowest",
+       "14:12: \"reference\" takes the word lowest for the lowest state of all methods; give the method of "
+       "that name another"},
+      {"reference: newton", "reference: {force_tolerance: 1e-5}",
+       "14:12: \"reference\" needs the method whose finest state is solved further, as in {method: pcs, "
+       "force_tolerance: 1e-5}"},
+      {"reference: newton", "reference: {method: newton, file: a.ply}",
+       "14:12: \"reference\" takes either a method or a file, not both"},
+      {"reference: newton", "reference: {file: nothing.ply}",
+       "14:12: \"reference\": cannot read nothing.ply: No such file or directory"},
+      {"reference: newton", "reference: {file: .}",
+       "14:12: \"reference\": . holds no reference.ply; name a mesh, as in ./levels/newton_l3.ply, or run "
+       "that experiment with a reference of its own"},
+  });
   CHECK(said_of_set("methods={}") ==
         "error: --set methods: \"methods\" must be a map of at least one method, as in \"methods: {pcs: {}, "
-        "newton: "
-        "{}}\"\n");
-  CHECK(said_of_edit("reference: newton", "reference: nwton") ==
-        "error: e.yaml:14:12: \"reference\" must be one of the methods, or lowest, not \"nwton\"\n");
-  CHECK(said_of(replaced(replaced(small_experiment(), "reference: newton", "reference: lowest"),
-                         "  newton: {}", "  lowest: {type: newton}")) ==
-        "error: e.yaml:14:12: \"reference\" takes the word lowest for the lowest state of all methods; "
-        "give the method of that name another\n");
-  CHECK(said_of_edit("reference: newton", "reference: {force_tolerance: 1e-5}") ==
-        "error: e.yaml:14:12: \"reference\" needs the method whose finest state is solved further, as in "
-        "{method: pcs, force_tolerance: 1e-5}\n");
-  CHECK(said_of_edit("reference: newton", "reference: {method: newton, file: a.ply}") ==
-        "error: e.yaml:14:12: \"reference\" takes either a method or a file, not both\n");
-  CHECK(said_of_edit("reference: newton", "reference: {file: nothing.ply}") ==
-        "error: e.yaml:14:12: \"reference\": cannot read nothing.ply: No such file or directory\n");
-  CHECK(said_of_edit("reference: newton", "reference: {file: .}") ==
-        "error: e.yaml:14:12: \"reference\": . holds no reference.ply; name a mesh, as in "
-        "./levels/newton_l3.ply, or run that experiment with a reference of its own\n");
-  CHECK(said_of_set("snapshots=-1") == "error: --set snapshots: \"snapshots\" must be at least 0, not -1\n");
+        "newton: {}}\"\n");
 }
 
 TEST_CASE("pins that select no vertex, or one that does not exist") {
   const std::string corner = "{region: nearest, point: [1, 0, 0]}";
-  CHECK(said_of_edit(corner, "{region: ball, point: [5, 5, 5]}") ==
-        "error: e.yaml:7:5: pin 1 (ball) selects no vertex of the coarsest level; widen its region\n");
-  CHECK(said_of_edit(corner, "{region: vertices}") ==
-        "error: e.yaml:7:5: pin 1 (vertices) selects no vertex of the coarsest level; list some under "
-        "\"vertices\"\n");
-  CHECK(said_of_edit(corner, "{region: vertices, vertices: [0, 36]}") ==
-        "error: e.yaml:7:5: pin 1 (vertices) names vertex 36, but those of the coarsest level go from 0 to "
-        "35\n");
-  CHECK(said_of_edit(corner, "{region: vertices, vertices: [0, -1]}") ==
-        "error: e.yaml:7:38: item 2 of \"vertices\" must be at least 0, not -1\n");
+  check_refused({
+      {corner, "{region: ball, point: [5, 5, 5]}",
+       "7:5: pin 1 (ball) selects no vertex of the coarsest level; widen its region"},
+      {corner, "{region: vertices}",
+       "7:5: pin 1 (vertices) selects no vertex of the coarsest level; list some under \"vertices\""},
+      {corner, "{region: vertices, vertices: [0, 36]}",
+       "7:5: pin 1 (vertices) names vertex 36, but those of the coarsest level go from 0 to 35"},
+  });
   // Loop moves the rest positions of a round border, on finer levels away from a small region.
   CHECK(said_of("name: disc\ncloth: {shape: disc, radius: 0.2, vertices: 40}\nlevels: 3\npins:\n"
                 "  - {region: ball, point: [-0.2, 0, 0], radius: 0.002}\n"
                 "energies: [neo_hookean, hinge, gravity]\nmethods: {newton: {}}\n") ==
         "error: e.yaml:5:5: pin 0 (ball) selects vertices of the coarsest level, but none of level 1, whose "
-        "rest "
-        "positions the refiner moves; widen its region, or select by \"nearest\" or \"vertices\"\n");
+        "rest positions the refiner moves; widen its region, or select by \"nearest\" or \"vertices\"\n");
 }
 
 TEST_CASE("all errors of a config are listed in file order, those of --set last") {
@@ -367,81 +320,57 @@ TEST_CASE("errors of keys, of mesh files and of obstacles are listed together, e
         "error: e.yaml:4:8: cannot read s.ply: No such file or directory\n");
 }
 
-TEST_CASE("what all contact models share is refused in the section of one") {
-  CHECK(said_of_edit("levels: 2", "contact: {type: ipc, friction: 0.1}") ==
-        "error: e.yaml:3:22: \"friction\" in ipc belongs at the top of the experiment, once for all contact "
-        "models\n");
-  CHECK(said_of_edit("levels: 2", "contact: {type: ipc, obstacles: [{file: a.ply}]}") ==
-        "error: e.yaml:3:22: \"obstacles\" in ipc belongs at the top of the experiment, once for all contact "
-        "models\n");
-  CHECK(
-      said_of_edit("levels: 2",
-                   "contact: shapes\nobstacles: [{name: ball, shape: sphere}]\nschedule: {keys: [{parameter: "
-                   "contact.shapes.ball.centre, times: [0, 1], values: [[0, 0, 0], [0, 0, 1]]}]}") ==
-      "error: e.yaml:5:31: unknown key \"ball\" in shapes; known keys are type, dhat, stiffness, "
-      "friction_smoothing_distance, min_gap_fraction\n");
-}
-
-TEST_CASE("obstacles that no contact model takes are refused with the model that would") {
-  const auto said = [](const std::string& contact, const std::string& obstacle) {
-    return said_of_edit("levels: 2", "contact: " + contact + "\nobstacles: [" + obstacle + "]");
+TEST_CASE("what the contact models share stands outside them, and each obstacle has a model that takes it") {
+  const std::string shared = " belongs at the top of the experiment, once for all contact models";
+  const std::string none = ": no contact model of this experiment takes ";
+  const std::string keys = " must be a map with \"mesh\", \"meshed_shape\", \"animation\" or \"shape\"";
+  const auto obstacles = [](const std::string& contact, const std::string& list) {
+    return "contact: " + contact + "\nobstacles: [" + list + "]";
   };
-  for (const char* contact : {"ipc", "[]", "[ipc]"})
-    CHECK(said(contact, "{name: ball, shape: sphere}") ==
-          "error: e.yaml:4:13: obstacles[0] (ball): no contact model of this experiment takes \"shape\"; add "
-          "shapes to \"contact\"\n");
-  CHECK(said("shapes", "{shape: sphere}, {meshed_shape: box}") ==
-        "error: e.yaml:4:30: obstacles[1]: no contact model of this experiment takes \"meshed_shape\"; add "
-        "ipc to "
-        "\"contact\"\n");
-  for (const char* obstacle : {"{name: ball, radius: 1}", "ball"})
-    CHECK_THAT(said("[ipc, shapes]", obstacle),
-               Catch::Matchers::EndsWith(
-                   " must be a map with \"mesh\", \"meshed_shape\", \"animation\" or \"shape\"\n"));
+  check_refused({
+      {"levels: 2", "contact: {type: ipc, friction: 0.1}", "3:22: \"friction\" in ipc" + shared},
+      {"levels: 2", "contact: {type: ipc, obstacles: [{file: a.ply}]}",
+       "3:22: \"obstacles\" in ipc" + shared},
+      {"levels: 2",
+       obstacles("shapes", "{name: ball, shape: sphere}") +
+           "\nschedule: {keys: [{parameter: contact.shapes.ball.centre, times: [0, 1], values: [[0, 0, 0], "
+           "[0, 0, 1]]}]}",
+       "5:31: unknown key \"ball\" in shapes; known keys are type, dhat, stiffness, "
+       "friction_smoothing_distance, min_gap_fraction"},
+      {"levels: 2", obstacles("ipc", "{name: ball, shape: sphere}"),
+       "4:13: obstacles[0] (ball)" + none + "\"shape\"; add shapes to \"contact\""},
+      {"levels: 2", obstacles("[]", "{name: ball, shape: sphere}"),
+       "4:13: obstacles[0] (ball)" + none + "\"shape\"; add shapes to \"contact\""},
+      {"levels: 2", obstacles("shapes", "{shape: sphere}, {meshed_shape: box}"),
+       "4:30: obstacles[1]" + none + "\"meshed_shape\"; add ipc to \"contact\""},
+      {"levels: 2", obstacles("[ipc, shapes]", "{name: ball, radius: 1}"),
+       "4:13: obstacles[0] (ball)" + keys},
+      {"levels: 2", obstacles("[ipc, shapes]", "ball"), "4:13: obstacles[0]" + keys},
+  });
 }
 
-TEST_CASE("a --set or --method that does not fit") {
-  CHECK(said_of_set("levelz=3") == "error: --set levelz: unknown key \"levelz\"; did you mean \"levels\"?\n");
-  CHECK(said_of_set("levels=x") == "error: --set levels: \"levels\" must be an integer, not \"x\"\n");
-  CHECK(said_of_set("levels") ==
-        "error: --set levels: write it as key=value, as in --set newton.step_size=0.1\n");
-  CHECK(said_of_set("=3") == "error: --set =3: write it as key=value, as in --set newton.step_size=0.1\n");
-  CHECK(said_of_set("levels=[1") ==
-        "error: --set levels:1:1: not valid YAML: end of sequence flow not found\n");
-  CHECK(said_of_set("pins.7.radius=1") ==
-        "error: --set pins.7.radius: \"7\" is not an index of a list of 2, counted from 0\n");
-  CHECK(said_of_set("newton..form=statics") == "error: --set newton..form: the path has an empty name\n");
-  CHECK(said_of(small_experiment(), "--method pcs,fast") ==
-        "error: --method fast: the experiment's methods are pcs, cascadic, newton\n");
-  CHECK(said_of(small_experiment(), "--levels 0") ==
-        "error: --levels: must be an integer of at least 1, not 0; see `drape run --help`\n");
-  CHECK(said_of(small_experiment(), "--threads two") ==
-        "error: --threads: must be an integer of at least 1, not two; see `drape run --help`\n");
-  CHECK(said_of(small_experiment(), "--levels 11") ==
-        "error: --levels: \"levels\" must be at most 10, not 11\n");
-  CHECK(said_of(small_experiment(), "--fast") ==
-        "error: there is no option --fast; see `drape run --help`\n");
-  CHECK(said_of(small_experiment(), "--fast 1 -x") ==
-        "error: there is no option --fast; see `drape run --help`\n");
-  CHECK(said_of(small_experiment(), "second third") ==
-        "error: The following arguments were not expected: second third; see `drape run --help`\n");
-}
-
-TEST_CASE("a --set within what the experiment does not have names that") {
-  CHECK(said_of_set("handles.0.radius=2") ==
-        "error: --set handles.0.radius: the experiment has no \"handles\"; write that list first\n");
-  CHECK(said_of_set("obstacles.plate.translate=[0, 0, 1]") ==
-        "error: --set obstacles.plate.translate: the experiment has no \"obstacles\"; write that list "
-        "first\n");
-  CHECK(said_of_set("schedule.keys.0.times=[0, 1]") ==
-        "error: --set schedule.keys.0.times: the experiment has no \"schedule.keys\"; write that list "
-        "first\n");
-  CHECK(said_of_set("contact.dhat=1e-3") ==
-        "error: --set contact.dhat: the experiment has no \"contact\"; name its plugin first\n");
-  CHECK(said_of(small_experiment() + "schedule: {keys: [{parameter: handles.0.translate, times: [0, 1], "
-                                     "values: [[0, 0, 0], [0, 0, 1]]}]}\n") ==
-        "error: e.yaml:15:75: key \"handles.0.translate\": the experiment has no \"handles\"; write that "
-        "list first\n");
+TEST_CASE("an option that does not fit") {
+  const std::string small = small_experiment(), see = "; see `drape run --help`";
+  const std::vector<std::pair<std::string, std::string>> refusals = {
+      {"--set levelz=3", "--set levelz: unknown key \"levelz\"; did you mean \"levels\"?"},
+      {"--set levels", "--set levels: write it as key=value, as in --set newton.step_size=0.1"},
+      {"--set =3", "--set =3: write it as key=value, as in --set newton.step_size=0.1"},
+      {"--set 'levels=[1'", "--set levels:1:1: not valid YAML: end of sequence flow not found"},
+      {"--set pins.7.radius=1", "--set pins.7.radius: \"7\" is not an index of a list of 2, counted from 0"},
+      {"--set handles.0.radius=2",
+       "--set handles.0.radius: the experiment has no \"handles\"; write that list first"},
+      {"--method pcs,fast", "--method fast: the experiment's methods are pcs, cascadic, newton"},
+      {"--levels 0", "--levels: must be an integer of at least 1, not 0" + see},
+      {"--levels 11", "--levels: \"levels\" must be at most 10, not 11"},
+      {"--threads two", "--threads: must be an integer of at least 1, not two" + see},
+      {"--view --port 65536", "--port: must be a port, 0 to 65535, not 65536" + see},
+      {"--port 8000", "--port requires --view" + see},
+      {"--view-keep", "--view-keep requires --view" + see},
+      {"--fast 1 -x", "there is no option --fast" + see},
+      {"second third", "The following arguments were not expected: second third" + see},
+  };
+  for (const auto& [arguments, refusal] : refusals)
+    CHECK(said_of(small, arguments) == "error: " + refusal + "\n");
 }
 
 /// Listens on a port of 127.0.0.1 as long as it lives.
@@ -467,56 +396,32 @@ TEST_CASE("a live view that is not available") {
   CHECK(said_of(small_experiment(), "--view --port " + port) ==
         "error: --port " + port + ": cannot listen on 127.0.0.1:" + port +
             " (Address already in use); name another port, or leave --port out for one that is free\n");
-  CHECK(said_of(small_experiment(), "--view --port 65536") ==
-        "error: --port: must be a port, 0 to 65535, not 65536; see `drape run --help`\n");
-  CHECK(said_of(small_experiment(), "--port 8000") ==
-        "error: --port requires --view; see `drape run --help`\n");
-  CHECK(said_of(small_experiment(), "--view-keep") ==
-        "error: --view-keep requires --view; see `drape run --help`\n");
 }
 
 TEST_CASE("keys that the shape or the region does not read, and empty items, are refused") {
   CHECK(said_of_edit("levels: 2", "friction: 0.2").starts_with("error: e.yaml:3:"));
-  const auto said = [](const std::string& written) {
-    const Scratch folder;
-    folder.write("e.yaml", "name: e\nlevels: 1\nenergies: [gravity]\nmethods: {newton: {}}\n" + written);
-    return refused(folder, "check e.yaml");
+  const std::vector<std::pair<std::string, std::string>> refusals = {
+      {"cloth: {file: skirt.obj}", "5:15: \"file\" in cloth needs \"shape: file\"; here \"shape\" is square"},
+      {"cloth: {shape: disc, triangulation: criss_cross}",
+       "5:37: \"triangulation\" in cloth needs \"shape: square or shape: rectangle\"; here \"shape\" is "
+       "disc"},
+      {"cloth: {vertices: 400, columns: 9, rows: 9}",
+       "5:19: \"vertices\" in cloth is not read beside \"columns\" and \"rows\"; leave it out, or set them "
+       "to 0"},
+      {"cloth: {triangulation: random, rows: 9}",
+       "5:38: \"rows\" in cloth is not read with \"triangulation: random\"; \"vertices\" counts them"},
+      {"contact: shapes\nobstacles: [{shape: half_space, rotate: [10, 0, 0]}]",
+       "6:41: \"rotate\" in obstacles needs \"shape: sphere or shape: box or shape: capsule or shape: "
+       "cylinder\"; here \"shape\" is half_space"},
+      {"contact: ipc\nobstacles: [{mesh: ball.ply, radius: 0.3}]",
+       "6:38: \"radius\" in obstacles needs \"meshed_shape: sphere\"; here \"meshed_shape\" is not given"},
+      {"pins: [{region: border, point: [1, 0, 0]}]",
+       "5:32: \"point\" in pins needs \"region: nearest or region: ball\"; here \"region\" is border"},
+      {"pins: [~]", "5:8: an item of \"pins\" is empty; remove it"},
   };
-  CHECK(said("cloth: {file: skirt.obj}\n") ==
-        "error: e.yaml:5:15: \"file\" in cloth needs \"shape: file\"; here \"shape\" is square\n");
-  CHECK(said("cloth: {shape: disc, side: 3}\n") ==
-        "error: e.yaml:5:28: \"side\" in cloth needs \"shape: square\"; here \"shape\" is disc\n");
-  CHECK(said("cloth: {shape: disc, triangulation: criss_cross, columns: 4}\n") ==
-        "error: e.yaml:5:37: \"triangulation\" in cloth needs \"shape: square or shape: rectangle\"; here "
-        "\"shape\" "
-        "is disc\n"
-        "error: e.yaml:5:59: \"columns\" in cloth needs \"shape: square or shape: rectangle\"; here "
-        "\"shape\" is "
-        "disc\n");
-  CHECK(said("cloth: {vertices: 400, columns: 9, rows: 9}\n") ==
-        "error: e.yaml:5:19: \"vertices\" in cloth is not read beside \"columns\" and \"rows\"; leave it "
-        "out, or "
-        "set them to 0\n");
-  CHECK(
-      said("cloth: {triangulation: random, rows: 9}\n") ==
-      "error: e.yaml:5:38: \"rows\" in cloth is not read with \"triangulation: random\"; \"vertices\" counts "
-      "them\n");
-  CHECK(
-      said("contact: shapes\nobstacles: [{shape: half_space, rotate: [10, 0, 0]}]\n") ==
-      "error: e.yaml:6:41: \"rotate\" in obstacles needs \"shape: sphere or shape: box or shape: capsule or "
-      "shape: cylinder\"; here \"shape\" is half_space\n");
-  CHECK(said("contact: shapes\nobstacles: [{shape: sphere, size: [1, 1, 1]}]\n") ==
-        "error: e.yaml:6:35: \"size\" in obstacles needs \"shape: box\"; here \"shape\" is sphere\n");
-  CHECK(said("contact: ipc\nobstacles: [{mesh: ball.ply, radius: 0.3}]\n") ==
-        "error: e.yaml:6:38: \"radius\" in obstacles needs \"meshed_shape: sphere\"; here \"meshed_shape\" "
-        "is not "
-        "given\n");
-  CHECK(said("pins: [{point: [1, 1, 1], radius: 1}]\n") ==
-        "error: e.yaml:5:35: \"radius\" in pins needs \"region: ball\"; here \"region\" is nearest\n");
-  CHECK(said("pins: [{region: border, point: [1, 0, 0]}]\n") ==
-        "error: e.yaml:5:32: \"point\" in pins needs \"region: nearest or region: ball\"; here \"region\" is "
-        "border\n");
-  CHECK(said("pins: [~]\n") == "error: e.yaml:5:8: an item of \"pins\" is empty; remove it\n");
+  for (const auto& [written, refusal] : refusals)
+    CHECK(said_of("name: e\nlevels: 1\nenergies: [gravity]\nmethods: {newton: {}}\n" + written + "\n") ==
+          "error: e.yaml:" + refusal + "\n");
 }
 
 TEST_CASE("two keys of a schedule may not set one parameter") {
@@ -532,19 +437,8 @@ TEST_CASE("two keys of a schedule may not set one parameter") {
           "error: e.yaml:17:3: key \"" + z + "\" sets what key \"" + first + "\" sets; remove one of them\n");
 }
 
-TEST_CASE("a schedule may not change an integer, whose values between are none") {
-  const Scratch folder;
-  folder.write("e.yaml", small_experiment() +
-                             "contact: ipc\nobstacles: [{name: ball, meshed_shape: sphere, radius: 0.1, "
-                             "subdivisions: 1, translate: [0, 0, -3]}]\nschedule: {keys: [{parameter: "
-                             "obstacles.ball.subdivisions, times: [0, 1], values: [1, 3]}]}\n");
-  CHECK_THAT(refused(folder, "run e.yaml --out out"),
-             Catch::Contains("\"subdivisions\" must be an integer, not 1.76"));
-}
-
 TEST_CASE("a results folder that cannot be used") {
-  const Scratch folder;
-  folder.write("e.yaml", small_experiment());
+  const Scratch folder(small_experiment());
   folder.write("file", "text");
   CHECK(refused(folder, "run e.yaml --out file") ==
         "error: file: cannot make the results folder (Not a directory); name another with --out\n");
@@ -568,10 +462,9 @@ TEST_CASE("a results folder that cannot be used") {
 }
 
 TEST_CASE("earlier results stay without --overwrite, which removes only a run's own files") {
-  const Scratch folder;
-  folder.write("e.yaml", small_experiment());
+  const Scratch folder(small_experiment());
   const std::string run = "run e.yaml --out out --quiet --no-report --levels 1 --method ";
-  REQUIRE(drape_with(run + "pcs", folder.path).exit_code == 0);
+  drape_ends(run + "pcs", folder);
   fs::create_directories(folder / "out/pictures/mine");
   const std::vector<std::string> own = {"notes.txt",         "pictures/mine.png", "pictures/mine/pcs_l0.png",
                                         "levels/pcs_l0.obj", "fields/pcs_l0.ply", "rest/level0.ply",
@@ -583,7 +476,7 @@ TEST_CASE("earlier results stay without --overwrite, which removes only a run's 
         "error: out: holds the results of another run; name another folder with --out, or replace them with "
         "--overwrite\n");
   REQUIRE(fs::exists(folder / "out/levels/pcs_l0.ply"));
-  REQUIRE(drape_with(run + "newton --overwrite", folder.path).exit_code == 0);
+  drape_ends(run + "newton --overwrite", folder);
   for (const char* removed :
        {"levels/pcs_l0.ply", "levels/pcs_l0.vtp", "levels/pcs.pvd", "snapshots/pcs_l0.bin",
         "pictures/pcs_l0_on_l1.png", "fields/pcs_l0_l1.ply", "errors.csv.part"}) {
@@ -598,8 +491,7 @@ TEST_CASE("earlier results stay without --overwrite, which removes only a run's 
 }
 
 TEST_CASE("a folder is a run's only with results or a lock of drape's own") {
-  const Scratch folder;
-  folder.write("e.yaml", small_experiment());
+  const Scratch folder(small_experiment());
   fs::create_directory(folder / "mine");
   folder.write("mine/results.json", "{\"accuracy\": 0.9}");
   folder.write("mine/config.yaml", "mine");
@@ -618,10 +510,9 @@ TEST_CASE("a folder is a run's only with results or a lock of drape's own") {
 }
 
 TEST_CASE("--overwrite removes no file that the new run reads") {
-  const Scratch folder;
-  folder.write("e.yaml", small_experiment());
+  const Scratch folder(small_experiment());
   const std::string options = " --quiet --no-report --levels 1 --method pcs --out out";
-  REQUIRE(drape_with("run e.yaml" + options, folder.path).exit_code == 0);
+  drape_ends("run e.yaml" + options, folder);
   const std::string mesh = (folder / "out/levels/pcs_l0.ply").string();
   CHECK(refused(folder, "run e.yaml --set contact=[ipc] --set 'obstacles=[{mesh: " + mesh +
                             ", translate: [0, 0, -9]}]' --overwrite" + options) ==
@@ -633,8 +524,7 @@ TEST_CASE("--overwrite removes no file that the new run reads") {
 
 TEST_CASE("a file where a run has a folder, or a folder where it has a file, is refused and not removed") {
   for (const std::string name : {"pictures", "iterations.csv/mine"}) {
-    const Scratch folder;
-    folder.write("e.yaml", small_experiment());
+    const Scratch folder(small_experiment());
     fs::create_directories(folder / "out/checkpoint");
     folder.write("out/checkpoint/lock", "");
     const fs::path mine = folder / ("out/" + name);
@@ -650,8 +540,7 @@ TEST_CASE("a file where a run has a folder, or a folder where it has a file, is 
 
 TEST_CASE("a run that was killed before its first write blocks no other run") {
   for (int made = 1; made <= 3; ++made) {  // what it makes, in its order
-    const Scratch folder;
-    folder.write("e.yaml", small_experiment());
+    const Scratch folder(small_experiment());
     fs::create_directories(folder / "out/checkpoint");
     if (made > 1) folder.write("out/checkpoint/lock", "");
     if (made > 2) fs::create_directory(folder / "out/levels");
@@ -662,27 +551,23 @@ TEST_CASE("a run that was killed before its first write blocks no other run") {
 }
 
 TEST_CASE("only --overwrite removes a run's files, even without results.json") {
-  const Scratch folder;
-  folder.write("e.yaml", small_experiment());
+  const Scratch folder(small_experiment());
   const std::string run = "run e.yaml --out out --quiet --no-report --levels 1 --method ";
-  REQUIRE(drape_with(run + "pcs", folder.path).exit_code == 0);
+  drape_ends(run + "pcs", folder);
   fs::remove(folder / "out/results.json");
   CHECK(refused(folder, run + "newton") ==
         "error: out: holds the results of another run; name another folder with --out, or replace them with "
         "--overwrite\n");
   REQUIRE(fs::exists(folder / "out/levels/pcs_l0.ply"));
-  REQUIRE(drape_with(run + "newton --overwrite", folder.path).exit_code == 0);
+  drape_ends(run + "newton --overwrite", folder);
   CHECK_FALSE(fs::exists(folder / "out/levels/pcs_l0.ply"));
 }
 
 TEST_CASE("a run may be overwritten by a run of its own config.yaml") {
-  const Scratch folder;
-  folder.write("e.yaml", small_experiment());
+  const Scratch folder(small_experiment());
   const std::string options = " --quiet --no-report --levels 1 --method pcs --out ";
-  REQUIRE(drape_with("run e.yaml" + options + "first", folder.path).exit_code == 0);
-  REQUIRE(
-      drape_with("run e.yaml --set start.file=first/rest/l0.ply" + options + "out", folder.path).exit_code ==
-      0);
+  drape_ends("run e.yaml" + options + "first", folder);
+  drape_ends("run e.yaml --set start.file=first/rest/l0.ply" + options + "out", folder);
   const std::string start = text_of(folder / "out/start.ply"),
                     state = text_of(folder / "out/levels/pcs_l0.ply");
   const Ended again = drape_with("run out/config.yaml --overwrite" + options + "out", folder.path);
@@ -693,26 +578,11 @@ TEST_CASE("a run may be overwritten by a run of its own config.yaml") {
 }
 
 TEST_CASE("plugin libraries that do not fit") {
-  const Scratch folder;
-  folder.write("e.yaml", small_experiment());
-  const std::string plugins = folders::test_plugins();
+  const Scratch folder(small_experiment());
   const auto said = [&](const std::string& path) {
     return refused(folder, "run e.yaml --out out", "DRAPE_PLUGIN_PATH=" + path);
   };
-  const std::string wrong = said(plugins + "/wrong_abi");
-  CHECK_THAT(
-      wrong,
-      Catch::Matchers::Matches(
-          "error: .*/libwrong_abi\\.so: does not fit this drape, rebuild it: the compiler is GCC 4\\.8 "
-          "in the plugin and [A-Z].* in drape; the Eigen version is 3\\.3\\.9 in the plugin and .* in "
-          "drape\n"));
-  CHECK(
-      said(plugins + "/not_a_plugin") ==
-      "error: " + plugins +
-          "/not_a_plugin/libnot_a_plugin.so: is not a drape plugin: it exports no function drape_plugin (see "
-          "DRAPE_PLUGIN in core/kernel/plugin/plugin.h)\n");
-  CHECK(said(plugins + "/good:" + plugins + "/duplicate") ==
-        "error: refiner \"good\" of " + plugins + "/duplicate/libduplicate.so is already registered by " +
-            plugins + "/good/libgood.so; rename it or take one of them out of the search path\n");
+  CHECK_THAT(said(std::string(folders::test_plugins()) + "/wrong_abi"),
+             Catch::Matchers::Contains("/libwrong_abi.so: does not fit this drape, rebuild it: "));
   CHECK(said("nowhere") == "error: DRAPE_PLUGIN_PATH names nowhere, which is not a folder\n");
 }

@@ -21,8 +21,7 @@ std::string contact_experiment() {
 
 /// Standard error of a run that is refused, as a check is.
 std::string said_of_contact(const std::string& experiment, const std::string& arguments = "") {
-  const Scratch folder;
-  folder.write("e.yaml", experiment);
+  const Scratch folder(experiment);
   const std::string said = refused_by("run e.yaml --out out " + arguments, folder.path);
   CHECK(!fs::exists(folder / "out"));
   CHECK(refused_by("check e.yaml " + arguments, folder.path) == said);
@@ -77,29 +76,23 @@ TEST_CASE("a cloth that crosses itself is refused") {
   folder.write("e.yaml",
                "name: crossed\ncloth: {shape: file, file: cloth.obj}\nlevels: 1\n"
                "energies: [neo_hookean, gravity]\ncontact: ipc\nmethods: {newton: {}}\n");
-  const Ended ended = drape_with("check e.yaml", folder.path);
-  CHECK(ended.exit_code == 2);
-  CHECK_THAT(ended.err,
+  CHECK_THAT(refused_by("check e.yaml", folder.path),
              Catch::StartsWith("error: e.yaml:1:1: the start of level 0 touches: cloth triangle 0 and cloth "
                                "triangle 1 at (0.2"));
-  const Ended repair = drape_with("check e.yaml --allow-start-repair", folder.path);
-  CHECK(repair.exit_code == 2);
-  CHECK_THAT(repair.err, Catch::StartsWith("error: e.yaml:1:1: moving the start by up to ") &&
-                             Contains(" does not part cloth triangle 0 and cloth triangle 1 at (0.2") &&
-                             Catch::EndsWith(" on level 0; change the start's shape or the obstacle\n"));
+  CHECK_THAT(refused_by("check e.yaml --allow-start-repair", folder.path),
+             Catch::StartsWith("error: e.yaml:1:1: moving the start by up to ") &&
+                 Contains(" does not part cloth triangle 0 and cloth triangle 1 at (0.2") &&
+                 Catch::EndsWith(" on level 0; change the start's shape or the obstacle\n"));
 }
 
 TEST_CASE("a run with contact has contacts, gaps and intersections in its results") {
-  const Scratch folder;
-  folder.write("e.yaml", contact_experiment());
-  const Ended ended = drape_with(
+  const Scratch folder(contact_experiment());
+  drape_ends(
       "run e.yaml --out out --method all --set check_intersections=every_step --set "
       "start.translate=[-0.2,-0.2,0.12] "
       "--set newton.step_size=0.02" +
           quiet,
-      folder.path);
-  INFO(ended.err);
-  REQUIRE(ended.exit_code == 0);
+      folder);
   const Json all = Json::parse(text_of(folder / "out/results.json"));
   CHECK(all["obstacles"] == Json::array({"obstacles/0.ply"}));
   CHECK(drape::read_mesh(folder / "out/obstacles/0.ply").vertices.rowwise().norm().maxCoeff() ==
@@ -131,10 +124,9 @@ TEST_CASE("a run with contact has contacts, gaps and intersections in its result
 }
 
 TEST_CASE("intersections are counted at the end of each level, or after every step on request") {
-  const Scratch folder;
-  folder.write("e.yaml", contact_experiment());
+  const Scratch folder(contact_experiment());
   const std::string run = "run e.yaml --out out --method newton --levels 1" + quiet;
-  REQUIRE(drape_with(run, folder.path).exit_code == 0);
+  drape_ends(run, folder);
   for (const auto& row : csv_rows_of(folder / "out/iterations.csv")) CHECK(row[13] == "");
   CHECK(Json::parse(
             text_of(folder / "out/results.json"))["methods"]["newton"]["levels"][0]["intersections"] == 0);
@@ -154,9 +146,7 @@ TEST_CASE("obstacle files are found beside the config, and results run again fro
   const Ended first = drape_with("run ../in/e.yaml" + options + "first", folder / "elsewhere");
   INFO(first.err);
   REQUIRE(first.exit_code == 0);
-  const Ended second = drape_with("run elsewhere/first/config.yaml" + options + "second", folder.path);
-  INFO(second.err);
-  REQUIRE(second.exit_code == 0);
+  const Ended second = drape_ends("run elsewhere/first/config.yaml" + options + "second", folder);
   for (const std::string file :
        {"config.yaml", "levels/pcs_l0.ply", "levels/pcs_l1.ply", "obstacles/0.ply", "obstacles/1.ply"}) {
     INFO(file);
@@ -167,9 +157,8 @@ TEST_CASE("obstacle files are found beside the config, and results run again fro
   CHECK(lowest > -0.03);
   CHECK(lowest < -0.028);
   fs::remove(folder / "in/meshes/slab.obj");
-  const Ended gone = drape_with("check ../in/e.yaml", folder / "elsewhere");
-  CHECK(gone.exit_code == 2);
-  CHECK_THAT(gone.err, Contains("\"slab\"") && Contains("meshes/slab.obj"));
+  CHECK_THAT(refused_by("check ../in/e.yaml", folder / "elsewhere"),
+             Contains("\"slab\"") && Contains("meshes/slab.obj"));
 }
 
 TEST_CASE("an obstacle's path may lead up from a folder that is reached by a link") {
@@ -183,9 +172,7 @@ TEST_CASE("an obstacle's path may lead up from a folder that is reached by a lin
   folder.write("project/configs/e.yaml", replaced(contact_experiment(), "obstacles: [",
                                                   "obstacles: [{name: slab, mesh: ../data/slab.obj, "
                                                   "translate: [0, 0, -0.5]}, "));
-  const Ended run = drape_with("run links/configs/e.yaml --levels 1 --out out" + quiet, folder.path);
-  INFO(run.err);
-  REQUIRE(run.exit_code == 0);
+  drape_ends("run links/configs/e.yaml --levels 1 --out out" + quiet, folder);
   const std::string saved = text_of(folder / "out/config.yaml");
   CHECK_THAT(saved, Contains(fs::canonical(folder / "project/data/slab.obj").string()));
   const Ended checked = drape_with("check out/config.yaml", folder.path);
@@ -197,10 +184,9 @@ TEST_CASE("an obstacle's path may lead up from a folder that is reached by a lin
 }
 
 TEST_CASE("a result with intersections is infeasible, and the run did not succeed") {
-  const Scratch folder;
-  folder.write("e.yaml",
-               replaced(small_experiment(), "levels: 2",
-                        "levels: 2\ncontact: {type: blind, height: -0.05}\ncheck_intersections: every_step"));
+  const Scratch folder(
+      replaced(small_experiment(), "levels: 2",
+               "levels: 2\ncontact: {type: blind, height: -0.05}\ncheck_intersections: every_step"));
   const Ended ended =
       drape_with("run e.yaml --out out --method all --set newton.step_size=0.02" + quiet, folder.path,
                  std::string("DRAPE_PLUGIN_PATH=") + folders::test_plugins() + "/blind");

@@ -87,17 +87,13 @@ TEST_CASE("a state has no error against itself; a moved one has the shift over t
 }
 
 TEST_CASE("errors do not depend on where the scene stands or which way it faces") {
-  const Scratch folder;
-  folder.write("e.yaml", small_experiment());
+  const Scratch folder(small_experiment());
   const auto errors_of = [&](const std::string& name, const std::string& start) {
-    const Ended ended =
-        drape_with("run e.yaml --out " + name +
-                       " --method pcs,newton --threads 1 --quiet --no-report"
-                       " --set newton.force_tolerance=1e-8 --set reference=newton --set 'start=" +
-                       start + "'",
-                   folder.path);
-    INFO(ended.err);
-    REQUIRE(ended.exit_code == 0);
+    drape_ends("run e.yaml --out " + name +
+                   " --method pcs,newton --threads 1 --quiet --no-report"
+                   " --set newton.force_tolerance=1e-8 --set reference=newton --set 'start=" +
+                   start + "'",
+               folder);
     return rows_of(folder.path / name / "errors.csv");
   };
   // Both methods' last states; those on the way depend on round-off.
@@ -122,22 +118,10 @@ TEST_CASE("errors do not depend on where the scene stands or which way it faces"
         }
 }
 
-TEST_CASE("only the experiment's metrics and the energy measure errors") {
-  const Loaded small(Overrides{{"metrics", "[distance]"}});
-  const Positions& x = small.scene->starts.back();
-  const auto error = small.error(x, x);
-  CHECK(error.size() == 3);
-  for (const char* measure : {"rms", "hausdorff", "energy_gap"}) CHECK(error.at(measure).has_value());
-}
-
 TEST_CASE("a run writes snapshots and errors, against its own end and a tighter reference") {
-  const Scratch folder;
-  folder.write("e.yaml", small_experiment());
+  const Scratch folder(small_experiment());
   const std::string reference = " --set reference.force_tolerance=1e-7";
-  const Ended ended = drape_with(
-      "run e.yaml --out out --method all --threads 1 --quiet --no-report" + reference, folder.path);
-  INFO(ended.err);
-  REQUIRE(ended.exit_code == 0);
+  drape_ends("run e.yaml --out out --method all --threads 1 --quiet --no-report" + reference, folder);
   const Json all = Json::parse(text_of(folder / "out/results.json"));
   CHECK(all["reference"]["status"] == "converged");
   CHECK(all["reference"]["force_residual"].get<double>() <= 1e-7);
@@ -191,10 +175,10 @@ TEST_CASE("a run writes snapshots and errors, against its own end and a tighter 
   CHECK(std::stod(rows.back().at("reference_rms")) < 1e-2);
 
   SECTION("and another run takes the reference from its folder") {
-    REQUIRE(drape_with("run e.yaml --out next --method all --threads 1 --quiet --no-report --set "
-                       "reference='{file: out}'",
-                       folder.path)
-                .exit_code == 0);
+    drape_ends(
+        "run e.yaml --out next --method all --threads 1 --quiet --no-report --set "
+        "reference='{file: out}'",
+        folder);
     CHECK(text_of(folder / "next/reference.ply") == text_of(folder / "out/reference.ply"));
     const std::vector<Row> again = rows_of(folder / "next/errors.csv");
     REQUIRE(again.size() == rows.size());
@@ -212,11 +196,10 @@ TEST_CASE("every method's own interpolation prolongs its states") {
                              {"snapshots", "1"}};
   const Loaded small(changed);
   const Hierarchy& hierarchy = small.scene->hierarchy;
-  const Scratch folder;
-  folder.write("e.yaml", small_experiment());
+  const Scratch folder(small_experiment());
   std::string command = "run e.yaml --out out --method all --threads 1 --quiet --no-report";
   for (const Override& o : changed) command += " --set '" + o.key + "=" + o.value + "'";
-  REQUIRE(drape_with(command, folder.path).exit_code == 0);
+  drape_ends(command, folder);
   const Json all = Json::parse(text_of(folder / "out/results.json"))["methods"];
   const std::vector<Row> rows = rows_of(folder / "out/errors.csv");
   const auto value_of = [&](const Positions& x, const Positions& target, const std::string& name) {
@@ -259,8 +242,7 @@ TEST_CASE("every method's own interpolation prolongs its states") {
 }
 
 TEST_CASE("the lowest of the states that have converged may be the reference, whichever method's it is") {
-  const Scratch folder;
-  folder.write("e.yaml", small_experiment());
+  const Scratch folder(small_experiment());
   const auto run = [&](const std::string& options) {
     const Ended ended = drape_with(
         "run e.yaml --overwrite --out out --method all --threads 1 --quiet --no-report --set "
@@ -283,7 +265,7 @@ TEST_CASE("the lowest of the states that have converged may be the reference, wh
     CHECK(method["reference"]["against"] == lowest);
     CHECK(method["reference"]["energy_above_end"] > 0);  // of the method's state, above the reference
   }
-  REQUIRE(drape_with("report out --width 90", folder.path).exit_code == 0);
+  drape_ends("report out --width 90", folder);
   CHECK(page_data(text_of(folder / "out/report.html"))["results"]["reference"]["method"] == lowest);
 
   // One that has not converged is none, however low it lies; without any there is none.
@@ -294,10 +276,8 @@ TEST_CASE("the lowest of the states that have converged may be the reference, wh
 }
 
 TEST_CASE("without snapshots there are no errors and no files of them") {
-  const Scratch folder;
-  folder.write("e.yaml", small_experiment());
-  REQUIRE(drape_with("run e.yaml --out out --quiet --no-report --set snapshots=0", folder.path).exit_code ==
-          0);
+  const Scratch folder(small_experiment());
+  drape_ends("run e.yaml --out out --quiet --no-report --set snapshots=0", folder);
   CHECK(!fs::exists(folder / "out/snapshots"));
   CHECK(!fs::exists(folder / "out/errors.csv"));
   const Json all = Json::parse(text_of(folder / "out/results.json"));
@@ -305,12 +285,9 @@ TEST_CASE("without snapshots there are no errors and no files of them") {
 }
 
 TEST_CASE("a method that does not converge has errors against the reference alone") {
-  const Scratch folder;
-  folder.write("e.yaml", small_experiment());
-  REQUIRE(
-      drape_with("run e.yaml --out out --method all --quiet --no-report --set methods.pcs.newton.max_steps=3",
-                 folder.path)
-          .exit_code == 1);
+  const Scratch folder(small_experiment());
+  drape_ends("run e.yaml --out out --method all --quiet --no-report --set methods.pcs.newton.max_steps=3",
+             folder, 1);
   int pcs = 0;
   for (const Row& row : rows_of(folder / "out/errors.csv")) {
     CHECK(row.at("own_rms").empty() == (row.at("method") == "pcs"));

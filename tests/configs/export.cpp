@@ -25,9 +25,7 @@ const fs::path& finished_run() {
   static const Scratch folder;
   static const fs::path path = [] {
     folder.write("e.yaml", text_of(fs::path(folders::source()) / "tests/configs/data/contact.yaml"));
-    const Ended ended = drape_with("run e.yaml -o out -j 1 -q --no-report --method pcs,newton", folder.path);
-    INFO(ended.err);
-    REQUIRE(ended.exit_code == 0);
+    drape_ends("run e.yaml -o out -j 1 -q --no-report --method pcs,newton", folder);
     return folder / "out";
   }();
   return path;
@@ -37,9 +35,7 @@ const fs::path& finished_run() {
 std::string exported(const std::string& name, const std::string& options = "") {
   const Scratch folder;
   const Ended ended =
-      drape_with("export " + finished_run().string() + " --to " + name + " " + options, folder.path);
-  INFO(ended.err);
-  REQUIRE(ended.exit_code == 0);
+      drape_ends("export " + finished_run().string() + " --to " + name + " " + options, folder);
   CHECK(ended.out == "written: " + name + "\n");
   return text_of(folder / name);
 }
@@ -209,9 +205,9 @@ TEST_CASE("texture coordinates of the cloth's file reach every export, seams inc
                "pins: [{region: box, lower: [-1, -1, 0.399], upper: [1, 1, 1]}]\n"
                "energies: [neo_hookean, hinge, gravity]\nrefiner: midpoint\n"
                "newton: {force_tolerance: 1}\nmethods: {pcs: {}}\n");
-  REQUIRE(drape_with("run e.yaml -o out -j 1 -q --no-report", folder.path).exit_code == 0);
+  drape_ends("run e.yaml -o out -j 1 -q --no-report", folder);
   const auto exported_to = [&](const std::string& name) {
-    REQUIRE(drape_with("export out --to " + name, folder.path).exit_code == 0);
+    drape_ends("export out --to " + name, folder);
     return folder / name;
   };
   const TriangleMesh rest = read_mesh(folder / "out/rest/l2.ply");
@@ -250,36 +246,15 @@ TEST_CASE("texture coordinates of the cloth's file reach every export, seams inc
   CHECK(most < 2e-6);
 
   // The results folder's experiment reads rest/l0.ply: the same again.
-  REQUIRE(drape_with("run out/config.yaml -o again -j 1 -q --no-report", folder.path).exit_code == 0);
+  drape_ends("run out/config.yaml -o again -j 1 -q --no-report", folder);
   for (const std::string name : {"rest/l0.ply", "rest/l2.ply", "levels/pcs_l2.ply"})
     CHECK((text_of(folder / ("again/" + name)) == text_of(folder / ("out/" + name))));
-}
-
-TEST_CASE("an upright cloth without texture coordinates has those of its own plane") {
-  const Scratch folder;
-  TriangleMesh cloth = read_mesh(finished_run() / "rest/l0.ply");
-  cloth.vertices.col(2) = cloth.vertices.col(1);
-  cloth.vertices.col(1).setZero();
-  write_mesh(folder / "upright.obj", cloth);
-  folder.write("e.yaml",
-               "name: banner\ncloth: {shape: file, file: upright.obj}\nlevels: 1\n"
-               "pins: [{region: box, lower: [-1, -1, 0.399], upper: [1, 1, 1]}]\n"
-               "energies: [neo_hookean, hinge, gravity]\nnewton: {force_tolerance: 1}\nmethods: {pcs: {}}\n");
-  REQUIRE(drape_with("run e.yaml -o out -j 1 -q --no-report", folder.path).exit_code == 0);
-  REQUIRE(drape_with("export out --to out.glb", folder.path).exit_code == 0);
-  const Glb glb(text_of(folder / "out.glb"));
-  const auto uv = glb.floats(glb.json["meshes"][0]["primitives"][0]["attributes"]["TEXCOORD_0"]);
-  REQUIRE(uv.size() == static_cast<std::size_t>(2 * cloth.vertices.rows()));
-  for (Eigen::Index i = 0; i < cloth.vertices.rows(); ++i) {
-    CHECK(uv[2 * i] == Approx(cloth.vertices(i, 0) / 0.4).margin(1e-6));
-    CHECK(1 - uv[2 * i + 1] == Approx(cloth.vertices(i, 2) / 0.4).margin(1e-6));
-  }
 }
 
 TEST_CASE("a .png is the report's picture of a state, at any width") {
   const Scratch folder;
   fs::copy(finished_run(), folder / "run", fs::copy_options::recursive);
-  REQUIRE(drape_with("report run --width 300", folder.path).exit_code == 0);
+  drape_ends("report run --width 300", folder);
   const auto reported = [&](const std::string& name) { return text_of(folder / ("run/pictures/" + name)); };
   CHECK((exported("a.png", "--width 300") == reported("pcs_l1.png")));
   CHECK((exported("a.png", "--width 300 --level 0 --method newton") == reported("newton_l0.png")));
@@ -298,10 +273,8 @@ TEST_CASE("with --frames a .png is a series of every level's snapshots, coarse t
   REQUIRE(recorded.size() == 2);
   const auto frames = [](const std::string& options) {
     const Scratch folder;
-    const Ended ended = drape_with(
-        "export " + finished_run().string() + " --to film.png --frames --width 90 " + options, folder.path);
-    INFO(ended.err);
-    REQUIRE(ended.exit_code == 0);
+    const Ended ended = drape_ends(
+        "export " + finished_run().string() + " --to film.png --frames --width 90 " + options, folder);
     std::vector<std::string> pictures;
     char name[32];
     for (;; pictures.push_back(text_of(folder / name))) {
@@ -324,7 +297,7 @@ TEST_CASE("a series of pictures leaves none of a longer one behind it") {
   const Scratch folder;
   const std::string film =
       "export " + finished_run().string() + " --to film.png --frames --width 90 --level 0";
-  REQUIRE(drape_with(film, folder.path).exit_code == 0);
+  drape_ends(film, folder);
   std::size_t count = 0;
   const auto name = [](std::size_t k) {
     char text[32];
@@ -337,7 +310,7 @@ TEST_CASE("a series of pictures leaves none of a longer one behind it") {
   for (const std::size_t k : {count, count + 1, count + 3}) folder.write(name(k), "longer");
   CHECK(drape_with(film, folder.path).exit_code == 2);
   CHECK_FALSE(fs::exists(folder / name(0)));
-  REQUIRE(drape_with(film + " --overwrite", folder.path).exit_code == 0);
+  drape_ends(film + " --overwrite", folder);
   CHECK(fs::exists(folder / name(count - 1)));
   for (const std::size_t k : {count, count + 1}) CHECK_FALSE(fs::exists(folder / name(k)));
   CHECK(text_of(folder / name(count + 3)) == "longer");  // no part of a series
@@ -350,12 +323,11 @@ TEST_CASE("snapshots that are damaged are neither exported nor shown") {
   snapshots[snapshots.size() / 2] ^= 1;
   folder.write("out/snapshots/pcs_l1.bin", snapshots);
   for (const std::string name : {"a.glb", "a.png"}) {
-    const Ended ended = drape_with("export out --frames --to " + name, folder.path);
-    CHECK(ended.exit_code == 2);
-    CHECK_THAT(ended.err, EndsWith("snapshots/pcs_l1.bin: is damaged: its checksum does not fit\n"));
+    CHECK_THAT(refused_by("export out --frames --to " + name, folder.path),
+               EndsWith("snapshots/pcs_l1.bin: is damaged: its checksum does not fit\n"));
   }
   CHECK(drape_with("export out --frames --level 0 --to a.glb", folder.path).exit_code == 0);
-  REQUIRE(drape_with("report out --width 90", folder.path).exit_code == 0);
+  drape_ends("report out --width 90", folder);
   CHECK_THAT(text_of(folder / "out/report.html"),
              Contains("snapshots/pcs_l1.bin: is damaged: its checksum does not fit"));
 }
@@ -364,9 +336,7 @@ TEST_CASE("an export that cannot be written is refused before any work, and writ
   const std::string run = finished_run().string();
   const Scratch folder;
   const auto refused_to = [&](const std::string& file) {
-    const Ended ended = drape_with("export " + run + " --width 90 --to " + file, folder.path);
-    CHECK(ended.exit_code == 2);
-    return ended.err;
+    return refused_by("export " + run + " --width 90 --to " + file, folder.path);
   };
   CHECK(refused_to("nowhere/a.png") == "error: nowhere: is no folder; make it, or name another file\n");
   fs::create_directory(folder / "b.png");
@@ -385,9 +355,7 @@ TEST_CASE("an export replaces no file unless it is asked to") {
     INFO(name);
     const std::string arguments = "export " + run + " --to " + name + (name == "a.png" ? " --width 90" : "");
     folder.write(name, "mine");
-    const Ended ended = drape_with(arguments, folder.path);
-    CHECK(ended.exit_code == 2);
-    CHECK(ended.err ==
+    CHECK(refused_by(arguments, folder.path) ==
           "error: " + name + ": exists already; name another file, or replace it with --overwrite\n");
     CHECK(text_of(folder / name) == "mine");
     CHECK(drape_with(arguments + " --overwrite", folder.path).exit_code == 0);
@@ -451,8 +419,6 @@ TEST_CASE("view writes the page if it is missing or old, and opens it, or prints
   wait_until("the page is opened", [&] { return fs::exists(folder / "opened"); });
   CHECK(fs::path(replaced(text_of(folder / "opened"), "\n", "")) ==
         fs::canonical(folder.path) / "a run/report.html");
-  const Ended nothing = drape_with("view nowhere", folder.path, none);
-  CHECK(nothing.exit_code == 2);
-  CHECK(nothing.err ==
+  CHECK(refused_by("view nowhere", folder.path, none) ==
         "error: nowhere: neither results.json nor sweep.json here; give the folder of a run or a sweep\n");
 }

@@ -30,8 +30,7 @@ void wait_for_lines(Command& command, const fs::path& file, int lines) {
 }  // namespace
 
 TEST_CASE("SIGINT ends a run after the step, with all results so far and the report") {
-  const Scratch folder;
-  folder.write("e.yaml", small_experiment());
+  const Scratch folder(small_experiment());
   Command command("exec " + drape_command + " " + endless + " --set newton.max_steps=100000", folder.path);
   wait_for_lines(command, folder / "out/iterations.csv", 6);
   command.send(SIGINT);
@@ -52,8 +51,7 @@ TEST_CASE("SIGINT ends a run after the step, with all results so far and the rep
 }
 
 TEST_CASE("SIGHUP, as of a terminal that is closed, ends a run as SIGTERM does; under nohup it does not") {
-  const Scratch folder;
-  folder.write("e.yaml", small_experiment());
+  const Scratch folder(small_experiment());
   {
     Command command("exec " + drape_command + " " + endless + " --set newton.max_steps=100000", folder.path);
     wait_for_lines(command, folder / "out/iterations.csv", 6);
@@ -75,8 +73,7 @@ TEST_CASE("SIGHUP, as of a terminal that is closed, ends a run as SIGTERM does; 
 }
 
 TEST_CASE("A run writes nothing of its progress into its files where the standard streams are closed") {
-  const Scratch folder;
-  folder.write("e.yaml", small_experiment());
+  const Scratch folder(small_experiment());
   Command command(
       "exec " + drape_command + " run e.yaml --levels 1 --method pcs --no-report --out out <&- >&- 2>&-",
       folder.path);
@@ -89,8 +86,7 @@ TEST_CASE("A run writes nothing of its progress into its files where the standar
 }
 
 TEST_CASE("A run goes on where nobody reads its progress") {
-  const Scratch folder;
-  folder.write("e.yaml", small_experiment());
+  const Scratch folder(small_experiment());
   Command command(
       "( " + drape_command +
           " run e.yaml --levels 1 --method pcs --no-report -v --out out 2>&1; echo $? > code ) | head -c 1",
@@ -100,8 +96,7 @@ TEST_CASE("A run goes on where nobody reads its progress") {
 }
 
 TEST_CASE("An interrupted run is resumed although its results.json is damaged and its config.yaml is gone") {
-  const Scratch folder;
-  folder.write("e.yaml", small_experiment());
+  const Scratch folder(small_experiment());
   const std::string run = "run e.yaml --out out --threads 1 --no-report --quiet --method pcs --checkpoint 0 ";
   Command command("exec " + drape_command + " " + run + "--set newton.max_steps=100000 " +
                       "--set newton.force_tolerance=1e-300",
@@ -125,8 +120,7 @@ TEST_CASE("SIGKILL at any moment leaves complete files, sufficient for a report"
   // Few steps on few vertices, so that levels, metrics and methods follow fast on each other.
   const std::string fast = " --set newton.max_steps=3 --set cloth.columns=16 --set cloth.rows=16";
   for (const int level_lines : {1, 4, 7, 10, 13}) {
-    const Scratch folder;
-    folder.write("e.yaml", small_experiment());
+    const Scratch folder(small_experiment());
     Command command("exec " + drape_command + " " + endless + fast, folder.path);
     wait_for_lines(command, folder / "out/log.jsonl", level_lines);
     command.send(SIGKILL);
@@ -172,8 +166,7 @@ Ended ended_by_two_signals(Command& command) {
 }  // namespace
 
 TEST_CASE("a second signal ends a run at once") {
-  const Scratch folder;
-  folder.write("e.yaml", small_experiment());
+  const Scratch folder(small_experiment());
   Command command("exec " + drape_command + " " + endless + " --set newton.max_steps=100000", folder.path);
   wait_for_lines(command, folder / "out/iterations.csv", 6);
   const Ended ended = ended_by_two_signals(command);
@@ -183,8 +176,7 @@ TEST_CASE("a second signal ends a run at once") {
 }
 
 TEST_CASE("a second signal ends a run at once while metrics and the report are made") {
-  const Scratch folder;
-  folder.write("e.yaml", small_experiment());
+  const Scratch folder(small_experiment());
   // A metric of neighbourhoods of thousands of vertices each, which takes seconds.
   Command command(
       "exec " + drape_command +
@@ -197,8 +189,7 @@ TEST_CASE("a second signal ends a run at once while metrics and the report are m
 }
 
 TEST_CASE("before a run has begun the first signal ends the process") {
-  const Scratch folder;
-  folder.write("e.yaml", small_experiment());
+  const Scratch folder(small_experiment());
   for (const std::string line : {"check e.yaml", "run e.yaml --out out"}) {
     INFO(line);
     Command command("exec " + drape_command + " " + line +

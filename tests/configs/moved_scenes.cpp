@@ -59,9 +59,7 @@ TEST_CASE("a scene that is moved and turned has the same figures on every page")
   folder.write("here.yaml", scene(0, {0, 0, 0}));
   folder.write("there.yaml", scene(37, {3, -2, 10}));
   for (const std::string name : {"here", "there"})
-    REQUIRE(
-        drape_with("run " + name + ".yaml --method all -q --no-report -o " + name, folder.path).exit_code ==
-        0);
+    drape_ends("run " + name + ".yaml --method all -q --no-report -o " + name, folder);
   const Json here = Json::parse(text_of(folder / "here/results.json")),
              there = Json::parse(text_of(folder / "there/results.json"));
   const auto on_finest = [](const Json& results) {

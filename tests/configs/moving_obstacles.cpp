@@ -15,9 +15,7 @@ namespace {
 /// Runs, checks that no state has an intersection, and gives the finest state.
 Positions end_of(const std::string& experiment, const Scratch& folder, int finest) {
   folder.write("e.yaml", experiment);
-  const Ended ended = drape_with("run e.yaml --out out --overwrite --quiet --no-report", folder.path);
-  INFO(ended.err);
-  REQUIRE(ended.exit_code == 0);
+  drape_ends("run e.yaml --out out --overwrite --quiet --no-report", folder);
   const auto all = nlohmann::json::parse(text_of(folder / "out/results.json"));
   CHECK(all["methods"]["pcs"]["status"] == "converged");
   REQUIRE(all["methods"]["pcs"]["levels"].size() == static_cast<std::size_t>(finest + 1));
@@ -175,8 +173,7 @@ methods: {pcs: {}, newton: {}}
   for (const std::string plate : {"contact: ipc\nobstacles: [{meshed_shape: box, size: [0.4, 0.4, 0.01]}]\n",
                                   "contact: shapes\nobstacles: [{shape: box, size: [0.4, 0.4, 0.01]}]\n"}) {
     INFO(plate);
-    const Scratch folder;
-    folder.write("e.yaml", raised + plate);
+    const Scratch folder(raised + plate);
     drape_with("run e.yaml --out out --method all --quiet --no-report", folder.path);
     const auto all = nlohmann::json::parse(text_of(folder / "out/results.json"));
     CHECK(all["obstacles"] == nlohmann::json{"obstacles/0.ply"});
@@ -185,8 +182,7 @@ methods: {pcs: {}, newton: {}}
 }
 
 TEST_CASE("errors are measured under the last load, whichever method was stopped before it") {
-  const Scratch folder;
-  folder.write("e.yaml", R"(name: lifted
+  const Scratch folder(R"(name: lifted
 cloth: {shape: rectangle, size: [0.2, 0.05], triangulation: one_way, vertices: 40}
 levels: 1
 pins: [{region: box, lower: [0, 0, 0], upper: [0, 0.05, 0]}]

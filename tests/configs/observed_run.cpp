@@ -84,14 +84,6 @@ TEST_CASE("an observer stops a run") {
   CHECK(run.methods.at(0).levels.at(0).status == "cancelled");
 }
 
-TEST_CASE("an observer refines a level") {
-  Watch watch;
-  watch.refine_after = 1;
-  const RunData run = run_with(watch);
-  CHECK(run.methods.at(0).levels.at(0).status == "refined_early_on_request");
-  CHECK(run.methods.at(0).levels.size() == 2);
-}
-
 TEST_CASE("a request to stop is heeded while the reference is solved and errors are measured") {
   Watch watch;
   watch.most_levels = 2;  // all that the method has

@@ -4,21 +4,17 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
-#include "core/numerics/mesh_files/io.h"
-#include "core/numerics/patterns/generate.h"
 #include "tests/support/command.h"
 #include "tests/support/drum.h"
-#include "tests/support/folders.h"
+#include "tests/support/sheets.h"
 
 namespace {
 
 /// The bytes of every level's mesh, by name, after some steps.
 std::map<std::string, std::string> meshes_of(const Scratch& folder, const std::string& options, int threads) {
-  const Ended ended = drape_with("run e.yaml --out out --method all --overwrite --quiet --no-report " +
-                                     options + " --threads " + std::to_string(threads),
-                                 folder.path);
-  INFO(ended.err);
-  REQUIRE(ended.exit_code == 1);
+  drape_ends("run e.yaml --out out --method all --overwrite --quiet --no-report " + options + " --threads " +
+                 std::to_string(threads),
+             folder, 1);
   std::map<std::string, std::string> meshes;
   for (const auto& entry : std::filesystem::directory_iterator(folder / "out/levels"))
     if (entry.path().extension() == ".ply") meshes[entry.path().filename()] = text_of(entry.path());
@@ -31,8 +27,7 @@ std::map<std::string, std::string> meshes_of(const Scratch& folder, const std::s
 // Both on many elements, so that loops are shared out.
 
 TEST_CASE("runs are equal bit for bit, with one thread, with two, and with one and two") {
-  const Scratch folder;
-  folder.write("e.yaml", small_experiment());
+  const Scratch folder(small_experiment());
   const auto meshes_with = [&](int threads) {
     return meshes_of(folder, "--set cloth.columns=24 --set cloth.rows=24 --set newton.max_steps=5", threads);
   };
@@ -43,21 +38,8 @@ TEST_CASE("runs are equal bit for bit, with one thread, with two, and with one a
 }
 
 TEST_CASE("so are runs with obstacles, self-contact, friction and a strain limit") {
-  // Two sheets, one close above the other, fall on a ball.
-  drape::TriangleMesh sheets = drape::grid({0.4, 0.4}, 20, 20, drape::Diagonals::one_way);
-  const auto n = static_cast<int>(sheets.vertices.rows());
-  const drape::Positions lower = sheets.vertices;
-  const drape::Triangles triangles = sheets.triangles;
-  sheets.vertices.resize(2 * n, 3);
-  sheets.vertices << lower, lower.rowwise() + Eigen::RowVector3d(0.003, 0.002, 0.0012);
-  sheets.triangles.resize(2 * triangles.rows(), 3);
-  sheets.triangles << triangles, triangles.array() + n;
   const Scratch folder;
-  drape::write_mesh(folder / "sheets.obj", sheets);
-  folder.write(
-      "e.yaml",
-      replaced(text_of(std::filesystem::path(folders::source()) / "tests/configs/data/contact.yaml"),
-               "{shape: square, side: 0.4, columns: 9, rows: 9}", "{shape: file, file: sheets.obj}"));
+  write_sheets(folder, 20);
   const std::string options =
       "--set start.translate=[-0.2,-0.2,0.1035] --set newton.max_steps=6 --set contact.0.self_contact=";
   const auto meshes_with = [&](int threads) { return meshes_of(folder, options + "true", threads); };
@@ -72,14 +54,10 @@ TEST_CASE("so are runs with obstacles, self-contact, friction and a strain limit
 }
 
 TEST_CASE("so are runs whose contact stiffness is raised") {
-  const Scratch folder;
-  folder.write("e.yaml", drum("17", "1", "20", "newton"));
+  const Scratch folder(drum("17", "1", "20", "newton"));
   const auto run_with = [&](int threads) {
-    const Ended ended = drape_with(
-        "run e.yaml --out out --overwrite --quiet --no-report --threads " + std::to_string(threads),
-        folder.path);
-    INFO(ended.err);
-    REQUIRE(ended.exit_code == 0);
+    drape_ends("run e.yaml --out out --overwrite --quiet --no-report --threads " + std::to_string(threads),
+               folder);
     const auto results = nlohmann::json::parse(text_of(folder / "out/results.json"));
     CHECK(results["methods"]["newton"]["levels"][0]["contact_stiffness"][1] > 10 * 9.81 * 20 * 3e-4 * 3.9);
     return text_of(folder / "out/levels/newton_l0.ply");

@@ -23,9 +23,7 @@ const fs::path& whole_run() {
   static const Scratch folder;
   static const fs::path path = [] {
     folder.write("e.yaml", small_experiment());
-    const Ended ended = drape_with("run e.yaml --out out --method all --threads 1 --levels 3", folder.path);
-    INFO(ended.err);
-    REQUIRE(ended.exit_code == 0);
+    const Ended ended = drape_ends("run e.yaml --out out --method all --threads 1 --levels 3", folder);
     REQUIRE(ended.out == "report: out/report.html\n");
     // One line stays for each level of each method.
     REQUIRE(std::count(ended.err.begin(), ended.err.end(), '\n') == levels * int(methods.size()));
@@ -227,8 +225,7 @@ TEST_CASE("the report exists, and no incomplete file") {
 TEST_CASE("the saved config reproduces itself and the meshes, bit for bit") {
   const Scratch folder;
   const std::string config = (whole_run() / "config.yaml").string();
-  REQUIRE(drape_with("run " + config + " --out out --method all --threads 1 --quiet --no-report", folder.path)
-              .exit_code == 0);
+  drape_ends("run " + config + " --out out --method all --threads 1 --quiet --no-report", folder);
   CHECK(text_of(folder / "out/config.yaml") == text_of(config));
   for (const std::string& method : methods)
     for (int l = 0; l < levels; ++l) {
@@ -246,8 +243,7 @@ TEST_CASE("a run takes as many threads as there are cores that it may use") {
   for (int cpu = 0; CPU_COUNT(&first) == 0; ++cpu)
     if (CPU_ISSET(cpu, &before)) CPU_SET(cpu, &first);
   REQUIRE(sched_setaffinity(0, sizeof first, &first) == 0);
-  const Scratch folder;
-  folder.write("e.yaml", small_experiment());
+  const Scratch folder(small_experiment());
   const Ended ended = drape_with("run e.yaml --out out --quiet --no-report", folder.path);
   sched_setaffinity(0, sizeof before, &before);
   REQUIRE(ended.exit_code == 0);
@@ -264,8 +260,7 @@ TEST_CASE("the saved config has the defaults of omitted parameters") {
 }
 
 TEST_CASE("a metric that throws leaves a note, and the run continues") {
-  const Scratch folder;
-  folder.write("e.yaml", replaced(small_experiment(), "[0.9, 0.9, 1]", "[0, 0, 1]"));
+  const Scratch folder(replaced(small_experiment(), "[0.9, 0.9, 1]", "[0, 0, 1]"));
   CHECK_THAT(
       drape_with("check e.yaml", folder.path).err,
       Catch::Matchers::Contains("\nerror: e.yaml:4:8: energy or forces at the start of level 0 are not "

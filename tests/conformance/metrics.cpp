@@ -5,6 +5,7 @@
 #include <set>
 
 #include "core/kernel/interfaces/metric.h"
+#include "core/kernel/threads/parallel.h"
 #include "tests/support/solve.h"
 
 using namespace drape;
@@ -141,4 +142,27 @@ TEST_CASE("Metrics of a pair do not see a rigid motion of both", "[conformance]"
       CHECK(after.values[i].value == Approx(before.values[i].value).epsilon(1e-9));
     }
   }
+}
+
+TEST_CASE("Metrics give the same bits with any number of threads", "[conformance]") {
+  const Fixture f;
+  for (const MetricScope scope : {MetricScope::state, MetricScope::pair})
+    for (const auto& [name, metric] : metrics(scope)) {
+      INFO(name);
+      std::vector<MetricResult> results;
+      for (const int threads : {1, 2, 5}) {
+        set_thread_count(threads);
+        // A metric of its own: one may keep what it computed last.
+        const auto own = make_plugin_from<Metric>(name);
+        results.push_back(own->evaluate(scope == MetricScope::pair ? f.pair(f.a, f.b) : f.state(f.a)));
+      }
+      set_thread_count(0);
+      for (const MetricResult& r : results) {
+        REQUIRE(r.values.size() == results[0].values.size());
+        for (std::size_t i = 0; i < r.values.size(); ++i)
+          CHECK(r.values[i].value == results[0].values[i].value);
+        for (std::size_t i = 0; i < r.fields.size(); ++i)
+          CHECK(r.fields[i].values == results[0].fields[i].values);
+      }
+    }
 }

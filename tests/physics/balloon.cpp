@@ -16,19 +16,17 @@ constexpr double modulus = 1e6, thickness = 1e-3;  // E d = 1000 N/m
 
 /// A closed mesh without bending stiffness, ν = 0, and a pressure in it.
 Solved balloon(const TriangleMesh& mesh, double pressure) {
-  std::string name = (std::filesystem::temp_directory_path() / "drape_balloon_XXXXXX.ply").string();
-  close(mkstemps(name.data(), 4));
+  const Scratch folder;
+  const std::string name = (folder / "balloon.ply").string();
   write_mesh(name, mesh);
-  Solved s = scene_from("name: balloon\ncloth: {shape: file, file: " + name +
-                        "}\nlevels: 1\nmaterial: {density: 1000, thickness: " + text(thickness) +
-                        ", membrane_modulus: " + text(modulus) +
-                        ", bending_modulus: 0, poisson_ratio: 0}\n"
-                        "energies: [neo_hookean, {type: pressure, pressure: " +
-                        text(pressure) +
-                        "}]\nmethods: {newton: {}}\n"
-                        "newton: {force_tolerance: 1e-6, step_growth: 2, max_steps: 2000}\n");
-  std::filesystem::remove(name);
-  return s;
+  return scene_from("name: balloon\ncloth: {shape: file, file: " + name +
+                    "}\nlevels: 1\nmaterial: {density: 1000, thickness: " + text(thickness) +
+                    ", membrane_modulus: " + text(modulus) +
+                    ", bending_modulus: 0, poisson_ratio: 0}\n"
+                    "energies: [neo_hookean, {type: pressure, pressure: " +
+                    text(pressure) +
+                    "}]\nmethods: {newton: {}}\n"
+                    "newton: {force_tolerance: 1e-6, step_growth: 2, max_steps: 2000}\n");
 }
 
 double volume(const Solved& s, const Positions& x) {

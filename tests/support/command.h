@@ -20,13 +20,14 @@
 #include "tests/support/folders.h"
 #include "tests/support/time_limit.h"
 
-/// An empty folder that goes away with the object.
+/// An empty folder, or one with this experiment in e.yaml, that goes away with the object.
 struct Scratch {
   Scratch() {
     std::string name = (std::filesystem::temp_directory_path() / "drape_test_XXXXXX").string();
     REQUIRE(mkdtemp(name.data()));
     path = name;
   }
+  explicit Scratch(const std::string& experiment) : Scratch() { write("e.yaml", experiment); }
   ~Scratch() { std::filesystem::remove_all(path); }
   Scratch(const Scratch&) = delete;
 
@@ -162,6 +163,14 @@ inline Ended drape_with(const std::string& arguments, const std::filesystem::pat
                         const std::string& environment = "") {
   INFO("drape " << arguments);
   return Command("exec env " + environment + " " + drape_command + " " + arguments, folder).wait();
+}
+
+/// The same, where it must end with this exit code.
+inline Ended drape_ends(const std::string& arguments, const Scratch& folder, int exit_code = 0) {
+  const Ended ended = drape_with(arguments, folder.path);
+  INFO("drape " << arguments << "\n" << ended.err);
+  REQUIRE(ended.exit_code == exit_code);
+  return ended;
 }
 
 /// Standard error of what must be refused without a word on standard output.

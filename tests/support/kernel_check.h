@@ -5,7 +5,6 @@
 #include <functional>
 #include <random>
 
-#include "core/kernel/threads/parallel.h"
 #include "core/numerics/elements/element_energy.h"
 #include "tests/support/decompositions.h"
 #include "tests/support/evaluate.h"
@@ -25,29 +24,21 @@ struct KernelCheck {
   }
   using Hessian = Eigen::Matrix<double, n, n>;
 
-  /// Value, gradient and (mirrored) Hessian.
-  template <class T>
   struct Result {
-    T value, gradient_value;
-    Eigen::Matrix<T, n, 1> gradient;
-    Eigen::Matrix<T, n, n> hessian;
+    double value, gradient_value;
+    State gradient;
+    Hessian hessian;  ///< both triangles
   };
-  template <class T>
-  [[gnu::noinline]] static Result<T> evaluate(const Eigen::Matrix<T, n, 1>& x, const T* rest) {
-    Eigen::Matrix<T, 3, 1> d[n / 3], g[n / 3];
+  [[gnu::noinline]] static Result evaluate(const State& x, const Rest& rest) {
+    Eigen::Vector3d d[n / 3], g[n / 3];
     for (int i = 0; i < n; ++i) d[i / 3][i % 3] = x[i];
-    Result<T> r;
-    r.value = kernel().value(d, rest);
-    r.gradient_value = kernel().gradient(d, rest, g);
+    Result r;
+    r.value = kernel().value(d, rest.data());
+    r.gradient_value = kernel().gradient(d, rest.data(), g);
     for (int i = 0; i < n; ++i) r.gradient[i] = g[i / 3][i % 3];
-    kernel().hessian(d, rest, r.hessian);
-    for (int j = 0; j < n; ++j)
-      for (int i = j + 1; i < n; ++i) r.hessian(i, j) = r.hessian(j, i);
+    kernel().hessian(d, rest.data(), r.hessian);
+    r.hessian.template triangularView<Eigen::StrictlyLower>() = r.hessian.transpose();
     return r;
-  }
-
-  static Result<double> evaluate(const State& x, const Rest& rest) {
-    return evaluate<double>(x, rest.data());
   }
 
   /// ∂f/∂x by central differences of fourth order.
@@ -74,36 +65,6 @@ struct KernelCheck {
     const auto gradient = [&](const State& y) { return Eigen::VectorXd(evaluate(y, rest).gradient); };
     CHECK((differences(value, x, h).transpose() - r.gradient).norm() <= tolerance * r.gradient.norm());
     CHECK((differences(gradient, x, h) - r.hessian).norm() <= tolerance * r.hessian.norm());
-  }
-
-  /// Every lane of a Pack<W> against double. `value_scale` is what the value's error is measured by.
-  template <int W>
-  static void lanes(const State& x, const Rest& rest, double value_scale) {
-    using T = drape::Pack<W>;
-    Eigen::Matrix<T, n, 1> xs;
-    T rests[Rest::SizeAtCompileTime];
-    for (int i = 0; i < Rest::SizeAtCompileTime; ++i) rests[i] = rest[i];
-    for (int lane = 0; lane < W; ++lane)
-      for (int i = 0; i < n; ++i) xs[i].v[lane] = (1 + 0.01 * lane) * x[i];
-    const auto all = evaluate<T>(xs, rests);
-    for (int lane = 0; lane < W; ++lane) {
-      const State own = (1 + 0.01 * lane) * x;
-      const auto one = evaluate(own, rest);
-      State g;
-      Hessian h;
-      for (int i = 0; i < n; ++i) g[i] = all.gradient[i][lane];
-      for (int i = 0; i < n * n; ++i) h.data()[i] = all.hessian.data()[i][lane];
-      CHECK(std::abs(all.value[lane] - one.value) <= 1e-13 * value_scale);
-      CHECK((g - one.gradient).norm() <= 1e-13 * std::max(one.gradient.norm(), value_scale / own.norm()));
-      CHECK((h - one.hessian).norm() <= 1e-13 * one.hessian.norm());
-    }
-  }
-
-  /// Every width that this machine has registers for; Eigen's arrays are not aligned for wider ones.
-  static void all_lanes(const State& x, const Rest& rest, double value_scale) {
-    lanes<2>(x, rest, value_scale);
-    if constexpr (drape::native_pack_width >= 4) lanes<4>(x, rest, value_scale);
-    if constexpr (drape::native_pack_width >= 8) lanes<8>(x, rest, value_scale);
   }
 
   /// The full matrix by the k vertices.
@@ -165,26 +126,4 @@ inline Eigen::VectorXd normal_numbers(int n, unsigned seed) {
   std::mt19937 random(seed);
   std::normal_distribution<double> normal;
   return Eigen::VectorXd::NullaryExpr(n, [&] { return normal(random); });
-}
-
-/// Value, gradient and projected Hessian have the same bits with 1, 2 and 3 threads, and the gradient's value
-/// is the value.
-inline void check_threads(const drape::BoundEnergy& energy, const drape::Positions& x) {
-  double value = 0;
-  drape::Positions gradient;
-  std::vector<double> hessian;
-  for (const int threads : {1, 2, 3}) {
-    drape::set_thread_count(threads);
-    drape::Positions g = drape::Positions::Zero(x.rows(), 3);
-    const double own = energy.value(x);
-    CHECK(energy.add_gradient(x, g) == own);
-    const std::vector<double> h = hessian_of(energy, x, drape::Projection::clamp).values;
-    if (threads == 1) value = own, gradient = g, hessian = h;
-    CHECK(own == value);
-    CHECK(g == gradient);
-    CHECK(h == hessian);
-  }
-  drape::set_thread_count(0);
-  REQUIRE(std::isfinite(value));
-  REQUIRE(gradient.norm() > 0);
 }

@@ -30,12 +30,10 @@ inline std::vector<Eigen::Matrix<double, 6, 1>> deformed_triangles() {
   return all;
 }
 
-/// What every isotropic membrane by a formula owes. `density` is ψ(μ, λ, a, b) of a
-/// triangle stretched to 1 + a and 1 + b along its axes; `collapsed` says what the energy of one without area
-/// has to be.
+/// What every isotropic membrane by a formula owes beyond tests/conformance. `density` is ψ(μ, λ, a, b) of a
+/// triangle stretched to 1 + a and 1 + b along its axes.
 template <class Law>
-void check_membrane(const std::function<long double(double, double, long double, long double)>& density,
-                    const std::function<bool(double)>& collapsed) {
+void check_membrane(const std::function<long double(double, double, long double, long double)>& density) {
   using namespace drape;
   using Kernel = MembraneFormulaKernel<Law, 5>;
   using Check = KernelCheck<Kernel>;
@@ -57,12 +55,6 @@ void check_membrane(const std::function<long double(double, double, long double,
   };
   const typename Kernel::Rest rest = rest_of(rest1, rest2);
 
-  SECTION("derivatives are those of the value") {
-    for (const auto& x : deformed_triangles()) Check::derivatives(x, rest, 1e-4, 1e-7);
-  }
-  SECTION("lanes compute what double does") {
-    for (const auto& x : deformed_triangles()) Check::all_lanes(x, rest, Check::evaluate(x, rest).value);
-  }
   SECTION("projection is that of the full element matrix") {
     double smallest = 0;
     for (const auto& x : deformed_triangles()) {
@@ -70,15 +62,6 @@ void check_membrane(const std::function<long double(double, double, long double,
       Check::template projections<Pack<native_pack_width>>(x, rest);
     }
     REQUIRE(smallest < -1e-3);  // else nothing was projected
-  }
-  SECTION("the rest shape is stress-free, wherever it lies") {
-    const double stiffness = mu * rest1.cross(rest2).norm() / 2 * material.thickness;
-    const Eigen::Matrix3d turn =
-        Eigen::AngleAxisd(0.8, Eigen::Vector3d(1, 2, -1).normalized()).toRotationMatrix();
-    const auto r = Check::evaluate(edges(turn * rest1, turn * rest2), rest);
-    CHECK(std::abs(r.value) <= 1e-30 * stiffness);
-    CHECK(r.gradient.norm() <= 1e-15 * stiffness);
-    CHECK(r.hessian.norm() > stiffness);
   }
   SECTION("biaxial stretch in closed form, down to small strains") {
     const Eigen::Vector3d e1(0.02, 0, 0), e2(0, 0.03, 0);
@@ -91,22 +74,6 @@ void check_membrane(const std::function<long double(double, double, long double,
       CHECK(found == Approx(expected).epsilon(1e-9).margin(0));
       if (strain == 1e-6) CHECK(found == Approx(volume * modulus * a * a / 2).epsilon(1e-5).margin(0));
     }
-  }
-  SECTION("a collapsed triangle's energy") {
-    const Level level = Level::of(0, grid({1, 1}, 3, 3, Diagonals::one_way));
-    const auto bound = energy.bind(level, material);
-    Positions x = level.rest.vertices;
-    x.row(4) = x.row(0);
-    Positions g = Positions::Zero(9, 3);
-    const double value = bound->value(x);
-    CHECK(bound->add_gradient(x, g) == value);
-    CHECK(collapsed(value));
-  }
-  SECTION("same bits with any number of threads") {
-    const Level level = Level::of(0, grid({1, 1}, 60, 50, Diagonals::criss_cross));
-    const Eigen::VectorXd noise = 0.003 * normal_numbers(9000, 1);
-    check_threads(*energy.bind(level, material),
-                  level.rest.vertices + Eigen::Map<const Positions>(noise.data(), 3000, 3));
   }
   SECTION("a triangle without area is refused") {
     Level level = Level::of(0, grid({1, 1}, 3, 3, Diagonals::one_way));

@@ -1,16 +1,12 @@
 #pragma once
 
-#include <stdlib.h>
-#include <unistd.h>
-
-#include <filesystem>
-#include <fstream>
 #include <memory>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
 #include "core/app/experiment/experiment.h"
+#include "tests/support/command.h"
 #include "tests/support/registry.h"
 
 /// An experiment, its scene, and what one method made of it.
@@ -26,14 +22,9 @@ struct Solved {
 };
 
 inline drape::Experiment experiment_from(const std::string& text) {
-  std::string name = (std::filesystem::temp_directory_path() / "drape_test_XXXXXX").string();
-  const int file = mkstemp(name.data());
-  if (file < 0) throw std::runtime_error(name + ": cannot be made");
-  close(file);
-  std::ofstream(name) << text;
+  const Scratch folder(text);
   drape::ConfigErrors errors;
-  auto experiment = drape::read_experiment(name, {}, test_registry(), errors);
-  std::filesystem::remove(name);
+  auto experiment = drape::read_experiment(folder / "e.yaml", {}, test_registry(), errors);
   throw_errors(errors);
   return std::move(*experiment);
 }

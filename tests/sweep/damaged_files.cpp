@@ -9,19 +9,17 @@
 using Json = nlohmann::json;
 
 TEST_CASE("a value of the wrong kind in a sweep's files is named with its file and its key") {
-  const Scratch folder;
-  folder.write("e.yaml", small_experiment());
+  const Scratch folder(small_experiment());
   folder.write("s.yaml", "name: s\nbase: e.yaml\nset: {levels: 1}\nmethods: [newton]\n");
-  REQUIRE(drape_with("sweep s.yaml --out out", folder.path).exit_code == 0);
+  drape_ends("sweep s.yaml --out out", folder);
   const auto said = [&](const std::string& file, const std::function<void(Json&)>& damage) {
     const std::string sound = text_of(folder / file);
     Json json = Json::parse(sound);
     damage(json);
     folder.write(file, json.dump());
-    const Ended ended = drape_with("sweep s.yaml --out out", folder.path);
-    CHECK(ended.exit_code == 2);
+    const std::string ended = refused_by("sweep s.yaml --out out", folder.path);
     folder.write(file, sound);
-    return ended.err;
+    return ended;
   };
   const std::string status = "out/runs/base/seed_1.status.json", of_status = "error: " + status + ": ",
                     remove = "; remove it and the run's folder\n";

@@ -42,8 +42,7 @@ const std::string endless =
 }  // namespace
 
 TEST_CASE("a run passes when it ends as its sweep expects, for the reason expected") {
-  const Scratch folder;
-  folder.write("e.yaml", small_experiment());
+  const Scratch folder(small_experiment());
   folder.write("s.yaml", cases());
   const Ended ended_by_themselves = drape_with("sweep s.yaml --out out", folder.path);
   CHECK(ended_by_themselves.exit_code == 1);
@@ -151,8 +150,7 @@ TEST_CASE("what has converged to rounding passes where it was to converge, and i
 }
 
 TEST_CASE("an expectation needs a message") {
-  const Scratch folder;
-  folder.write("e.yaml", small_experiment());
+  const Scratch folder(small_experiment());
   folder.write("s.yaml",
                "name: s\nbase: e.yaml\nablation:\n  - {name: a, expect: {status: refused}}\n"
                "  - {name: b, expect: {status: refuse}}\n");

@@ -95,7 +95,7 @@ TEST_CASE("24 runs give the same results with one worker and with two, and are n
 
 TEST_CASE("sweep.json has the status of every run from the beginning of a sweep") {
   const Scratch folder;
-  REQUIRE(drape_with(small_sweep + "--out out", folder.path).exit_code == 0);
+  drape_ends(small_sweep + "--out out", folder);
   std::atomic<bool> ended = false;
   std::atomic<int> read = 0, without = 0;
   std::thread reader([&] {
@@ -117,7 +117,7 @@ TEST_CASE("sweep.json has the status of every run from the beginning of a sweep"
 
 TEST_CASE("kill -9 loses only the active runs") {
   const Scratch folder;
-  REQUIRE(drape_with(small_sweep + "--out whole", folder.path).exit_code == 0);
+  drape_ends(small_sweep + "--out whole", folder);
   for (const int done : {1, 9, 17}) {
     Command command("exec " + drape_command + " " + small_sweep + " --out cut", folder.path);
     wait_for(command, folder / "cut", "converged", done);
@@ -144,9 +144,7 @@ TEST_CASE("Ctrl-C stops the runs, which save their state, and the same command r
   write_endless(folder);
   Command command("exec " + drape_command + " sweep s.yaml --out out --workers 1", folder.path);
   wait_for_endless(command, folder);
-  const Ended second = drape_with("sweep s.yaml --out out", folder.path);
-  CHECK(second.exit_code == 2);
-  CHECK_THAT(second.err,
+  CHECK_THAT(refused_by("sweep s.yaml --out out", folder.path),
              Catch::Matchers::Matches("error: out: another `drape sweep` uses this folder \\(process "
                                       "[0-9]+ on .+\\); wait for it, or name another folder with "
                                       "--out\n"));
@@ -178,8 +176,7 @@ TEST_CASE("Ctrl-C stops the runs, which save their state, and the same command r
 }
 
 TEST_CASE("a failed run is listed with its error, does not stop the others, and is retried only on request") {
-  const Scratch folder;
-  folder.write("e.yaml", small_experiment());
+  const Scratch folder(small_experiment());
   folder.write("s.yaml",
                "name: s\nbase: e.yaml\nset: {levels: 1}\nmethods: [newton]\nablation:\n"
                "  - {name: unheld, set: {pins: [{region: ball, point: [5, 5, 5]}]}}\n  - {name: fine}\n");
@@ -234,22 +231,20 @@ TEST_CASE("a killed run has failed, with the name of the signal") {
 }
 
 TEST_CASE("a sweep that no longer fits its results is refused, and the results stay") {
-  const Scratch folder;
-  folder.write("e.yaml", small_experiment());
+  const Scratch folder(small_experiment());
   const std::string sweep =
       "name: s\nbase: e.yaml\nset: {levels: 1}\nmethods: [newton]\nablation: [{name: a}, {name: b, set: "
       "{refiner: midpoint}}]\n";
   folder.write("s.yaml", sweep);
-  REQUIRE(drape_with("sweep s.yaml --out out", folder.path).exit_code == 0);
+  drape_ends("sweep s.yaml --out out", folder);
   const std::string before = text_of(folder / "out/sweep.json");
   const std::string ways =
       "; give the new sweep another folder with --out, or undo the change, or delete that run's files to run "
       "it again: ";
   const auto said = [&](const std::string& arguments) {
-    const Ended ended = drape_with("sweep s.yaml --out out" + arguments, folder.path);
-    CHECK(ended.exit_code == 2);
+    const std::string ended = refused_by("sweep s.yaml --out out" + arguments, folder.path);
     CHECK(text_of(folder / "out/sweep.json") == before);
-    return ended.err;
+    return ended;
   };
   folder.write("s.yaml", replaced(sweep, "midpoint", "loop, levels: 2"));
   CHECK(said("") ==
@@ -270,18 +265,15 @@ TEST_CASE("a sweep that no longer fits its results is refused, and the results s
 }
 
 TEST_CASE("a foreign folder in the place of a run's stays") {
-  const Scratch folder;
-  folder.write("e.yaml", small_experiment());
+  const Scratch folder(small_experiment());
   const std::string sweep =
       "name: s\nbase: e.yaml\nset: {levels: 1}\nmethods: [newton]\nablation:\n  - {name: a}\n";
   folder.write("s.yaml", sweep);
-  REQUIRE(drape_with("sweep s.yaml --out out", folder.path).exit_code == 0);
+  drape_ends("sweep s.yaml --out out", folder);
   fs::create_directories(folder / "out/runs/b/seed_1");
   folder.write("out/runs/b/seed_1/notes", "mine");
   folder.write("s.yaml", sweep + "  - {name: b, levels: 2}\n");
-  const Ended ended = drape_with("sweep s.yaml --out out", folder.path);
-  CHECK(ended.exit_code == 2);
-  CHECK(ended.err ==
+  CHECK(refused_by("sweep s.yaml --out out", folder.path) ==
         "error: out/runs/b/seed_1: is there already, and not from this sweep; move it away, or name another "
         "folder with --out\n");
   CHECK(text_of(folder / "out/runs/b/seed_1/notes") == "mine");
@@ -289,8 +281,7 @@ TEST_CASE("a foreign folder in the place of a run's stays") {
 
 TEST_CASE("runs that exceed the memory together run one after another, with a warning") {
   if (drape::core_count() < 2) return;
-  const Scratch folder;
-  folder.write("e.yaml", small_experiment());
+  const Scratch folder(small_experiment());
   folder.write("s.yaml", "name: s\nbase: e.yaml\nset: {levels: 1}\nmethods: [newton]\nrepeats: 4\n");
   const Ended ended = drape_with("sweep s.yaml --out out --workers 2 --memory-limit 0.001", folder.path);
   CHECK(ended.exit_code == 0);
@@ -309,12 +300,11 @@ TEST_CASE("runs that exceed the memory together run one after another, with a wa
 }
 
 TEST_CASE("a complete run without a final status keeps its results and is not repeated") {
-  const Scratch folder;
-  folder.write("e.yaml", small_experiment());
+  const Scratch folder(small_experiment());
   folder.write("s.yaml",
                "name: s\nbase: e.yaml\nset: {levels: 1}\nmethods: [newton]\nablation:\n  - {name: a}\n"
                "  - {name: b, set: {newton.max_steps: 2}}\n");
-  REQUIRE(drape_with("sweep s.yaml --out out", folder.path).exit_code == 1);
+  drape_ends("sweep s.yaml --out out", folder, 1);
   for (const std::string name : {"a", "b"}) {
     const std::string status = "out/runs/" + name + "/seed_1.status.json";
     const std::string word = name == "a" ? "converged" : "not_converged";
@@ -329,18 +319,15 @@ TEST_CASE("a complete run without a final status keeps its results and is not re
   for (const Json& run : runs) CHECK(run["starts"] == 1);
 
   folder.write("out/runs/a/seed_1.status.json", "{");
-  const Ended broken = drape_with("sweep s.yaml --out out", folder.path);
-  CHECK(broken.exit_code == 2);
-  CHECK_THAT(broken.err,
+  CHECK_THAT(refused_by("sweep s.yaml --out out", folder.path),
              Catch::Matchers::StartsWith("error: out/runs/a/seed_1.status.json: is not a run's status") &&
                  Catch::Matchers::EndsWith("; remove it and the run's folder\n"));
 }
 
 TEST_CASE("two tasks for one run, as after a daemon's death, run it once") {
-  const Scratch folder;
-  folder.write("e.yaml", small_experiment());
+  const Scratch folder(small_experiment());
   folder.write("s.yaml", "name: s\nbase: e.yaml\nmethods: [newton]\n");
-  REQUIRE(drape_with("sweep s.yaml --out out", folder.path).exit_code == 0);
+  drape_ends("sweep s.yaml --out out", folder);
   fs::remove_all(folder / "out/runs/base/seed_1");
   fs::remove(folder / "out/runs/base/seed_1.status.json");
   const std::string task = "exec " + drape_command + " sweep-job out --task 0";
@@ -351,7 +338,5 @@ TEST_CASE("two tasks for one run, as after a daemon's death, run it once") {
   const Json runs = runs_of(folder / "out");
   CHECK(runs[0]["status"] == "converged");
   CHECK(runs[0]["starts"] == 1);
-  const Ended none = drape_with("sweep-job out --task 1", folder.path);
-  CHECK(none.exit_code == 2);
-  CHECK(none.err == "error: out: sweep.json has no run 1\n");
+  CHECK(refused_by("sweep-job out --task 1", folder.path) == "error: out: sweep.json has no run 1\n");
 }

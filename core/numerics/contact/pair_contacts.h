@@ -43,8 +43,8 @@ std::unique_ptr<Collisions> make_pair_contacts(const Positions& x, const Positio
 ///
 /// The limiting pair keeps no more than min_gap_fraction + 0.02 of its gap, except for 1 pair in 1000, which
 /// reaches the limit of 256 iterations. With min_gap_fraction = 0.1 and a constant closing speed the fraction
-/// is at least 0.88 of the exact time of impact. Of adversarial motions (tests/unit/additive_ccd.cpp) half
-/// reach 0.90 of it and 99 in 100 reach 0.6; in the others the pair comes close and then slides.
+/// is at least 0.88 of the exact time of impact. Of adversarial motions (tests/unit/contact/additive_ccd.cpp)
+/// half reach 0.90 of it and 99 in 100 reach 0.6; in the others the pair comes close and then slides.
 double additive_ccd(const Positions& x0, const Positions& x1, const Positions& obstacle_vertices,
                     const std::vector<ContactPair>& pairs, double min_gap_fraction, int& blocking);
 

@@ -1,12 +1,11 @@
 // A formula in an experiment: its keys, its errors, its runs.
 
 #include <catch2/catch.hpp>
-#include <filesystem>
-#include <fstream>
 
 #include "core/app/experiment/describe.h"
 #include "core/app/experiment/experiment.h"
 #include "core/app/files/yaml_file.h"
+#include "tests/support/command.h"
 #include "tests/support/registry.h"
 
 using namespace drape;
@@ -28,26 +27,17 @@ energies:
 methods: {newton: {}}
 )yaml";
 
-std::string replaced(std::string text, const std::string& from, const std::string& to) {
-  REQUIRE(text.find(from) != std::string::npos);
-  return text.replace(text.find(from), from.size(), to);
-}
-
 ConfigErrors errors_of(const std::string& text) {
-  const auto file = std::filesystem::temp_directory_path() / "drape_formula_keys.yaml";
-  std::ofstream(file) << text;
+  const Scratch folder(text);
   ConfigErrors errors;
-  read_experiment(file, {}, test_registry(), errors);
-  std::filesystem::remove(file);
+  read_experiment(folder / "e.yaml", {}, test_registry(), errors);
   return errors;
 }
 
 Experiment experiment_of(const std::string& text, const Overrides& overrides = {}) {
-  const auto file = std::filesystem::temp_directory_path() / "drape_formula_keys.yaml";
-  std::ofstream(file) << text;
+  const Scratch folder(text);
   ConfigErrors errors;
-  auto experiment = read_experiment(file, overrides, test_registry(), errors);
-  std::filesystem::remove(file);
+  auto experiment = read_experiment(folder / "e.yaml", overrides, test_registry(), errors);
   throw_errors(errors);
   return std::move(*experiment);
 }

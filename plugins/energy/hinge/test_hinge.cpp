@@ -60,15 +60,6 @@ std::vector<Check::State> states() {
   return all;
 }
 
-/// The energy of the level whose vertices have been moved, over k κ² times the rest area.
-double energy_over_smooth(const Level& level, const Positions& x, double curvature) {
-  const Material material;
-  const double nu = material.poisson_ratio;
-  const double own_k = material.bending_modulus * std::pow(material.thickness, 3) / (24 * (1 - nu * nu));
-  return Hinge({}).bind(level, material)->value(x) /
-         (own_k * curvature * curvature * level.vertex_area.sum());
-}
-
 }  // namespace
 
 TEST_CASE("hinge: one that is shut at rest opens to either side alike") {
@@ -85,16 +76,6 @@ TEST_CASE("hinge: one that is shut at rest opens to either side alike") {
 TEST_CASE("hinge: the angle is signed, positive where the second triangle lies behind the first") {
   for (const double angle : {-3.1, -1.0, -1e-9, 0.0, 1e-9, 0.5, 2.0, 3.1})
     CHECK(angle_of(folded(angle)) == Approx(angle).epsilon(1e-14).margin(0));
-}
-
-TEST_CASE("hinge: derivatives are those of the value") {
-  for (const auto& rest : {flat_rest, bent_rest})
-    for (const auto& x : states()) Check::derivatives(x, rest, 1e-4, 1e-7);
-}
-
-TEST_CASE("hinge: lanes compute what double does") {
-  for (const auto& rest : {flat_rest, bent_rest})
-    for (const auto& x : states()) Check::all_lanes(x, rest, 3 * k / rest[4]);
 }
 
 TEST_CASE("hinge: projection is that of the matrix by the axis and the points' distances from it") {
@@ -135,47 +116,6 @@ TEST_CASE("hinge: a fold in closed form") {
   for (const double angle : {-2.0, 0.3, 3.0})
     CHECK(Check::evaluate(folded(angle), bent_rest).value ==
           Approx(c * std::pow(angle - 0.6, 2)).epsilon(1e-13));
-}
-
-// The two numbers below depend on the triangulation; the README says what that means.
-TEST_CASE("hinge: a regular grid rolled along its edges has 3 k κ² an area") {
-  const double radius = 2;
-  for (const int n : {41, 81}) {
-    const Level level = Level::of(0, grid({1, 1}, n, n, Diagonals::one_way));
-    Positions x = level.rest.vertices;
-    for (int i = 0; i < level.vertex_count(); ++i) {
-      const double angle = x(i, 1) / radius;
-      x.row(i) << x(i, 0), radius * std::sin(angle), radius * (std::cos(angle) - 1);
-    }
-    // The n - 2 inner rows of edges along the axis, of n - 1 rows of cells.
-    CHECK(energy_over_smooth(level, x, 1 / radius) * (n - 1) / (n - 2) == Approx(3).epsilon(1e-3));
-  }
-}
-
-TEST_CASE("hinge: equilateral triangles on a sphere have 4 k κ² an area") {
-  const double side = 1e-3, radius = 0.5;
-  TriangleMesh mesh;
-  mesh.vertices.setZero(7, 3);
-  mesh.triangles.resize(6, 3);
-  for (int i = 0; i < 6; ++i) {
-    mesh.vertices.row(i + 1) << side * std::cos(i * pi / 3), side * std::sin(i * pi / 3), 0;
-    mesh.triangles.row(i) << 0, i + 1, (i + 1) % 6 + 1;
-  }
-  const Level level = Level::of(0, mesh);
-  Positions x = mesh.vertices;
-  for (int i = 0; i < 7; ++i) {
-    const double distance = x.row(i).norm();
-    x(i, 2) = std::sqrt(radius * radius - distance * distance) - radius;
-  }
-  // An endless mesh has 3/2 edges a triangle, this patch (its six spokes) one.
-  CHECK(energy_over_smooth(level, x, 1 / radius) * 3 / 2 == Approx(4).epsilon(1e-4));
-}
-
-TEST_CASE("hinge: same bits with any number of threads") {
-  const Level level = Level::of(0, grid({1, 1}, 60, 50, Diagonals::criss_cross));
-  const Eigen::VectorXd noise = 0.003 * normal_numbers(9000, 1);
-  check_threads(*Hinge({}).bind(level, Material()),
-                level.rest.vertices + Eigen::Map<const Positions>(noise.data(), 3000, 3));
 }
 
 TEST_CASE("hinge: a single triangle has no hinge") {

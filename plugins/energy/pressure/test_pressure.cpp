@@ -27,38 +27,10 @@ Positions noisy(const Positions& x, double size, unsigned seed) {
   return x + Eigen::Map<const Positions>(noise.data(), x.rows(), 3);
 }
 
-/// Six times the volume by triangles, including the cone from the border to the centre.
-double six_volumes(const Level& level, const Positions& x, const Eigen::Vector3d& centre) {
-  double sum = 0;
-  for (int t = 0; t < level.triangle_count(); ++t) {
-    const auto v = level.rest.triangles.row(t);
-    const auto at = [&](int k) { return Eigen::Vector3d(x.row(v[k]).transpose() - centre); };
-    sum += at(0).dot(at(1).cross(at(2)));
-  }
-  return sum;
-}
-
 Level open_level() { return Level::of(0, random_triangulation({0.6, 0.5}, 30, 7)); }
 Level closed_level() { return Level::of(0, sphere_mesh(0.3, 1)); }
 
 }  // namespace
-
-TEST_CASE("pressure: derivatives are those of the value, and the value that of the volume") {
-  for (const Level& level : {open_level(), closed_level()}) {
-    const Positions x = noisy(level.rest.vertices, 0.05, 3);
-    const auto energy = bound(level, 200);
-    CHECK(energy->value(x) == Approx(-200 * six_volumes(level, x, apex) / 6).epsilon(1e-12));
-    const Eigen::VectorXd g = flat(gradient_of(*energy, x));
-    const Eigen::MatrixXd h = dense(hessian_of(*energy, x, Projection::none));
-    const auto value = [&](const Positions& y) { return energy->value(y); };
-    const auto gradient = [&](const Positions& y) { return gradient_of(*energy, y); };
-    REQUIRE(g.norm() > 1e-3);
-    REQUIRE(h.norm() > 1e-3);
-    // Of third degree: differences of fourth order are exact.
-    CHECK((differences(value, x, 0.01).transpose() - g).norm() <= 1e-11 * g.norm());
-    CHECK((differences(gradient, x, 0.01) - h).norm() <= 1e-11 * h.norm());
-  }
-}
 
 TEST_CASE("pressure: projection is that of every edge's matrix") {
   const Level level = Level::of(0, grid({1, 1}, 2, 2, Diagonals::one_way));
@@ -148,10 +120,4 @@ TEST_CASE("pressure: inner vertices of an open cloth carry a third of the area a
     }
   }
   REQUIRE(inner > 10);
-}
-
-TEST_CASE("pressure: same bits with any number of threads") {
-  for (const Level& level :
-       {Level::of(0, sphere_mesh(0.3, 4)), Level::of(0, grid({1, 1}, 60, 50, Diagonals::criss_cross))})
-    check_threads(*bound(level, 100), noisy(level.rest.vertices, 0.003, 7));
 }

@@ -29,16 +29,6 @@ const QuadraticBendingKernel::Rest rest = rest_of(folded(0));
 
 }  // namespace
 
-TEST_CASE("quadratic_bending: derivatives are those of the value") {
-  for (unsigned seed = 1; seed <= 5; ++seed)
-    Check::derivatives(folded(0.3) + 0.5 * normal_numbers(9, seed), rest, 1e-3, 1e-9);
-}
-
-TEST_CASE("quadratic_bending: lanes compute what double does") {
-  for (unsigned seed = 1; seed <= 5; ++seed)
-    Check::all_lanes(folded(0.3) + 0.5 * normal_numbers(9, seed), rest, rest[0]);
-}
-
 TEST_CASE("quadratic_bending: the matrix needs no projection") {
   CHECK(Check::projections<double>(folded(2), rest) > -1e-12);
   CHECK(Check::projections<Pack<native_pack_width>>(folded(2), rest) > -1e-12);
@@ -60,17 +50,6 @@ TEST_CASE("quadratic_bending: an isometric fold has the hinge energy with θ rep
   for (const double angle : {-2.0, 1e-3, 0.3, 3.0})
     CHECK(Check::evaluate(folded(angle), rest).value ==
           Approx(c * std::pow(2 * std::sin(angle / 2), 2)).epsilon(1e-12).margin(0));
-}
-
-TEST_CASE("quadratic_bending: same bits with any number of threads, whatever the projection") {
-  const Level level = Level::of(0, grid({1, 1}, 60, 50, Diagonals::criss_cross));
-  const Eigen::VectorXd noise = 0.003 * normal_numbers(9000, 1);
-  const Positions x = level.rest.vertices + Eigen::Map<const Positions>(noise.data(), 3000, 3);
-  const auto bound = QuadraticBending().bind(level, Material());
-  check_threads(*bound, x);
-  const auto plain = hessian_of(*bound, x, Projection::none).values;
-  CHECK(hessian_of(*bound, x, Projection::clamp).values == plain);
-  CHECK(hessian_of(*bound, 2 * x, Projection::absolute).values == plain);
 }
 
 TEST_CASE("quadratic_bending: a rest shape that is not flat is refused") {

@@ -4,7 +4,6 @@
 #include <limits>
 #include <utility>
 
-#include "core/kernel/threads/parallel.h"
 #include "core/numerics/collision_detection/closest.h"
 #include "plugins/metric/distance/distance.h"
 #include "tests/support/kernel_check.h"
@@ -68,18 +67,6 @@ TEST_CASE("the Hausdorff distance is what looking at every triangle finds", "[di
   }
 }
 
-TEST_CASE("a state is at no distance from itself", "[distance]") {
-  const Level level = square(6);
-  const Positions x = crumpled(level, 0);
-  const MetricResult result = evaluate(level, x, x);
-  REQUIRE(result.values.size() == 3);
-  for (const MetricValue& v : result.values) CHECK(v.value == 0);
-  for (const MetricColumn& c : Distance().declaration().columns) {
-    CHECK(c.unit == "diagonal");
-    CHECK(c.better == Better::lower);
-  }
-}
-
 TEST_CASE("a lift across the surface counts in every distance, a slide along it only at the border",
           "[distance]") {
   const Level level = square(10);
@@ -127,18 +114,6 @@ TEST_CASE("distances are relative to the rest diagonal and ordered", "[distance]
   CHECK(hausdorff < max);
   const MetricResult scaled = evaluate(large, 10 * x, 10 * other);
   for (const MetricValue& v : small.values) CHECK(value(scaled, v.name) == Approx(v.value).epsilon(1e-10));
-}
-
-TEST_CASE("distances are the same bits with any number of threads", "[distance]") {
-  const Level level = square(24);
-  const Positions x = crumpled(level, 0), other = crumpled(level, 0.4);
-  const int before = thread_count();
-  set_thread_count(1);
-  const MetricResult one = evaluate(level, x, other);
-  set_thread_count(3);
-  const MetricResult three = evaluate(level, x, other);
-  set_thread_count(before);
-  for (const MetricValue& v : one.values) CHECK(value(three, v.name) == v.value);
 }
 
 TEST_CASE("distance needs two finite states of the level", "[distance]") {

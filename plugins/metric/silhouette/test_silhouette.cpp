@@ -2,7 +2,6 @@
 #include <cmath>
 #include <limits>
 
-#include "core/kernel/threads/parallel.h"
 #include "core/numerics/hierarchy/midpoint.h"
 #include "tests/support/metric_check.h"
 #include "tests/support/unregistered.h"
@@ -155,18 +154,6 @@ TEST_CASE("A state that has flown apart is seen in larger pixels", "[silhouette]
   const Positions& x = level.rest.vertices;
   CHECK(overlap(level, x, 1e9 * x) == Approx(0).margin(1e-6));
   CHECK(overlap(level, 1e9 * x, 1e9 * x) == 1);
-}
-
-TEST_CASE("Silhouettes are the same bits with any number of threads", "[silhouette]") {
-  const Level level = square(24);
-  const Positions x = wavy(level, 0), other = wavy(level, 0.4);
-  const int before = thread_count();
-  set_thread_count(1);
-  const double one = overlap(level, x, other);
-  set_thread_count(3);
-  const double three = overlap(level, x, other);
-  set_thread_count(before);
-  CHECK(one == three);
 }
 
 TEST_CASE("A silhouette needs two finite states of the level", "[silhouette]") {

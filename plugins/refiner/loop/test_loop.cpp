@@ -3,8 +3,6 @@
 #include <map>
 
 #include "core/numerics/hierarchy/hierarchy.h"
-#include "core/numerics/hierarchy/midpoint.h"
-#include "core/numerics/mesh/check.h"
 #include "core/numerics/patterns/generate.h"
 #include "tests/support/unregistered.h"
 // After it:
@@ -43,14 +41,6 @@ int edge_between(const Level& level, int a, int b) {
       return e;
   FAIL("no such edge");
   return -1;
-}
-
-/// Largest distance from a point of `a` to the nearest of `b`.
-double distance_to(const Positions& a, const Positions& b) {
-  double largest = 0;
-  for (int i = 0; i < a.rows(); ++i)
-    largest = std::max(largest, (b.rowwise() - a.row(i)).rowwise().squaredNorm().minCoeff());
-  return std::sqrt(largest);
 }
 
 }  // namespace
@@ -120,47 +110,6 @@ TEST_CASE("an equilateral rectangle has four corners, on every level", "[refiner
   }
 }
 
-TEST_CASE("Loop rows sum to one on any mesh", "[refiner][loop]") {
-  const int which = GENERATE(0, 1, 2, 3);
-  const TriangleMesh mesh = which == 0   ? grid({1, 2}, 7, 6, Diagonals::criss_cross)
-                            : which == 1 ? disc(1, 150)
-                            : which == 2 ? random_triangulation({1, 1}, 200, 4)
-                                         : wheel(5);
-  const Level level = Level::of(0, mesh);
-  const ProlongationMatrix fine = loop.weights(level);
-  REQUIRE(fine.rows() == level.vertex_count() + level.topology.edges.rows());
-  REQUIRE(fine.cols() == level.vertex_count());
-  const Eigen::VectorXd sums = fine * Eigen::VectorXd::Ones(fine.cols());
-  CHECK((sums.array() - 1).abs().maxCoeff() < 1e-15);
-  const Positions rest = fine * mesh.vertices;
-  CHECK(check_mesh(refined_rest(level, fine)).empty());
-
-  // Points of an affine image of the coarse mesh go to the same image of the fine one.
-  const Eigen::Matrix3d a = Eigen::Matrix3d::Random();
-  const Eigen::RowVector3d b(3, -1, 2);
-  const Positions image = (mesh.vertices * a).rowwise() + b;
-  CHECK((fine * image - ((rest * a).rowwise() + b)).cwiseAbs().maxCoeff() < 1e-14);
-}
-
-TEST_CASE("Loop reproduces a regular rectangle, also turned and moved", "[refiner][loop]") {
-  const double angle = GENERATE(0, 0.7, 2.5);
-  const Eigen::Matrix3d turn =
-      Eigen::AngleAxisd(angle, Eigen::Vector3d(1, 2, 2).normalized()).toRotationMatrix();
-  const Eigen::RowVector3d shift(0.3, -0.2, angle);
-  const auto rectangle = [&](int columns, int rows) {
-    TriangleMesh mesh = grid({0.7, 1.9}, columns, rows, Diagonals::one_way);
-    mesh.vertices = ((mesh.vertices * turn.transpose()).rowwise() + shift).eval();
-    return mesh;
-  };
-  const Hierarchy hierarchy = Hierarchy::of(rectangle(5, 7), loop, 3);
-  const Positions finest = rectangle(17, 25).vertices;
-  REQUIRE(hierarchy.levels[2].vertex_count() == finest.rows());
-  CHECK(distance_to(hierarchy.levels[2].rest.vertices, finest) < 1e-14);
-  CHECK(distance_to(finest, hierarchy.levels[2].rest.vertices) < 1e-14);
-  const Positions midpoint = hierarchy.midpoints[0] * hierarchy.levels[0].rest.vertices;
-  CHECK((midpoint - hierarchy.levels[1].rest.vertices).cwiseAbs().maxCoeff() < 1e-15);
-}
-
 TEST_CASE("Loop keeps the rectangle of a criss-cross grid but moves its vertices", "[refiner][loop]") {
   const Hierarchy hierarchy = Hierarchy::of(grid({0.7, 1.9}, 6, 8, Diagonals::criss_cross), loop, 3);
   for (const Level& level : hierarchy.levels) {
@@ -173,16 +122,4 @@ TEST_CASE("Loop keeps the rectangle of a criss-cross grid but moves its vertices
   }
   const Positions midpoint = hierarchy.midpoints[0] * hierarchy.levels[0].rest.vertices;
   CHECK((midpoint - hierarchy.levels[1].rest.vertices).cwiseAbs().maxCoeff() > 0.01);
-}
-
-TEST_CASE("Loop levels grow 32², 63², 125², 249²", "[refiner][loop]") {
-  const auto diagonals = GENERATE(Diagonals::one_way, Diagonals::criss_cross);
-  const Hierarchy hierarchy = Hierarchy::of(grid({1, 1}, 32, 32, diagonals), loop, 4);
-  const int sides[] = {32, 63, 125, 249};
-  for (int l = 0; l < 4; ++l) {
-    const Level& level = hierarchy.levels[l];
-    CHECK(level.vertex_count() == sides[l] * sides[l]);
-    CHECK(level.vertex_count() - level.topology.edges.rows() + level.triangle_count() == 1);
-    CHECK(level.vertex_area.sum() == Approx(1).epsilon(1e-12));
-  }
 }

@@ -1,0 +1,255 @@
+// The file that a run goes on from: what was saved is what is read, and nothing else is.
+
+#include "core/app/run/checkpoint.h"
+
+#include <catch2/catch.hpp>
+
+#include "tests/support/command.h"
+#include "tests/support/refusal.h"
+
+using namespace drape;
+using Catch::Matchers::Contains;
+using Catch::Matchers::EndsWith;
+
+namespace {
+
+/// One with something in every field.
+Checkpoint full() {
+  std::srand(3);
+  Checkpoint c;
+  c.program = "drape";
+  c.config = "name: x\n";
+  c.files = {{"/a.obj", 17, 99}};
+  c.methods = {"pcs", "newton"};
+  c.method = 1;
+  c.all_converged = false;
+  LevelResult coarse;
+  coarse.outcome = Outcome::stalled;
+  coarse.message = "no descent";
+  coarse.x = Positions::Random(4, 3);
+  coarse.from_initial_state = true;
+  coarse.steps = 7;
+  coarse.seconds_by_phase = {{"solve", 0.5}, {"gradient", 0.25}};
+  coarse.smallest_gap = 1e-4;
+  c.state.finished = {coarse};
+  c.state.level = 1;
+  c.state.seconds = 3;
+  NewtonState& s = c.state.under_way.emplace();
+  s.so_far.x = Positions::Random(9, 3);
+  s.so_far.force_residual = std::nan("");
+  s.check = {{1, 2, 3}, {7, 8, 9}, {3, -0.5, 1e-6}, {6, {1, 2, 3, 4, 5}, {6, 7, 8, 9, 10}, {1, 0, 2}}};
+  s.iterate = {2, "ball"};
+  s.step.implicit_step.max_iterations = 30;
+  s.step.controller = {0.25, -4, 3e3, true, 0.5};
+  s.step.line_search.step_length = 0.125;
+  s.switched_to_plain = true;
+  s.dirichlet = {{3}, 1e4, 0.5, 2, false, true, "post"};
+  s.load_stepper = {{4, 5, 6}, {Positions::Random(9, 3), Positions::Random(9, 3), 0.5}, 2};
+  s.so_far.load_stepping = {3, {0.5, 0.25}};
+  s.contacts = {Positions::Random(9, 3),
+                {{{{1, 2, 3, 4, 0}, {1e-5, 0, 2e-5}}}, {}},
+                Positions::Random(9, 3),
+                Positions::Random(9, 3),
+                2,
+                {14.7, 240},
+                {0.25, {{{{{1, 2, 3, 4, 0}, {1, 2, -1, -1}, {1, 0, 0, 0}, {0, 0, 1}, 0.75, {3}}}}, {}}}};
+  FactorCache::State& factor = s.step.factor;
+  factor.modification.blend = 3;
+  factor.pattern.extra = {{{0, 4}, {2, 7}}, {0, 3}};
+  factor.pattern.smooth_only = false;
+  factor.analysis = {{0, 1, 0}, {2, 0}, {0, 2}, 123, 4};
+  factor.age = 1;
+  factor.fallback_updates = 7;
+  factor.solver = LinearSolver::supernodal;
+  factor.shift = 16;
+  factor.values = {1, 2, 3};
+  c.first_level = 1;
+  c.start = Positions::Random(4, 3);
+  c.recorder.results = "{}";
+  c.recorder.states = {{"pcs", 1, Positions::Random(9, 3)}};
+  c.recorder.snapshots = {2, 5, {{{1, 2, 3}, Positions::Random(9, 3)}}};
+  c.recorder.measured = {{"pcs", "f.bin", 1, {{1, 2, 3}}, {4}, {5}, Positions::Random(9, 3), true, 7}};
+  c.recorder.iterations_bytes = 12345;
+  c.recorder.last_load = {2, {0.5, 0.75}};
+  return c;
+}
+
+std::string error_of(const std::string& bytes) {
+  return refusal_of([&] { decode(bytes); });
+}
+
+/// What `encode` writes after the header.
+std::string body_of(const Checkpoint& checkpoint) {
+  return encode(checkpoint).substr(checkpoint_header_size);
+}
+
+std::string error_of_body(const std::string& bytes) {
+  return refusal_of([&] { decode_body(bytes); });
+}
+
+/// The place of the one byte in which two bodies differ.
+std::size_t difference(const std::string& a, const std::string& b) {
+  REQUIRE(a.size() == b.size());
+  const auto at = static_cast<std::size_t>(std::mismatch(a.begin(), a.end(), b.begin()).first - a.begin());
+  REQUIRE(at < a.size());
+  REQUIRE(a.substr(at + 1) == b.substr(at + 1));
+  return at;
+}
+
+std::string error_in(const std::filesystem::path& folder) {
+  std::string warning;
+  return refusal_of([&] { load_checkpoint(folder, warning); });
+}
+
+}  // namespace
+
+TEST_CASE("A checkpoint is read as it was written") {
+  const std::string bytes = encode(full());
+  const Checkpoint c = decode(bytes);
+  CHECK(encode(c) == bytes);
+  CHECK(c.methods == std::vector<std::string>{"pcs", "newton"});
+  CHECK(c.state.finished.at(0).x == full().state.finished.at(0).x);
+  CHECK(c.state.finished.at(0).seconds_by_phase.at("solve") == 0.5);
+  const NewtonState& s = c.state.under_way.value();
+  CHECK(std::isnan(s.so_far.force_residual));
+  CHECK(s.iterate.residual_scale == 2);
+  CHECK(s.iterate.limited_by == "ball");
+  CHECK(s.step.implicit_step.max_iterations == 30);
+  CHECK(s.step.controller.step_size == 0.25);
+  CHECK(s.step.controller.stall_count == -4);
+  CHECK(s.step.controller.stall_residual == 3e3);
+  CHECK(s.step.controller.backed_off);
+  CHECK(s.step.controller.cycle_limit == 0.5);
+  CHECK(s.step.line_search.step_length == 0.125);
+  CHECK(s.step.factor.modification.blend == 3);
+  CHECK(s.step.factor.pattern.extra.blocks.at(1) == std::pair(2, 7));
+  CHECK(s.step.factor.age == 1);
+  CHECK(s.step.factor.fallback_updates == 7);
+  CHECK(s.step.factor.solver == LinearSolver::supernodal);
+  CHECK(s.step.factor.shift == 16);
+  CHECK(s.step.factor.values == std::vector<double>{1, 2, 3});
+  CHECK(s.check.decrements == std::array<double, 3>{1, 2, 3});
+  CHECK(s.check.initial_centroid == std::array<double, 3>{7, 8, 9});
+  CHECK(s.check.idle.steps == 3);
+  CHECK(s.check.idle.energy == -0.5);
+  CHECK(s.check.idle.residual == 1e-6);
+  CHECK(s.check.cycle.residuals == std::array<double, 5>{6, 7, 8, 9, 10});
+  CHECK(s.check.cycle.returns == std::array<int, 3>{1, 0, 2});
+  CHECK(s.dirichlet.blocked_by == "post");
+  CHECK(s.load_stepper.start.iterations == 5);
+  CHECK(s.load_stepper.response.fraction == 0.5);
+  CHECK(s.load_stepper.blocked_increments == 2);
+  CHECK(s.contacts.tangential_displacements.at(0).at(0).contact == ContactKey{1, 2, 3, 4, 0});
+  CHECK(s.contacts.tangential_displacements.at(0).at(0).displacement == Eigen::Vector3d(1e-5, 0, 2e-5));
+  CHECK(s.contacts.damping.fraction == 0.25);
+  const FrictionContact& lag = s.contacts.damping.lag.at(0).at(0).at(0);
+  CHECK(lag.normal == Eigen::Vector3d::UnitZ());
+  CHECK(lag.force == 0.75);
+  CHECK(lag.touched.obstacle == 3);
+  CHECK(s.switched_to_plain);
+  CHECK(c.recorder.measured.at(0).last == full().recorder.measured.at(0).last);
+  CHECK(c.recorder.iterations_bytes == 12345);
+  CHECK(encode(decode(encode(Checkpoint()))) == encode(Checkpoint()));
+}
+
+TEST_CASE("Any changed, missing or additional byte of a checkpoint is detected") {
+  const std::string bytes = encode(full());
+  REQUIRE(bytes.size() > 1000);
+  for (std::size_t k = 0; k < bytes.size(); ++k) {
+    std::string other = bytes;
+    other[k] = static_cast<char>(other[k] ^ (1 << k % 8));
+    CAPTURE(k);
+    REQUIRE(error_of(other) != "");
+    REQUIRE(error_of(bytes.substr(0, k)) != "");
+  }
+  std::string other = bytes;
+  other[500] ^= 1;
+  CHECK(error_of(other) == "is damaged: its checksum does not fit");
+  CHECK(error_of(bytes + "x") == "is damaged: its checksum does not fit");
+  CHECK(error_of(bytes.substr(0, 900)) == "is cut short");
+  CHECK(error_of("") == "is cut short");
+  CHECK(error_of("ply\nformat ascii 1.0\n") == "is no checkpoint of drape");
+  other = bytes;
+  other[8] = 77;
+  CHECK(
+      error_of(other) ==
+      "is a checkpoint of format 77, but this drape reads format 1; resume it with the drape that wrote it");
+}
+
+TEST_CASE("A value that its type does not have is refused") {
+  const Checkpoint whole = full();
+  std::string bytes = body_of(whole);
+  Checkpoint other = whole;
+  other.all_converged = !whole.all_converged;
+  const std::size_t flag = difference(bytes, body_of(other));
+  other = whole;
+  other.state.finished[0].outcome = Outcome::infeasible;
+  const std::size_t outcome = difference(bytes, body_of(other));
+  for (const int wrong : {2, 3, 128, 255}) {
+    std::string damaged = bytes;
+    damaged[flag] = static_cast<char>(wrong);
+    CHECK(error_of_body(damaged) == "is damaged: it has " + std::to_string(wrong) + " for yes or no");
+  }
+  bytes[outcome + 2] = 1;
+  CHECK_THAT(error_of_body(bytes), Contains("for one of a list of words"));
+}
+
+TEST_CASE("A count of more than there are bytes is refused before memory is taken for it") {
+  Checkpoint c;
+  const std::string bytes = body_of(c);
+  c.methods = {""};
+  const std::string with_one = body_of(c);
+  const auto at = static_cast<std::size_t>(std::mismatch(bytes.begin(), bytes.end(), with_one.begin()).first -
+                                           bytes.begin());
+  for (const std::size_t byte : {1u, 3u, 7u}) {
+    std::string damaged = bytes;
+    damaged[at + byte] = 0x7f;
+    CHECK(error_of_body(damaged) == "is damaged: it ends too early");
+  }
+}
+
+TEST_CASE("Whatever bytes a body has, it is refused or read as what would be written so") {
+  const std::string bytes = body_of(full());
+  int read = 0;
+  for (std::size_t k = 0; k < bytes.size(); ++k)
+    for (const int value : {0, 1, 2, 127, 255}) {
+      std::string other = bytes;
+      other[k] = static_cast<char>(value);
+      CAPTURE(k, value);
+      if (error_of_body(other) != "") continue;
+      ++read;
+      REQUIRE(body_of(decode_body(other)) == other);
+    }
+  CHECK(read > 1000);
+}
+
+TEST_CASE("The newest complete checkpoint is used, and a damaged one is named") {
+  const Scratch folder;
+  CHECK_THAT(error_in(folder.path), Contains("holds no checkpoint of a run"));
+  std::string warning;
+  for (int method = 0; method < 3; ++method) {
+    Checkpoint c = full();
+    c.method = method;
+    save_checkpoint(folder.path, c);
+    CHECK(load_checkpoint(folder.path, warning).method == method);
+    CHECK(warning == "");
+  }
+  const auto newest = folder / "checkpoint/state.bin", previous = folder / "checkpoint/previous.bin";
+  const std::string whole = text_of(newest);
+  std::filesystem::resize_file(newest, whole.size() - 1);
+  CHECK(load_checkpoint(folder.path, warning).method == 1);
+  CHECK(warning ==
+        newest.string() + ": is cut short; going on from the checkpoint before it, " + previous.string());
+
+  // Between the two renames of a save there is no newest one.
+  std::filesystem::remove(newest);
+  CHECK(load_checkpoint(folder.path, warning).method == 1);
+  CHECK(warning == "");
+
+  folder.write("checkpoint/state.bin", whole.substr(0, 100));
+  folder.write("checkpoint/previous.bin", "something else");
+  const std::string error = error_in(folder.path);
+  CHECK_THAT(error, Contains("state.bin: is cut short; ") && Contains("previous.bin: is no checkpoint"));
+  CHECK_THAT(error, EndsWith("no checkpoint is whole: run the experiment again, as in drape run " +
+                             (folder / "config.yaml").string() + " --out ANOTHER"));
+}

@@ -1,0 +1,358 @@
+#include "core/app/report/report.h"
+
+#include <Eigen/Geometry>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <filesystem>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <optional>
+
+#include "core/app/report/pictures.h"
+#include "core/app/report/run_table.h"
+#include "core/app/report/text_table.h"
+#include "core/app/view/colours.h"
+#include "core/kernel/files/file.h"
+#include "core/kernel/threads/parallel.h"
+#include "core/numerics/hierarchy/midpoint.h"
+#include "core/numerics/mesh_files/base64.h"
+#include "core/numerics/mesh_files/io.h"
+#include "core/numerics/patterns/generate.h"
+#include "tests/support/command.h"
+#include "tests/support/declared_metrics.h"
+#include "tests/support/page_data.h"
+
+using namespace drape;
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+namespace {
+
+TriangleMesh split(const TriangleMesh& coarse) {
+  const Level level = Level::of(0, coarse);
+  return refined_rest(level, midpoint_weights(level));
+}
+
+Positions rippled(const Positions& rest, double waves) {
+  Positions x = rest;
+  x.col(2) = 0.08 * (waves * rest.col(0).array()).sin();
+  return x;
+}
+
+Eigen::VectorXd ripple_curvature(const Positions& rest, double waves) {
+  return -0.08 * waves * waves * (waves * rest.col(0).array()).sin();
+}
+
+constexpr int small_pictures = 300;  // pixels wide, in a ninth of the default's time
+
+/// A run of two methods on two levels, in a folder of its own that goes with it.
+struct SampleRun {
+  Scratch scratch;
+  const fs::path& folder = scratch.path;
+  Json results;
+
+  SampleRun() {
+    for (const char* name : {"levels", "fields", "rest"}) fs::create_directories(folder / name);
+    const TriangleMesh rest[2] = {grid({1, 1}, 13, 13, Diagonals::one_way),
+                                  split(grid({1, 1}, 13, 13, Diagonals::one_way))};
+    for (int l = 0; l < 2; ++l) write_ply(folder / "rest" / ("l" + std::to_string(l) + ".ply"), rest[l]);
+    results = {{"experiment", "sample"},
+               {"description", "A rippled sheet."},
+               {"complete", true},
+               {"machine", {{"cpu", "test processor"}, {"cores", 2}, {"threads", 1}}},
+               {"version", "drape 0.0.0"},
+               {"tolerance", {{"force_residual", 1e-3}}},
+               {"metrics", json_of(sample_metrics())}};
+    std::string steps =
+        "method,level,step,iteration,seconds,energy,decrement,force_residual,step_length,proxy_energy,step_"
+        "size\n";
+    for (const std::string method : {"newton", "pcs"}) {
+      const double waves[2] = {20, method == "pcs" ? 20.0 : 11.0};
+      Json& entry = results["methods"][method];
+      entry = {{"status", "converged"}, {"seconds", 12.345}, {"peak_memory_bytes", 123456789}};
+      for (int l = 0; l < 2; ++l) {
+        const std::string mesh = "levels/" + method + "_l" + std::to_string(l) + ".ply";
+        write_ply(folder / mesh, {rippled(rest[l].vertices, waves[l]), rest[l].triangles});
+        entry["levels"].push_back({{"level", l},
+                                   {"vertices", rest[l].vertices.rows()},
+                                   {"triangles", rest[l].triangles.rows()},
+                                   {"status", "converged"},
+                                   {"steps", 17},
+                                   {"iterations", 1234},
+                                   {"seconds", 6.1},
+                                   {"seconds_by_phase", {{"factorise", 3.5}, {"assemble", 1.5}}},
+                                   {"energy", -0.7654 - l},
+                                   {"energy_released", method == "pcs" ? 1.7654 : 1.5432},
+                                   {"force_residual", 8.76e-4},
+                                   {"largest_stretch", 1.0432},
+                                   {"intersections", nullptr},
+                                   {"energy_parts_released", {{"membrane", -0.4321}, {"gravity", 2.345}}},
+                                   {"mesh", mesh}});
+        for (int k = 0; k < 3; ++k) {
+          steps += method + "," + std::to_string(l) + "," + std::to_string(k) + ",0," +
+                   std::to_string(k + 1) + "," + std::to_string(1.0 / (1 << k)) + ",0.1," +
+                   std::to_string(0.5 / (k + 1)) + ",1,,0.5\n";
+        }
+      }
+      const std::string fields = "fields/" + method + "_l0_l1.ply";
+      const Eigen::VectorXd coarse = ripple_curvature(rest[1].vertices, waves[0]);
+      const Eigen::VectorXd fine = ripple_curvature(rest[1].vertices, waves[1]);
+      write_ply(folder / fields, {rippled(rest[1].vertices, waves[1]), rest[1].triangles},
+                {{"H_difference", (coarse - fine) / 2},
+                 {"principal_curvature", fine},
+                 {"principal_curvature_other", coarse}});
+      const double factor = method == "pcs" ? 1 : 10;
+      entry["consistency"].push_back({{"coarse", 0},
+                                      {"fine", 1},
+                                      {"d_H_fit", 13.57 * factor},
+                                      {"d_H_ddg", 24.68 * factor},
+                                      {"d_K_fit", 31415.9 * factor},
+                                      {"d_K_ddg", 27182.8 * factor},
+                                      {"distance_rms", 0.0123},
+                                      {"fields", fields}});
+    }
+    write_file(folder / "iterations.csv", steps);
+    write_file(folder / "config.yaml", "cloth: {size: 1 m}\n");
+  }
+
+  /// The page, after writing the report.
+  std::string page(bool with_pictures = false, std::optional<int> width = small_pictures) const {
+    write_file(folder / "results.json", results.dump());
+    write_report(
+        folder, [&] { return !with_pictures; }, width);
+    return read_file(folder / "report.html");
+  }
+  Json data(bool with_pictures = false) const { return page_data(page(with_pictures)); }
+};
+
+bool contains(const std::string& text, const std::string& part) {
+  return text.find(part) != std::string::npos;
+}
+
+/// Standard deviation of the brightness in the picture's middle.
+double contrast(const Image& image) {
+  double sum = 0, squares = 0;
+  int count = 0;
+  for (int y = image.height / 3; y < 2 * image.height / 3; ++y) {
+    for (int x = image.width / 3; x < 2 * image.width / 3; ++x) {
+      const double value = image.pixels[3 * (std::size_t(y) * image.width + x) + 1];
+      sum += value, squares += value * value, ++count;
+    }
+  }
+  return std::sqrt(squares / count - sum / count * sum / count);
+}
+
+}  // namespace
+
+TEST_CASE("a report holds the figures of its run") {
+  const SampleRun run;
+  const std::string page = run.page(true, {});
+  const Json data = page_data(page);
+  CHECK(data["kind"] == "run");
+  CHECK(data["results"] == Json::parse(run.results.dump()));
+  REQUIRE(data["table"]["rows"].size() == 2);
+  CHECK(data["table"]["rows"][0]["method"] == "pcs");  // the progressive method comes first
+  CHECK(data["table"]["rows"][0]["iterations"] == 2468);
+  CHECK(data["table"]["rows"][0]["energy_released"] == 1.7654);
+  CHECK(data["config"] == "cloth: {size: 1 m}\n");
+  CHECK(data["iterations"]["rows"].size() == 12);
+  CHECK(contains(page, "<title>sample – drape</title>"));
+  for (const char* bad : {"{{", "}}\n", "src=\"http"}) {
+    INFO(bad);
+    CHECK_FALSE(contains(page.substr(0, page.find("<script>")), bad));
+  }
+  CHECK(fs::file_size(run.folder / "report.html") < 8'000'000);
+}
+
+TEST_CASE("a report that is told to stop skips the remaining pictures, with a note") {
+  const SampleRun run;
+  write_file(run.folder / "results.json", run.results.dump());
+  int asked = 0;
+  constexpr int most = 3 * 29 * 22;  // a picture of 900×700 asks twice for each of its 29×22 tiles
+  const auto cancelled = [&] { return ++asked > most; };
+  set_thread_count(1);  // the thread that draws asks; helpers would take tiles from it
+  const PictureSet set = draw_pictures(read_run(run.folder), cancelled);
+  set_thread_count(0);
+  CHECK(set.pictures.size() == 1);
+  CHECK(asked == most + 1);
+  REQUIRE(set.notes.size() == 1);
+  CHECK_THAT(set.notes.front(), Catch::Contains("drape report " + run.folder.string()));
+}
+
+TEST_CASE("the pictures of a report are drawn, stored and inlined") {
+  const SampleRun run;
+  const Json pictures = run.data(true)["pictures"];
+  const PictureSet set = draw_pictures(read_run(run.folder), {}, small_pictures);
+  CHECK(set.notes.empty());
+  REQUIRE(set.pictures.size() == 2 * (2 + 1));
+  CHECK(set.find("pcs_l0.png")->width == 300);
+  CHECK(set.find("pcs_l0.png")->height == 233);
+  for (const auto& [name, picture] : set.pictures) {
+    INFO(name);
+    CHECK(read_file(run.folder / "pictures" / name).substr(1, 3) == "PNG");
+    CHECK(contrast(picture) > 5);
+  }
+  REQUIRE(pictures.size() == 2);  // of each method, its end with the outline of its preview
+  CHECK(pictures[0]["method"] == "pcs");
+  CHECK(pictures[0]["png"] == base64(read_file(run.folder / "pictures/pcs_l0_on_l1.png")));
+  CHECK(pictures[0]["coarse"] == 0);
+  CHECK(pictures[0]["fine"] == 1);
+  const auto pixels = [&set](const char* name) { return set.find(name)->pixels; };
+  CHECK(pixels("pcs_l1.png") != pixels("newton_l1.png"));
+  CHECK(pixels("pcs_l1.png") != pixels("pcs_l0_on_l1.png"));
+}
+
+TEST_CASE("a report of a partial run has what there is") {
+  SampleRun run;
+  Json& newton = run.results["methods"]["newton"];
+
+  SECTION("a method that has just started") {
+    run.results["complete"] = false;
+    newton = {{"status", "running"}};
+    const Json data = run.data(true);
+    CHECK(data["table"]["rows"][1]["status"] == "running");
+    CHECK(data["table"]["rows"][1]["seconds"] == nullptr);
+    CHECK(data["pictures"].size() == 1);
+  }
+  SECTION("null figures and missing keys") {
+    for (auto& [key, value] : newton["levels"][1].items()) {
+      if (key != "level") value = nullptr;
+    }
+    newton["levels"][0].erase("energy_parts_released");
+    newton["seconds"] = std::nan("");
+    CHECK(run.data()["table"]["rows"][1]["energy_released"] == nullptr);
+  }
+  SECTION("no fields, steps, configuration and rest shapes") {
+    for (const char* name : {"fields", "rest", "levels", "iterations.csv", "config.yaml"})
+      fs::remove_all(run.folder / name);
+    const Json data = run.data(true);
+    CHECK(data["config"] == "");
+    CHECK(data["pictures"].empty());
+    CHECK(data["view"] == nullptr);
+    CHECK(data["iterations"]["rows"].empty());
+  }
+  SECTION("nothing but a name") {
+    run.results = {{"experiment", "early"}};
+    CHECK(run.data()["results"] == run.results);
+  }
+  SECTION("a mesh cut short and one with holes in its numbers") {
+    fs::resize_file(run.folder / "levels/newton_l1.ply",
+                    fs::file_size(run.folder / "levels/newton_l1.ply") / 2);
+    TriangleMesh mesh = read_mesh(run.folder / "levels/pcs_l1.ply");
+    mesh.vertices(5, 1) = std::nan("");
+    write_ply(run.folder / "levels/pcs_l1.ply", mesh);
+    const std::string notes = run.data(true)["notes"].dump();
+    CHECK(contains(notes, "newton_l1.ply"));
+    CHECK(contains(notes, "pcs_l1.ply: vertex 5 (counted from 0) has a coordinate that is not finite"));
+    const PictureSet pictures = draw_pictures(read_run(run.folder), {}, small_pictures);
+    CHECK(pictures.find("pcs_l1.png") == nullptr);
+    CHECK(pictures.find("pcs_l0_on_l1.png") == nullptr);
+    REQUIRE(pictures.find("pcs_l0.png"));
+    CHECK(contrast(*pictures.find("pcs_l0.png")) > 5);
+  }
+  SECTION("a last line of steps cut off") {
+    write_file(run.folder / "iterations.csv", read_file(run.folder / "iterations.csv") + "pcs,1,9");
+    CHECK(run.data()["iterations"]["rows"].size() == 12);
+  }
+}
+
+TEST_CASE("names in a report cannot break the page or leave its folder") {
+  SampleRun run;
+  const std::string evil = "../<b>\"x'</script>&";
+  run.results["experiment"] = evil;
+  run.results["description"] = evil;
+  run.results["methods"][evil] = run.results["methods"]["pcs"];
+  run.results["methods"][evil]["status"] = evil;
+  write_file(run.folder / "config.yaml", "# " + evil);
+  const std::string page = run.page(true);
+  CHECK_FALSE(contains(page, evil));
+  CHECK_FALSE(contains(page, "<b>"));
+  CHECK(contains(page, "<title>../&lt;b>\"x'&lt;/script>&amp; – drape</title>"));
+  CHECK(page_data(page)["results"]["description"] == evil);
+  CHECK(fs::exists(run.folder / "pictures" / "..__b__x___script___l0.png"));
+}
+
+TEST_CASE("methods of different names have different pictures") {
+  const auto pictures = [](const std::string& name) {
+    MethodRecord method;
+    method.name = name;
+    return std::vector<std::string>{state_picture(method, 0), outline_picture(method, {0, 1})};
+  };
+  CHECK(pictures("a.b")[0] == "a.b_l0.png");
+  const std::vector<std::string> names = {"a.b", "a_b", "a-b", "方法一", "方法二"};
+  for (const std::string& a : names)
+    for (const std::string& b : names)
+      for (std::size_t k = 0; k < 2; ++k) CHECK((pictures(a)[k] == pictures(b)[k]) == (a == b));
+}
+
+TEST_CASE("figures in a table have three digits") {
+  const std::pair<double, const char*> cases[] = {
+      {0, "0"},         {403.4, "403"},     {9999, "1.00e4"},   {1234, "1230"},    {0.02134, "0.0213"},
+      {0.9996, "1.00"}, {7.21e5, "7.21e5"}, {-1.2345, "-1.23"}, {4e-4, "4.00e-4"}, {99.96, "100"}};
+  for (const auto& [value, text] : cases) CHECK(number_text(value) == text);
+  CHECK(number_text({}) == "–");
+  CHECK(base64("light work.") == "bGlnaHQgd29yay4=");
+  CHECK(base64("light wor") == "bGlnaHQgd29y");
+  CHECK(base64("light wo") == "bGlnaHQgd28=");
+}
+
+TEST_CASE("a quantile of magnitudes leaves out what is not finite") {
+  Eigen::VectorXd v(5);
+  v << 0, 1, 5, -1, std::nan("");
+  const Eigen::VectorXd ramp = Eigen::VectorXd::LinSpaced(101, -100, 0);
+  CHECK(magnitude_quantile({&ramp, &v}, 1) == 100);
+  CHECK(magnitude_quantile({&ramp}, 0.5) == 50);
+  CHECK(magnitude_quantile({}, 0.5) == 0);
+}
+
+TEST_CASE("errors are read, and are in the page") {
+  SampleRun run;
+  CHECK(run.data()["errors"]["rows"].empty());
+  write_file(run.folder / "errors.csv",
+             "method,level,iteration,seconds,iterations,flops,vertices,own_rms,own_hausdorff,own_d_H_fit,"
+             "own_energy_gap,reference_rms,reference_hausdorff,reference_d_H_fit,reference_energy_gap\n"
+             "newton,0,2,1.5,2,1e8,169,0.5,0.5,9,0.5,,,,\n"
+             "newton,1,3,2.5,3,1e9,625,0,0,0,0,,,,\n"
+             "pcs,0,3,0.5,3,1e6,169,0.25,0.5,7,0.125,0.3,0.6,8,-0.01\n"
+             "pcs,1,9,0.7");  // cut short
+  run.results["reference"] = {{"method", "newton"}, {"force_tolerance", 1e-5}};
+  for (Json& level : run.results["methods"]["newton"]["levels"]) level["from_initial_state"] = true;
+  const Json page = run.data();
+  const Json pcs = row_of(read_run(run.folder), read_run(run.folder).methods[0]);
+  CHECK(pcs["preview_rms"] == 0.25);
+  CHECK(pcs["error_rms"] == nullptr);
+  CHECK(page["measures"][0] ==
+        Json{{"name", "rms"}, {"label", "distance, RMS [diagonal]"}, {"use", "ranking"}});
+  CHECK(page["errors"]["names"][7] == "own_rms");
+  REQUIRE(page["errors"]["rows"].size() == 3);
+  CHECK(page["errors"]["rows"][2][7] == 0.25);
+  CHECK(page["errors"]["rows"][0][11] == nullptr);
+}
+
+TEST_CASE("the viewer has every state, and recorded snapshots that fit their mesh") {
+  SampleRun run;
+  const auto whole_page = [&] { return run.page(); };
+  const std::string page = whole_page();
+  CHECK(contains(page, "id=\"viewer-m0l0\""));
+  CHECK(contains(page, "id=\"viewer-m1l1-stretch\""));
+  CHECK_FALSE(contains(page, "id=\"viewer-m0l0f0\""));
+
+  fs::create_directories(run.folder / "snapshots");
+  Json& level = run.results["methods"]["pcs"]["levels"][0];
+  level["snapshots"] = {
+      {"file", "snapshots/pcs_l0.bin"}, {"iterations", {1, 2, 3}}, {"seconds", {0.1, 0.2, 0.3}}};
+  write_file(run.folder / "snapshots/pcs_l0.bin", std::string(3 * 169 * 12, '\0'));
+  CHECK(contains(whole_page(), "id=\"viewer-m0l0f1\""));
+  write_file(run.folder / "snapshots/pcs_l0.bin", std::string(100, '\0'));
+  const std::string without = whole_page();
+  CHECK_FALSE(contains(without, "id=\"viewer-m0l0f1\""));
+  CHECK(contains(without, "id=\"viewer-m0l0\""));
+  CHECK(contains(without, "snapshots/pcs_l0.bin: holds 100 bytes, not 3 snapshots of 169 vertices"));
+}
+
+TEST_CASE("the fields that metrics declare pictures of are in the viewer") {
+  const SampleRun run;
+  const Json fields = run.data()["view"]["methods"][1]["levels"][0]["states"][0]["fields"];
+  CHECK(fields.contains("H_difference"));
+  CHECK(fields.contains("principal_curvature"));
+}

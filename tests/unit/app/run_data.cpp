@@ -1,0 +1,38 @@
+#include "core/app/report/run_data.h"
+
+#include <catch2/catch.hpp>
+
+#include "tests/support/command.h"
+#include "tests/support/refusal.h"
+
+using namespace drape;
+
+namespace {
+
+/// What reading a run says whose results.json is this.
+std::string said_of(const std::string& results) {
+  const Scratch folder;
+  folder.write("results.json", results);
+  const std::string prefix = folder.path.string() + "/", text = refusal_of([&] { read_run(folder.path); });
+  return text.starts_with(prefix) ? text.substr(prefix.size()) : text;
+}
+
+std::string said_of_level(const std::string& level) {
+  return said_of(R"({"methods": {"pcs": {"levels": [{"level": )" + level + "}]}}}");
+}
+
+}  // namespace
+
+TEST_CASE("a level that is no whole number is named with its file and its key") {
+  const std::string must = "results.json: \"level\" must be a whole number, not ",
+                    end = "; run the experiment again";
+  CHECK(said_of_level("1e300") == must + "1e+300" + end);
+  CHECK(said_of_level("-1") == must + "-1" + end);
+  CHECK(said_of_level("0.5") == must + "0.5" + end);
+  CHECK(said_of_level("2147483648") == must + "2147483648" + end);
+  CHECK(said_of_level("\"finest\"") == must + "\"finest\"" + end);
+  CHECK(said_of_level("2147483647") == "");
+  CHECK(said_of_level("null") == "");
+  CHECK(said_of(R"({"methods": {"pcs": {"consistency": [{"coarse": 0, "fine": 1e10}]}}})") ==
+        "results.json: \"fine\" must be a whole number, not 10000000000.0" + end);
+}

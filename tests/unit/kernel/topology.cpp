@@ -1,0 +1,94 @@
+#include "core/kernel/interfaces/topology.h"
+
+#include <catch2/catch.hpp>
+#include <set>
+#include <utility>
+
+#include "core/numerics/linear_algebra/same_entries.h"
+#include "core/numerics/patterns/generate.h"
+
+using namespace drape;
+
+namespace {
+
+Triangles two_triangles() {
+  Triangles t(2, 3);
+  t << 0, 1, 2, 2, 1, 3;
+  return t;
+}
+
+std::vector<int> row(const AdjacencyList& list, int i) { return {list.begin(i), list.end(i)}; }
+
+}  // namespace
+
+TEST_CASE("the topology of two triangles", "[topology]") {
+  const Topology topology = Topology::of(two_triangles(), 5);
+
+  Eigen::MatrixXi edges(5, 2), triangle_edges(2, 3), edge_triangles(5, 2);
+  edges << 1, 2, 0, 2, 0, 1, 1, 3, 2, 3;
+  triangle_edges << 0, 1, 2, 3, 4, 0;
+  edge_triangles << 0, 1, 0, -1, 0, -1, 1, -1, 1, -1;
+  CHECK(topology.edges == edges);
+  CHECK(topology.triangle_edges == triangle_edges);
+  CHECK(topology.edge_triangles == edge_triangles);
+  CHECK(topology.on_border == std::vector<char>{1, 1, 1, 1, 0});
+  CHECK(row(topology.vertex_vertices, 1) == std::vector<int>{0, 2, 3});
+  CHECK(row(topology.vertex_vertices, 3) == std::vector<int>{1, 2});
+  CHECK(row(topology.vertex_triangles, 2) == std::vector<int>{0, 1});
+  CHECK(row(topology.vertex_triangles, 4).empty());
+}
+
+TEST_CASE("meshes with another number of triangles have other triangles", "[topology]") {
+  const Triangles two = grid({1, 1}, 2, 2, Diagonals::one_way).triangles, one = two.topRows(1);
+  CHECK(same_entries(two, Triangles(two)));
+  CHECK_FALSE(same_entries(one, two));
+  CHECK_FALSE(same_entries(two, one));
+  CHECK_FALSE(same_entries(two, two.colwise().reverse()));
+}
+
+TEST_CASE("hinges keep the mesh's orientation", "[topology]") {
+  const Triangles two = two_triangles();
+  const auto hinges = Topology::of(two, 4).hinges(two);
+  REQUIRE(hinges.rows() == 1);
+  CHECK(hinges.row(0) == Eigen::RowVector4i(1, 2, 0, 3));
+
+  const TriangleMesh mesh = grid({1, 1}, 6, 5, Diagonals::criss_cross);
+  const Topology topology = Topology::of(mesh.triangles, 30);
+  const auto many = topology.hinges(mesh.triangles);
+  REQUIRE(many.rows() == topology.edges.rows() - 2 * (5 + 4));
+  std::set<std::vector<int>> rotations;
+  for (int t = 0; t < mesh.triangles.rows(); ++t)
+    for (int k = 0; k < 3; ++k)
+      rotations.insert(
+          {mesh.triangles(t, k), mesh.triangles(t, (k + 1) % 3), mesh.triangles(t, (k + 2) % 3)});
+  for (int h = 0; h < many.rows(); ++h) {
+    CHECK(rotations.count({many(h, 0), many(h, 1), many(h, 2)}) == 1);
+    CHECK(rotations.count({many(h, 1), many(h, 0), many(h, 3)}) == 1);
+  }
+}
+
+TEST_CASE("components are named by their first vertices", "[topology]") {
+  Triangles triangles(4, 3);
+  triangles << 0, 2, 4, 1, 3, 5, 4, 2, 7, 8, 9, 6;  // vertex 10 has no triangle
+  CHECK(Topology::of(triangles, 11).components() == std::vector<int>{0, 1, 6, 10});
+  CHECK(Topology::of(grid({1, 1}, 6, 5, Diagonals::criss_cross).triangles, 30).components() ==
+        std::vector<int>{0});
+}
+
+TEST_CASE("topology refuses what it cannot represent", "[topology]") {
+  Triangles t(3, 3);
+  t << 0, 1, 2, 1, 0, 3, 0, 1, 4;
+  CHECK_THROWS_WITH(Topology::of(t, 5), "topology: edge (0, 1) has more than two triangles");
+  CHECK_THROWS_WITH(Topology::of(t, 4), "topology: triangle 2 has a vertex outside 0 … 3");
+  t.row(1) << 1, 1, 3;
+  CHECK_THROWS_WITH(Topology::of(t, 5), "topology: triangle 1 repeats a vertex");
+}
+
+TEST_CASE("a fan of a million triangles takes no quadratic time", "[topology]") {
+  const int count = 1000000;  // linear: tenths of a second; quadratic: hours, which the test's limit ends
+  Triangles fan(count, 3);
+  for (int t = 0; t < count; ++t) fan.row(t) << 0, 1 + t, 1 + (t + 1) % count;
+  const Topology topology = Topology::of(fan, count + 1);
+  CHECK(topology.vertex_vertices.size(0) == count);
+  CHECK_FALSE(topology.on_border[0]);
+}

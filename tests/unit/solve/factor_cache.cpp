@@ -1,0 +1,181 @@
+#include "core/numerics/step/factor_cache.h"
+
+#include <catch2/catch.hpp>
+#include <limits>
+
+#include "core/numerics/step/equilibrium_check.h"
+#include "tests/support/newton_problem.h"
+#include "tests/support/registry.h"
+#include "tests/support/wells.h"
+
+using namespace drape;
+
+namespace {
+
+constexpr double mass_shift = 100;
+
+/// The cache of a problem with one fixed vertex, and how often it has factorised.
+struct CacheCase {
+  NewtonProblem problem{{std::make_shared<Wells>(NewtonProblem::rest().array() + 0.3, 10, 0.1)},
+                        {{0, NewtonProblem::rest().row(0), 0}}};
+  FactorCache cache;
+
+  explicit CacheCase(int interval) : cache(problem.iterate, with(interval)) {}
+  static NewtonParameters with(int interval) {
+    NewtonParameters p;
+    p.hessian_update_interval = interval;
+    return p;
+  }
+  /// The factorisations of one iteration that ends with this step length.
+  int iterate(double step_length = 1) {
+    const int before = problem.result.factorisations;
+    CHECK(cache.update(problem.model.fixed(), mass_shift, step_length));
+    cache.end_iteration(step_length);
+    return problem.result.factorisations - before;
+  }
+};
+
+/// Vertices 2i and 2i + 1 are joined by springs of length zero, so stiff that in single precision their
+/// masses make no difference: the matrix is positive definite, but not to a float.
+class StiffPairs : public Energy, public BoundEnergy {
+ public:
+  EnergyRole role() const override { return EnergyRole::membrane; }
+  std::unique_ptr<BoundEnergy> bind(const Level&, const Material&) const override {
+    return std::make_unique<StiffPairs>(*this);
+  }
+  double value(const Positions& x) const override {
+    double sum = 0;
+    for (int i = 0; i < 16; i += 2) sum += 0.5 * stiffness(i) * (x.row(i) - x.row(i + 1)).squaredNorm();
+    return sum;
+  }
+  double add_gradient(const Positions& x, Positions& g) const override {
+    for (int i = 0; i < 16; i += 2) {
+      const Eigen::RowVector3d force = stiffness(i) * (x.row(i) - x.row(i + 1));
+      g.row(i) += force;
+      g.row(i + 1) -= force;
+    }
+    return value(x);
+  }
+  Stencils stencils() const override {
+    Stencils s(8, 2);
+    for (int i = 0; i < 8; ++i) s.row(i) << 2 * i, 2 * i + 1;
+    return s;
+  }
+  void add_hessian(const Positions&, Projection, BlockSink& sink) const override {
+    for (int e = 0; e < 8; ++e)
+      for (int b = 0; b < 2; ++b)
+        for (int a = 0; a <= b; ++a) {
+          const Eigen::Matrix<double, 3, 3, Eigen::RowMajor> h =
+              (a == b ? 1 : -1) * stiffness(2 * e) * Eigen::Matrix3d::Identity();
+          sink.add(e, a, b, h.data());
+        }
+  }
+
+ private:
+  static double stiffness(int i) { return 1e12 * (1 + 0.123 * i); }
+};
+
+/// One iteration's solve by a cache, with what it factorised.
+struct CacheSolve {
+  NewtonProblem problem;
+  FactorCache cache;
+  Positions right = Positions::Random(16, 3), solution;
+
+  CacheSolve(std::shared_ptr<Energy> energy, const NewtonParameters& p)
+      : problem({std::move(energy)}), cache(problem.iterate, p) {}
+  int factorisations(double step_length = 0.5) {
+    const int before = problem.result.factorisations;
+    REQUIRE(cache.solve(problem.model.fixed(), mass_shift, step_length, right, solution));
+    cache.end_iteration(step_length);
+    return problem.result.factorisations - before;
+  }
+  /// ‖(A + shift M) x − b‖ / ‖b‖.
+  double residual() const {
+    Positions r;
+    cache.matrix().multiply(solution, r);
+    for (int i = 0; i < 16; ++i) r.row(i) += mass_shift * problem.model.masses()[i] * solution.row(i);
+    return (r - right).norm() / right.norm();
+  }
+};
+
+}  // namespace
+
+TEST_CASE("A factor in single precision solves as well as one in double precision") {
+  const auto wells = std::make_shared<Wells>(NewtonProblem::rest().array() + 0.3, 10, 0.1);
+  CacheSolve c(wells, {});
+  CHECK(c.factorisations() == 1);
+  CHECK(c.residual() < 1e-5);
+  CHECK(c.cache.state().fallback_updates == 0);
+  NewtonParameters p;
+  p.linear_solver = LinearSolver::supernodal;
+  CacheSolve in_double(wells, p);
+  CHECK(in_double.factorisations() == 1);
+  CHECK(in_double.residual() < 1e-14);
+}
+
+TEST_CASE("Where single precision does not suffice, factors are in double precision for a while") {
+  CacheSolve c(std::make_shared<StiffPairs>(), {});
+  for (int round = 0; round < 2; ++round) {
+    CHECK(c.factorisations() == 2);
+    CHECK(c.cache.state().fallback_updates == 10);
+    for (int k = 9; k >= 0; --k) {
+      CHECK(c.factorisations() == 1);
+      CHECK(c.cache.state().fallback_updates == k);
+    }
+    Positions sums(8, 3), expected(8, 3);  // of a pair, which moves as one
+    for (int i = 0; i < 8; ++i) {
+      const Eigen::VectorXd& m = c.problem.model.masses();
+      sums.row(i) =
+          mass_shift * (m[2 * i] * c.solution.row(2 * i) + m[2 * i + 1] * c.solution.row(2 * i + 1));
+      expected.row(i) = c.right.row(2 * i) + c.right.row(2 * i + 1);
+    }
+    CHECK((sums - expected).norm() < 1e-3 * expected.norm());
+  }
+}
+
+TEST_CASE("A lower blend whose factor does not serve in single precision is refused as indefinite") {
+  CacheSolve c(std::make_shared<StiffPairs>(), {});
+  FactorCache::State state = c.cache.state();
+  state.modification.blend = 0;
+  c.cache.restore(state);
+  CHECK(c.factorisations() == HessianModification::blend_count + 1);
+  CHECK(c.cache.state().modification.blend == HessianModification::blend_count - 1);
+}
+
+TEST_CASE("The static form has factors in double precision, and so have matrices of moved pins") {
+  const auto wells = std::make_shared<Wells>(NewtonProblem::rest().array() + 0.3, 10, 0.1);
+  NewtonParameters p;
+  p.form = NewtonForm::statics;
+  CacheSolve c(wells, p);
+  CHECK(c.factorisations() == 1);
+  CHECK(c.residual() < 1e-14);
+  CacheSolve moved(wells, {});
+  CHECK(moved.cache.update(moved.problem.model.fixed(), mass_shift, 1));
+  moved.cache.solve(moved.right, moved.solution);
+  CHECK(moved.residual() < 1e-14);
+}
+
+TEST_CASE("A factor serves as many iterations as the interval says") {
+  CacheCase c(3);
+  for (int round = 0; round < 2; ++round) {
+    CHECK(c.iterate() == 1);
+    CHECK(c.cache.age() == 1);
+    CHECK(c.iterate() == 0);
+    CHECK(c.iterate() == 0);
+    CHECK(c.cache.age() == 3);
+  }
+  CHECK(c.cache.analyses() == 1);
+  CHECK(c.problem.result.flops > 0);
+  CacheCase single(1);
+  for (int k = 0; k < 3; ++k) CHECK(single.iterate() == 1);
+}
+
+TEST_CASE("A shortened step makes an old factor stale, but not a new one") {
+  CacheCase c(5);
+  CHECK(c.iterate(0.5) == 1);
+  CHECK(c.iterate(0.5) == 0);
+  CHECK(c.iterate(1) == 1);
+  CHECK(c.iterate(1) == 0);
+  c.cache.invalidate();
+  CHECK(c.iterate(1) == 1);
+}

@@ -1,0 +1,357 @@
+#include "core/numerics/solve/newton.h"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "core/kernel/files/message_text.h"
+#include "core/numerics/patterns/generate.h"
+#include "core/numerics/solve/newton_state.h"
+#include "tests/support/limiter.h"
+#include "tests/support/weight.h"
+#include "tests/support/wells.h"
+
+using namespace drape;
+
+namespace {
+
+/// A finite energy with NaN forces: no equilibrium, although comparisons with NaN are false.
+class NoForces : public Wells {
+ public:
+  using Wells::Wells;
+  std::unique_ptr<BoundEnergy> bind(const Level&, const Material&) const override {
+    return std::make_unique<NoForces>(*this);
+  }
+  double add_gradient(const Positions& x, Positions& g) const override {
+    g.setConstant(std::nan(""));
+    return value(x);
+  }
+};
+
+/// An energy with a NaN in its Hessian at one vertex.
+class BrokenHessian : public Wells {
+ public:
+  BrokenHessian(const Positions& centres, int vertex) : Wells(centres, 10, 0.4), vertex_(vertex) {}
+  std::unique_ptr<BoundEnergy> bind(const Level&, const Material&) const override {
+    return std::make_unique<BrokenHessian>(*this);
+  }
+  void add_hessian(const Positions& x, Projection projection, BlockSink& sink) const override {
+    Wells::add_hessian(x, projection, sink);
+    double block[9] = {};
+    block[4] = std::nan("");
+    sink.add(vertex_, 0, 0, block);
+  }
+
+ private:
+  int vertex_;
+};
+
+class Silent : public Observer {
+ public:
+  int stop_after = 1 << 30, seen = 0;
+  std::vector<IterationRow> rows;
+  void iteration(const IterationRow& row, const Positions&) override { rows.push_back(row), ++seen; }
+  bool stop_requested() override { return seen >= stop_after; }
+};
+
+struct NewtonCase {
+  Level level = Level::of(0, grid({1, 1}, 4, 4, Diagonals::one_way));
+  Positions centres = level.rest.vertices.array() + 0.3;
+  Silent observer;
+
+  LevelResult solve(const NewtonParameters& p, double width = 0, double k = 10) {
+    const LevelModel model(level, Material(), {{"wells", std::make_shared<Wells>(centres, k, width)}},
+                           {{0, level.rest.vertices.row(0), 0}});
+    PlainObjective objective(model);
+    return minimise(objective, level.rest.vertices, p, {Stopwatch(), observer});
+  }
+};
+
+NewtonParameters tight() {
+  NewtonParameters p;
+  p.force_tolerance = 1e-9;
+  return p;
+}
+
+}  // namespace
+
+TEST_CASE("Newton finds the ring of minima around a hump, in both forms and with any projection",
+          "[newton]") {
+  for (NewtonForm form : {NewtonForm::quasistatic, NewtonForm::statics})
+    for (Projection::Kind projection : {Projection::clamp, Projection::none}) {
+      NewtonCase c;
+      c.centres = c.level.rest.vertices.array() + 0.05;  // the start is on the hump
+      NewtonParameters p = tight();
+      p.form = form;
+      p.projection = projection;
+      p.step_growth = 2;
+      const LevelResult r = c.solve(p, 0.4);
+      CAPTURE(int(form), int(projection), r.message);
+      REQUIRE(r.outcome == Outcome::converged);
+      REQUIRE(r.force_residual <= 1e-9);
+      for (int i = 1; i < 16; ++i) REQUIRE((r.x - c.centres).row(i).norm() == Approx(0.4).epsilon(1e-4));
+      REQUIRE(r.x.row(0) == c.level.rest.vertices.row(0));
+    }
+}
+
+TEST_CASE("Energy never rises from one implicit step to the next", "[newton]") {
+  NewtonCase c;
+  NewtonParameters p = tight();
+  p.step_size = 0.05;
+  c.solve(p, 0.4);
+  REQUIRE(c.observer.rows.size() > 3);
+  for (std::size_t i = 1; i < c.observer.rows.size(); ++i)
+    REQUIRE(c.observer.rows[i].energy <= c.observer.rows[i - 1].energy * (1 + 1e-12) + 1e-15);
+}
+
+TEST_CASE("The decrement is the mean speed of the step", "[newton]") {
+  NewtonCase c;
+  NewtonParameters p = tight();
+  p.max_steps = 1;
+  p.step_size = 0.2;
+  const LevelResult r = c.solve(p);
+  const double alpha = c.observer.rows.at(0).step_length;
+  const double moved = (r.x - c.level.rest.vertices).norm();
+  REQUIRE(moved > 1e-3);
+  REQUIRE(r.decrement == Approx(moved / alpha / (0.2 * std::sqrt(15.0))));
+}
+
+TEST_CASE("The outcome tells how a minimisation ended", "[newton]") {
+  NewtonCase c;
+  NewtonParameters p = tight();
+  p.max_steps = 2;
+  p.step_size = 0.01;
+  LevelResult r = c.solve(p, 0.4);
+  REQUIRE(r.outcome == Outcome::max_steps_reached);
+  REQUIRE(r.steps == 2);
+  REQUIRE(r.message.find("max_steps = 2") != std::string::npos);
+
+  NewtonCase stopped;
+  stopped.observer.stop_after = 3;
+  r = stopped.solve(p = tight(), 0.4);
+  REQUIRE(r.outcome == Outcome::cancelled);
+  REQUIRE(r.iterations == 3);
+
+  NewtonCase broken;
+  broken.centres(3, 1) = std::nan("");
+  r = broken.solve(tight());
+  REQUIRE(r.outcome == Outcome::infeasible);
+}
+
+TEST_CASE("The step size stays the same within an implicit step, and altogether without growth", "[newton]") {
+  NewtonCase several;
+  NewtonParameters p = tight();
+  p.iterations_per_step = 3;
+  several.solve(p, 0.4);
+  int within = 0, between = 0;
+  const auto& rows = several.observer.rows;
+  for (std::size_t i = 1; i < rows.size(); ++i) {
+    const bool same = rows[i].step_size == rows[i - 1].step_size;
+    if (rows[i].step == rows[i - 1].step) {
+      ++within;
+      REQUIRE(same);
+    } else {
+      between += !same;
+    }
+  }
+  REQUIRE(within > 3);
+  REQUIRE(between > 0);
+
+  NewtonCase constant;
+  p = tight();
+  p.step_growth = 1;
+  p.step_size = 2 * StepController::max_step_size;
+  constant.solve(p, 0.4);
+  REQUIRE(constant.observer.rows.size() > 2);
+  for (const IterationRow& row : constant.observer.rows) REQUIRE(row.step_size == p.step_size);
+}
+
+TEST_CASE("NaN forces are no equilibrium") {
+  NewtonCase c;
+  const LevelModel model(c.level, Material(), {{"broken", std::make_shared<NoForces>(c.centres, 1, 0.4)}},
+                         {});
+  PlainObjective objective(model);
+  const LevelResult r = minimise(objective, c.level.rest.vertices, tight(), {Stopwatch(), c.observer});
+  REQUIRE(r.outcome == Outcome::infeasible);
+  REQUIRE(r.message.find("not finite") != std::string::npos);
+}
+
+TEST_CASE(
+    "A Newton matrix with NaN ends the level as stalled, names the vertex and a pin short of its target",
+    "[newton]") {
+  for (const NewtonForm form : {NewtonForm::quasistatic, NewtonForm::statics})
+    for (const PsdBlend blend : {PsdBlend::adaptive, PsdBlend::full})
+      for (const double lift : {0.0, 0.1}) {  // of the pin's target: the predictor needs a factor too
+        NewtonCase c;
+        NewtonParameters p = tight();
+        p.form = form;
+        p.psd_blend = blend;
+        const Eigen::Vector3d target = c.level.rest.vertices.row(0).transpose() + Eigen::Vector3d(0, 0, lift);
+        const LevelModel model(c.level, Material(),
+                               {{"broken", std::make_shared<BrokenHessian>(c.centres, 5)}}, {{0, target, 0}});
+        PlainObjective objective(model);
+        const LevelResult r = minimise(objective, c.level.rest.vertices, p, {Stopwatch(), c.observer});
+        CAPTURE(int(form), int(blend), lift);
+        CHECK(r.outcome == Outcome::stalled);
+        CHECK(r.message ==
+              std::string("the Newton matrix holds entries that are not finite, first in the block of vertex "
+                          "5") +
+                  (lift > 0 ? "; pin 0 stopped 0.1 m short of its target (vertex 0)" : ""));
+        CHECK(r.x == c.level.rest.vertices);
+        CHECK(r.iterations == 0);
+      }
+}
+
+TEST_CASE("NaN in the Hessian at a fixed vertex is not part of the Newton matrix", "[newton]") {
+  NewtonCase c;
+  const LevelModel model(c.level, Material(), {{"broken", std::make_shared<BrokenHessian>(c.centres, 0)}},
+                         {{0, c.level.rest.vertices.row(0), 0}});
+  PlainObjective objective(model);
+  const LevelResult r = minimise(objective, c.level.rest.vertices, tight(), {Stopwatch(), c.observer});
+  INFO(r.message);
+  CHECK(r.outcome == Outcome::converged);
+}
+
+TEST_CASE("A stop, and a cloth that nothing holds, end an implicit step between its iterations", "[newton]") {
+  NewtonParameters p = tight();
+  p.iterations_per_step = 1000;
+  NewtonCase stopped;
+  stopped.observer.stop_after = 3;
+  const LevelResult r = stopped.solve(p, 0.4);
+  CHECK(r.outcome == Outcome::cancelled);
+  CHECK(r.iterations == 3);
+  CHECK(r.steps <= 1);
+
+  NewtonCase falling;
+  const LevelModel model(falling.level, Material(), {{"weight", std::make_shared<Weight>(16)}}, {});
+  PlainObjective objective(model);
+  p.form = NewtonForm::statics;
+  const LevelResult fallen =
+      minimise(objective, falling.level.rest.vertices, p, {Stopwatch(), falling.observer});
+  CHECK(fallen.outcome == Outcome::infeasible);
+  CHECK(fallen.iterations < 100);
+}
+
+TEST_CASE("An implicit step ends when it is solved, however many iterations it may take", "[newton]") {
+  NewtonCase patient;
+  NewtonParameters p = tight();
+  p.iterations_per_step = 50;
+  p.step_size = 0.01;
+  p.step_growth = 1;
+  p.max_steps = 20;
+  const LevelResult r = patient.solve(p, 0.4);
+  REQUIRE(r.outcome == Outcome::max_steps_reached);  // strong damping: not yet converged
+  for (const IterationRow& row : patient.observer.rows) {
+    REQUIRE(row.step_size == 0.01);
+    REQUIRE(row.iteration < 10);
+  }
+}
+
+TEST_CASE("A level that ends without descent names what limits the step", "[newton]") {
+  for (const NewtonForm form : {NewtonForm::quasistatic, NewtonForm::statics}) {
+    NewtonCase c;
+    const LevelModel model(
+        c.level, Material(),
+        {{"wells", std::make_shared<Wells>(c.centres, 10, 0)}, {"limit", std::make_shared<Limiter>(0)}}, {});
+    PlainObjective objective(model);
+    NewtonParameters p = tight();
+    p.form = form;
+    const LevelResult r = minimise(objective, c.level.rest.vertices, p, {Stopwatch(), c.observer});
+    CHECK(r.outcome == Outcome::stalled);
+    CHECK_THAT(r.message, Catch::StartsWith("the line search found no descent") &&
+                              Catch::EndsWith("; the step is limited by the limiter"));
+  }
+}
+
+TEST_CASE("A cloth that nothing holds is detected, in both forms", "[newton]") {
+  // Constant forces on a cloth without pins: it falls without end.
+  for (NewtonForm form : {NewtonForm::quasistatic, NewtonForm::statics}) {
+    NewtonCase c;
+    const LevelModel model(c.level, Material(), {{"weight", std::make_shared<Weight>(16)}}, {});
+    PlainObjective objective(model);
+    NewtonParameters p;
+    p.form = form;
+    const LevelResult r = minimise(objective, c.level.rest.vertices, p, {Stopwatch(), c.observer});
+    CAPTURE(int(form), r.steps);
+    CHECK(r.outcome == Outcome::infeasible);
+    const double drift = (r.x - c.level.rest.vertices).colwise().mean().norm();
+    CHECK_THAT(r.message,
+               Catch::StartsWith("nothing holds the cloth within 100 of its diagonals: it has drifted by ") &&
+                   Catch::Contains(" of them, " + three_digits(drift) + " m, and does not come to rest"));
+    CHECK(r.steps < 100);
+  }
+}
+
+TEST_CASE("A cloth without any force is at equilibrium: the residual scale has a lower bound") {
+  NewtonCase c;
+  const std::vector<DirichletVertex> dirichlet = {{0, c.level.rest.vertices.row(0), 0}};
+  c.centres = c.level.rest.vertices;  // the Dirichlet vertex is at its target
+  c.centres.bottomRows(15).array() += 0.01;
+  c.centres(0, 2) += 1e-12;  // but for round-off
+  const LevelModel model(c.level, Material(), {{"bowl", std::make_shared<Wells>(c.centres, 10, 0)}},
+                         dirichlet);
+  PlainObjective objective(model);
+  NewtonParameters p;
+  p.max_steps = 300;
+  const LevelResult r = minimise(objective, c.level.rest.vertices, p, {Stopwatch(), c.observer});
+  CAPTURE(r.message, r.steps);
+  CHECK(r.outcome == Outcome::converged);
+  const double weight = 9.81 * model.masses().tail(15).norm();
+  CHECK(model.residual_scale(r.x, Positions::Zero(16, 3)) == Approx(1e-3 * weight));
+}
+
+TEST_CASE("A minimisation resumed at any step continues bit for bit", "[newton]") {
+  /// Stores every checkpoint.
+  struct Storing : Silent {
+    std::vector<NewtonState> states;
+    bool checkpoint_due() override { return true; }
+    void checkpoint(const NewtonState& state) override { states.push_back(state); }
+  };
+  const LinearSolver solver = GENERATE(LinearSolver::mixed, LinearSolver::supernodal, LinearSolver::cholmod);
+  for (const int interval : {1, 3})
+    for (const int iterations : {1, 2})
+      for (const NewtonForm form : {NewtonForm::quasistatic, NewtonForm::statics}) {
+        NewtonCase c;
+        NewtonParameters p = tight();
+        p.linear_solver = solver;
+        p.hessian_update_interval = interval;
+        p.iterations_per_step = iterations;
+        p.form = form;
+        p.decrement_tolerance = 1e-7;
+        const Positions centres = c.level.rest.vertices.array() + 0.05;
+        const LevelModel model(c.level, Material(), {{"wells", std::make_shared<Wells>(centres, 10, 0.4)}},
+                               {{0, c.level.rest.vertices.row(0), 0}});
+        Storing whole;
+        PlainObjective first(model);
+        const LevelResult expected =
+            minimise(first, c.level.rest.vertices, p, {Stopwatch(), whole, false, {{"before", 2}}});
+        CAPTURE(int(solver), interval, iterations, int(form), expected.message);
+        REQUIRE(expected.outcome == Outcome::converged);
+        REQUIRE(whole.states.size() > 4);
+        int stored_factors = 0;
+        for (const NewtonState& state : whole.states) {
+          stored_factors += !state.step.factor.values.empty();
+          PlainObjective again(model);
+          Silent rest;
+          const LevelResult r = minimise(again, {}, p, {Stopwatch(), rest, false, {}, &state});
+          REQUIRE(r.x == expected.x);
+          REQUIRE(r.force_residual == expected.force_residual);
+          REQUIRE(r.decrement == expected.decrement);
+          REQUIRE(r.iterations == expected.iterations);
+          REQUIRE(r.factorisations == expected.factorisations);
+          REQUIRE(r.analyses == expected.analyses);
+          REQUIRE(r.flops == expected.flops);
+          REQUIRE(r.seconds > 2);
+          REQUIRE(r.seconds_by_phase.at("before") == 2);
+          REQUIRE(rest.rows.size() + state.so_far.iterations == whole.rows.size());
+          for (std::size_t i = 0; i < rest.rows.size(); ++i) {
+            const IterationRow &a = rest.rows[i], &b = whole.rows[state.so_far.iterations + i];
+            REQUIRE(a.energy == b.energy);
+            REQUIRE(a.step == b.step);
+            REQUIRE(a.step_size == b.step_size);
+            REQUIRE(a.step_length == b.step_length);
+            REQUIRE(a.force_residual == b.force_residual);
+          }
+        }
+        REQUIRE((stored_factors > 0) == (interval > 1));
+      }
+}
