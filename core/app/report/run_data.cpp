@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 #include <string_view>
+#include <utility>
 
 #include "core/app/files/json_file.h"
 #include "core/app/files/yaml_file.h"
@@ -24,10 +25,7 @@ constexpr std::pair<std::string_view, OptionalNumber LevelRecord::*> level_quant
     {"iterations", &LevelRecord::iterations},
     {"seconds", &LevelRecord::seconds},
     {"flops", &LevelRecord::flops},
-    {"energy", &LevelRecord::energy},
-    {"energy_on_finest", &LevelRecord::energy_on_finest},
     {"energy_released", &LevelRecord::energy_released},
-    {"force_residual", &LevelRecord::force_residual},
     {"intersections", &LevelRecord::intersections},
     {"smallest_gap", &LevelRecord::smallest_gap}};
 
@@ -55,13 +53,6 @@ std::vector<OptionalNumber> numbers(const Json& json) {
   return all;
 }
 
-NamedNumbers named_numbers(const Json& json) {
-  NamedNumbers numbers;
-  if (!json.is_object()) return numbers;
-  for (const auto& [name, value] : json.items()) numbers.emplace_back(name, number(value));
-  return numbers;
-}
-
 /// results.json, and what its metrics declare.
 struct Results {
   JsonFile file;
@@ -82,8 +73,6 @@ struct Results {
     for (const auto& [name, member] : level_quantities)
       r.*member = number(member_of(json, std::string(name)));
     r.from_initial_state = is_true(member_of(json, "from_initial_state"));
-    r.seconds_by_phase = named_numbers(member_of(json, "seconds_by_phase"));
-    r.energy_parts = named_numbers(member_of(json, "energy_parts"));
     r.metrics = values(json, MetricScope::state);
     r.mesh = text_member(json, "mesh");
     const Json& snapshots = member_of(json, "snapshots");
@@ -101,8 +90,6 @@ struct Results {
     method.name = name;
     method.status = text_member(json, "status");
     method.solver = text_member(json, "solver");
-    method.seconds = number(member_of(json, "seconds"));
-    method.peak_memory_bytes = number(member_of(json, "peak_memory_bytes"));
     for (const Json& entry : list(member_of(json, "levels")))
       if (entry.is_object()) method.levels.push_back(level(entry, method.levels.size()));
     for (const Json& pair : list(member_of(json, "consistency"))) {

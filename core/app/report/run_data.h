@@ -5,7 +5,6 @@
 #include <map>
 #include <optional>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "core/app/experiment/error_measures.h"
@@ -14,9 +13,6 @@
 #include "core/kernel/interfaces/triangle_mesh.h"
 
 namespace drape {
-
-/// Numbers by name, in file order.
-using NamedNumbers = std::vector<std::pair<std::string, OptionalNumber>>;
 
 /// The known values of metrics, by name.
 struct Values : std::map<std::string, double> {
@@ -41,11 +37,9 @@ struct LevelRecord {
   int level = 0;
   std::string status, message;
   OptionalNumber vertices, steps, iterations, seconds, flops;
-  bool from_initial_state = false;          ///< earlier levels do not contribute
-  OptionalNumber energy, energy_on_finest;  ///< from the potentials' origin [J]
-  OptionalNumber energy_released;           ///< of the finest level, since the scene's start [J]
-  OptionalNumber force_residual, intersections, smallest_gap;
-  NamedNumbers seconds_by_phase, energy_parts;
+  bool from_initial_state = false;  ///< earlier levels do not contribute
+  OptionalNumber energy_released;   ///< of the finest level, since the scene's start [J]
+  OptionalNumber intersections, smallest_gap;
   Values metrics;    ///< of state metrics, by column
   std::string mesh;  ///< relative to the run's folder; may be empty
   SnapshotRecord snapshots;
@@ -63,8 +57,7 @@ struct ConsistencyRecord {
 
 struct MethodRecord {
   std::string name, status;
-  std::string solver;  ///< its type: a method is named in the experiment
-  OptionalNumber seconds, peak_memory_bytes;
+  std::string solver;               ///< its type: a method is named in the experiment
   OptionalNumber step_size;         ///< h of the first implicit step, and of the static form's decrement [s]
   std::vector<LevelRecord> levels;  ///< coarse to fine
   std::vector<ConsistencyRecord> consistency;
