@@ -1,5 +1,3 @@
-#include "core/app/cli/plugin_files.h"
-
 #include <unistd.h>
 
 #include <chrono>
@@ -9,6 +7,7 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "core/app/cli/commands.h"
 #include "core/app/sweep/process.h"
 #include "core/kernel/files/file.h"
 #include "core/kernel/files/message_text.h"
@@ -120,16 +119,8 @@ fs::path compiled(const fs::path& source) {
 
 }  // namespace
 
-void PluginFiles::add_to(CLI::App& command) {
-  command
-      .add_option("--plugin", files_,
-                  "source of a plugin, one C++ file, to be compiled and loaded; may be repeated")
-      ->type_name("FILE")
-      ->allow_extra_args(false);
-}
-
-void PluginFiles::compile() const {
-  for (const std::string& file : files_) {
+void compile_plugins(const std::vector<std::string>& files) {
+  for (const std::string& file : files) {
     const std::string folder = compiled(fs::absolute(file)).string();
     const std::string before = variable("DRAPE_PLUGIN_PATH");
     setenv("DRAPE_PLUGIN_PATH", (before.empty() ? folder : before + ":" + folder).c_str(), 1);
