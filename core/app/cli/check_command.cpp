@@ -4,9 +4,9 @@
 #include "core/app/cli/commands.h"
 #include "core/app/cli/config_arguments.h"
 #include "core/app/experiment/exit_codes.h"
-#include "core/app/experiment/plausibility.h"
 #include "core/app/files/machine.h"
 #include "core/app/files/yaml_file.h"
+#include "core/app/scene/scene_summary.h"
 #include "core/app/sweep/sweep.h"
 #include "core/kernel/files/message_text.h"
 #include "core/kernel/plugin/make.h"
@@ -36,7 +36,7 @@ int check_experiment(const ConfigArguments& arguments, const Registry& registry)
     std::cout << (level.index ? ", " : " ") << memory_text(estimated_memory(level.vertex_count()));
   std::cout << "; this machine has " << memory_text(machine_memory()) << "\nRead: " << text_of(loaded.summary)
             << "\n";
-  for (const std::string& line : loaded.experiment.remarks(*loaded.scene))
+  for (const std::string& line : remarks_of(loaded.experiment, *loaded.scene))
     std::cout << printable(line) << "\n";
   for (const NamedEnergy& e : loaded.experiment.energies)
     for (const std::string& line : e.energy->remarks(loaded.experiment.parameters.material))

@@ -6,8 +6,8 @@
 #include <iostream>
 #include <limits>
 
-#include "core/app/experiment/plausibility.h"
 #include "core/app/run/start_repair.h"
+#include "core/app/scene/scene_summary.h"
 #include "core/kernel/files/message_text.h"
 #include "core/kernel/plugin/parameters.h"
 

@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "core/app/experiment/experiment.h"
-#include "core/app/experiment/scene_summary.h"
-#include "core/app/experiment/size_estimate.h"
+#include "core/app/experiment/cloth.h"
+#include "core/app/scene/scene.h"
+#include "core/app/scene/scene_summary.h"
 
 namespace drape {
 

@@ -6,7 +6,7 @@
 #include <iterator>
 #include <stdexcept>
 
-#include "core/app/experiment/method_choice.h"
+#include "core/app/experiment/experiment.h"
 #include "core/app/files/file_lock.h"
 #include "core/app/files/json_file.h"
 #include "core/kernel/files/file.h"

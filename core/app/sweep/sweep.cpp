@@ -5,9 +5,9 @@
 #include <set>
 #include <tuple>
 
+#include "core/app/experiment/cloth.h"
 #include "core/app/experiment/describe.h"
 #include "core/app/experiment/experiment_path.h"
-#include "core/app/experiment/size_estimate.h"
 #include "core/app/files/yaml_file.h"
 #include "core/app/sweep/variations.h"
 #include "core/kernel/files/message_text.h"

@@ -6,6 +6,7 @@
 #include <cctype>
 #include <cstring>
 #include <map>
+#include <utility>
 
 #include "core/app/files/file_name.h"
 #include "core/app/files/yaml_file.h"
@@ -92,11 +93,15 @@ Variation named(const ConfigNode& node, ConfigErrors& errors) {
                       "expected message then"});
   check_settings(v.set, errors);
   if (v.levels) {
-    if (const ConfigNode* twice = v.set.find("levels"))
-      errors.push_back(
-          {twice->where, "\"levels\" is given twice in variation \"" + v.name + "\"; take one of them out"});
+    const ConfigNode set = std::exchange(v.set, {});
     v.set.add("levels", *node.find("levels"));
-    v.set.key_locations.back() = node.find("levels")->where;
+    for (std::size_t k = 0; k < set.entries.size(); ++k) {
+      if (set.entries[k].first == "levels")
+        errors.push_back({set.key_locations[k],
+                          "\"levels\" is given twice in variation \"" + v.name + "\"; take one of them out"});
+      v.set.add(set.entries[k].first, set.entries[k].second);
+      v.set.key_locations.back() = set.key_locations[k];
+    }
   }
   v.where = v.methods_where = node.where;
   if (const ConfigNode* methods = node.find("methods")) v.methods_where = methods->where;
