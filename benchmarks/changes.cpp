@@ -13,8 +13,8 @@
 #include <string>
 
 #include "benchmarks/measure.h"
-#include "core/app/experiment/experiment.h"
 #include "core/app/files/machine.h"
+#include "core/app/scene/scene.h"
 #include "core/kernel/plugin/loader.h"
 #include "core/kernel/threads/parallel.h"
 #include "core/kernel/threads/stopwatch.h"

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "core/app/experiment/experiment.h"
+#include "core/app/scene/scene.h"
 
 // What several benchmarks need.
 

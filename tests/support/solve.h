@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "core/app/experiment/experiment.h"
+#include "core/app/scene/scene.h"
 #include "tests/support/command.h"
 #include "tests/support/registry.h"
 

@@ -1,13 +1,12 @@
-#include "core/app/cli/check_command.h"
-
 #include <iostream>
 #include <set>
 
-#include "core/app/cli/help.h"
+#include "core/app/cli/commands.h"
+#include "core/app/cli/config_arguments.h"
 #include "core/app/experiment/exit_codes.h"
-#include "core/app/experiment/plausibility.h"
 #include "core/app/files/machine.h"
 #include "core/app/files/yaml_file.h"
+#include "core/app/scene/scene_summary.h"
 #include "core/app/sweep/sweep.h"
 #include "core/kernel/files/message_text.h"
 #include "core/kernel/plugin/make.h"
@@ -24,6 +23,27 @@ bool is_sweep_file(const std::string& file) {
   return root.find("base") || root.find("experiments") || root.find("ablation");
 }
 
+int check_experiment(const ConfigArguments& arguments, const Registry& registry) {
+  const LoadedExperiment loaded(arguments, registry);
+  ConfigErrors errors;
+  refuse_infinite_energies(loaded.experiment, *loaded.scene, errors);
+  require_none(errors);
+  std::cout << arguments.config << ": valid.";
+  for (const Level& level : loaded.scene->hierarchy.levels)
+    std::cout << (level.index ? ", " : " Vertices by level: ") << level.vertex_count();
+  std::cout << "\nMemory to solve them, at most about:";
+  for (const Level& level : loaded.scene->hierarchy.levels)
+    std::cout << (level.index ? ", " : " ") << memory_text(estimated_memory(level.vertex_count()));
+  std::cout << "; this machine has " << memory_text(machine_memory()) << "\nRead: " << text_of(loaded.summary)
+            << "\n";
+  for (const std::string& line : remarks_of(loaded.experiment, *loaded.scene))
+    std::cout << printable(line) << "\n";
+  for (const NamedEnergy& e : loaded.experiment.energies)
+    for (const std::string& line : e.energy->remarks(loaded.experiment.parameters.material))
+      std::cout << printable(e.name + ": " + line) << "\n";
+  return exit_done;
+}
+
 /// Appends the faults of a run of a sweep, each named after its variation.
 void check_run(const SweepRun& run, const Location& where, LargeMemory large, const Registry& registry,
                ConfigErrors& errors) {
@@ -36,54 +56,20 @@ void check_run(const SweepRun& run, const Location& where, LargeMemory large, co
     errors.push_back({where, "variation \"" + run.name + "\": " + fault.message});
 }
 
-}  // namespace
-
-CheckCommand::CheckCommand(CLI::App& app)
-    : command_(app.add_subcommand("check", "check an experiment or a sweep without running it")) {
-  show_example(*command_, "drape check configs/sphere.yaml --set newton.step_size=0.1");
-  arguments_.add_to(*command_);
-}
-
-int CheckCommand::run(const Registry& registry) const {
-  return is_sweep_file(arguments_.config) ? check_sweep(registry) : check_experiment(registry);
-}
-
-int CheckCommand::check_experiment(const Registry& registry) const {
-  Loaded loaded(arguments_, registry);
-  if (loaded.exit_code) return loaded.exit_code;
-  ConfigErrors errors;
-  refuse_infinite_energies(*loaded.experiment, *loaded.scene, errors);
-  if (!errors.empty()) return report_errors(errors);
-  std::cout << arguments_.config << ": valid.";
-  for (const Level& level : loaded.scene->hierarchy.levels)
-    std::cout << (level.index ? ", " : " Vertices by level: ") << level.vertex_count();
-  std::cout << "\nMemory to solve them, at most about:";
-  for (const Level& level : loaded.scene->hierarchy.levels)
-    std::cout << (level.index ? ", " : " ") << memory_text(estimated_memory(level.vertex_count()));
-  std::cout << "; this machine has " << memory_text(machine_memory()) << "\nRead: " << text_of(loaded.summary)
-            << "\n";
-  for (const std::string& line : loaded.experiment->remarks(*loaded.scene))
-    std::cout << printable(line) << "\n";
-  for (const NamedEnergy& e : loaded.experiment->energies)
-    for (const std::string& line : e.energy->remarks(loaded.experiment->parameters.material))
-      std::cout << printable(e.name + ": " + line) << "\n";
-  return exit_done;
-}
-
-int CheckCommand::check_sweep(const Registry& registry) const {
-  const std::string& file = arguments_.config;
-  if (!arguments_.sets.empty() || arguments_.levels > 0 || arguments_.allow_start_repair)
+int check_sweep(const ConfigArguments& arguments, const Registry& registry) {
+  const std::string& file = arguments.config;
+  if (!arguments.sets.empty() || arguments.levels > 0 || arguments.allow_start_repair)
     throw std::runtime_error(file +
                              " is a sweep: leave out --set, --levels and --allow-start-repair, and "
                              "change what it sets in the file");
   ConfigErrors errors;
   const std::optional<Sweep> sweep = read_sweep(file, registry, errors);
-  if (!sweep) return report_errors(errors);
+  require_none(errors);
   std::set<std::string> variations;
   for (const SweepRun& run : sweep->runs)
     if (variations.insert(run.name).second && run.expect.status != "refused")
-      check_run(run, {file}, arguments_.large_memory(), registry, errors);
-  if (!errors.empty()) return report_errors(errors);
+      check_run(run, {file}, arguments.large_memory(), registry, errors);
+  require_none(errors);
   const std::size_t runs = sweep->runs.size(), seeds = runs / variations.size();
   std::cout << file << ": valid. A sweep of " << runs << (runs == 1 ? " run: " : " runs: ")
             << variations.size() << (variations.size() == 1 ? " variation, " : " variations, ") << seeds
@@ -91,25 +77,35 @@ int CheckCommand::check_sweep(const Registry& registry) const {
   return exit_done;
 }
 
-CheckEnergyCommand::CheckEnergyCommand(CLI::App& app)
-    : command_(
-          app.add_subcommand("check-energy", "compare an energy's derivatives with finite differences")) {
-  show_example(*command_, "drape check-energy neo_hookean");
-  command_
-      ->add_option("energy", energy_,
-                   "name of the energy, or a map with its type and parameters as in an experiment")
-      ->required();
-}
-
-int CheckEnergyCommand::run(const Registry& registry) const {
+int check_energy(const std::string& energy, const Registry& registry) {
   ConfigErrors errors;
-  const std::optional<ConfigNode> node = value_of_option(energy_, "energy", errors);
-  const auto energy = node ? make_from<Energy>(registry, *node, errors) : nullptr;
-  if (!energy) return report_errors(errors);
-  const DerivativeCheck check = check_derivatives(*energy, Material());
+  const std::optional<ConfigNode> node = value_of_option(energy, "energy", errors);
+  const auto made = node ? make_from<Energy>(registry, *node, errors) : nullptr;
+  require_none(errors);
+  const DerivativeCheck check = check_derivatives(*made, Material());
   std::cout << check.text() << "derivatives " << (check.agrees() ? "agree with" : "DIFFER from")
             << " finite differences\n";
   return check.agrees() ? exit_done : exit_not_converged;
+}
+
+}  // namespace
+
+void add_check_commands(Commands& commands) {
+  const auto arguments = std::make_shared<ConfigArguments>();
+  arguments->add_to(commands.add_with_plugins(
+      "check", "check an experiment or a sweep without running it",
+      "drape check configs/sphere.yaml --set newton.step_size=0.1", [arguments](const Registry& registry) {
+        return is_sweep_file(arguments->config) ? check_sweep(*arguments, registry)
+                                                : check_experiment(*arguments, registry);
+      }));
+  const auto energy = std::make_shared<std::string>();
+  commands
+      .add_with_plugins("check-energy", "compare an energy's derivatives with finite differences",
+                        "drape check-energy neo_hookean",
+                        [energy](const Registry& registry) { return check_energy(*energy, registry); })
+      .add_option("energy", *energy,
+                  "name of the energy, or a map with its type and parameters as in an experiment")
+      ->required();
 }
 
 }  // namespace drape

@@ -4,21 +4,27 @@
 #include <cmath>
 #include <cstdio>
 #include <iostream>
+#include <limits>
 
-#include "core/app/experiment/exit_codes.h"
-#include "core/app/experiment/plausibility.h"
 #include "core/app/run/start_repair.h"
+#include "core/app/scene/scene_summary.h"
 #include "core/kernel/files/message_text.h"
 #include "core/kernel/plugin/parameters.h"
 
 namespace drape {
 
-std::string positive_integer(const std::string& text) {
-  const std::optional<int> number = parse_integer(text);
-  return number && *number > 0 ? "" : "must be an integer of at least 1, not " + text;
+OptionCheck integer_between(int least, int most, const std::string& what) {
+  return [=](const std::string& text) {
+    const std::optional<int> number = parse_integer(text);
+    return number && *number >= least && *number <= most ? "" : "must be " + what + ", not " + excerpt(text);
+  };
 }
 
-std::function<std::string(const std::string&)> number_of_at_least(double least) {
+OptionCheck positive_integer() {
+  return integer_between(1, std::numeric_limits<int>::max(), "an integer of at least 1");
+}
+
+OptionCheck number_of_at_least(double least) {
   return [least](const std::string& text) {
     const std::optional<double> number = parse_number(text);
     return number && std::isfinite(*number) && *number >= least
@@ -39,30 +45,34 @@ std::string remedy(const std::string& message) {
 
 }  // namespace
 
-int report_errors(const ConfigErrors& errors) {
+void RefusedConfig::list() const {
   constexpr std::size_t most_listed = 40;
   for (std::size_t k = 0; k < std::min(errors.size(), most_listed); ++k)
     std::cerr << "error: " << errors[k].text() << remedy(errors[k].message) << "\n";
   if (errors.size() > most_listed) std::cerr << "error: and " << errors.size() - most_listed << " more\n";
-  return exit_bad_input;
+}
+
+void require_none(const ConfigErrors& errors) {
+  if (!errors.empty()) throw RefusedConfig{errors};
 }
 
 void warn_of(const std::vector<std::string>& lines) {
   for (const std::string& line : lines) std::cerr << "warning: " << printable(line) << "\n";
 }
 
-void ConfigArguments::add_to(CLI::App& command) {
-  config_option = command.add_option("experiment", config, "experiment file (YAML)")->required();
+CLI::Option* ConfigArguments::add_to(CLI::App& command) {
+  CLI::Option* file = command.add_option("experiment", config, "experiment file (YAML)")->required();
   command.add_option("--set", sets, "override one value, as in newton.step_size=0.1; may be repeated")
       ->type_name("KEY=VALUE")
       ->allow_extra_args(false);
   command.add_option("--levels", levels, "number of levels, in place of the experiment's")
       ->type_name("N")
-      ->check(positive_integer);
+      ->check(positive_integer());
   command.add_flag("--allow-start-repair", allow_start_repair,
                    "translate an intersecting start up or sideways until it is free");
   command.add_flag("--allow-memory", allow_memory,
                    "allow a run that may need more memory than this machine has");
+  return file;
 }
 
 Overrides ConfigArguments::overrides() const {
@@ -77,33 +87,25 @@ Overrides ConfigArguments::overrides() const {
   return all;
 }
 
-Loaded::Loaded(const ConfigArguments& arguments, const Registry& registry) {
+LoadedExperiment::LoadedExperiment(const ConfigArguments& arguments, const Registry& registry) {
   ConfigErrors errors;
-  experiment = read_experiment(arguments.config, arguments.overrides(), registry, errors);
-  if (errors.empty()) refuse_too_large(*experiment, arguments.large_memory(), errors);
-  if (errors.empty())
-    scene =
-        build_scene(*experiment, errors,
-                    arguments.allow_start_repair ? IntersectingStart::allowed : IntersectingStart::refused);
-  if (scene && arguments.allow_start_repair) repair(errors);
-  if (!errors.empty()) {
-    exit_code = report_errors(errors);
-    return;
-  }
+  auto read = read_experiment(arguments.config, arguments.overrides(), registry, errors);
+  if (read) refuse_too_large(*read, arguments.large_memory(), errors);
+  require_none(errors);
+  experiment = std::move(*read);
+  const bool repair = arguments.allow_start_repair;
+  scene = build_scene(experiment, errors, repair ? IntersectingStart::allowed : IntersectingStart::refused);
+  require_none(errors);
+  const Eigen::Vector3d moved =
+      repair ? repair_start(experiment, *scene, errors) : Eigen::Vector3d(Eigen::Vector3d::Zero());
+  if (!moved.isZero(0)) scene = build_scene(experiment, errors);
+  require_none(errors);
+  if (!moved.isZero(0))
+    std::fprintf(stderr, "start moved by (%.4g, %.4g, %.4g) m; it touches nothing now\n", moved.x(),
+                 moved.y(), moved.z());
   summary = summary_of(*scene);
-  std::vector<std::string> warnings;
-  for (const ConfigError& warning : plausibility_warnings(*experiment, *scene, summary))
-    warnings.push_back(warning.text());
-  warn_of(warnings);
-}
-
-void Loaded::repair(ConfigErrors& errors) {
-  const Eigen::Vector3d translation = repair_start(*experiment, *scene, errors);
-  if (translation.isZero(0)) return;
-  scene = build_scene(*experiment, errors);
-  if (errors.empty())
-    std::fprintf(stderr, "start moved by (%.4g, %.4g, %.4g) m; it touches nothing now\n", translation.x(),
-                 translation.y(), translation.z());
+  for (const ConfigError& warning : plausibility_warnings(experiment, *scene, summary))
+    warn_of({warning.text()});
 }
 
 }  // namespace drape

@@ -3,24 +3,30 @@
 #include <CLI/CLI.hpp>
 #include <functional>
 #include <memory>
-#include <optional>
 #include <string>
 #include <vector>
 
-#include "core/app/experiment/experiment.h"
-#include "core/app/experiment/scene_summary.h"
-#include "core/app/experiment/size_estimate.h"
+#include "core/app/experiment/cloth.h"
+#include "core/app/scene/scene.h"
+#include "core/app/scene/scene_summary.h"
 
 namespace drape {
 
-/// Validates a positive integer option: an error text, or "".
-std::string positive_integer(const std::string& text);
+/// Checks of options: an error text, or "".
+using OptionCheck = std::function<std::string(const std::string&)>;
+/// A check for an integer in a range; its error is "must be WHAT, not …".
+OptionCheck integer_between(int least, int most, const std::string& what);
+OptionCheck positive_integer();
+OptionCheck number_of_at_least(double least);
 
-/// The same for a number of at least `least`.
-std::function<std::string(const std::string&)> number_of_at_least(double least);
+/// Thrown for a config with faults, which nothing has been done with.
+struct RefusedConfig {
+  ConfigErrors errors;
+  void list() const;  ///< prints the first of them on standard error
+};
 
-/// Prints the errors and returns the exit code.
-int report_errors(const ConfigErrors& errors);
+/// Throws RefusedConfig if there are errors.
+void require_none(const ConfigErrors& errors);
 
 /// Prints each line as a warning on standard error.
 void warn_of(const std::vector<std::string>& lines);
@@ -32,25 +38,21 @@ struct ConfigArguments {
   int levels = 0;
   bool allow_start_repair = false;
   bool allow_memory = false;
-  CLI::Option* config_option = nullptr;
 
-  void add_to(CLI::App& command);
+  /// Adds the options to a command; returns that of the file, which is required.
+  CLI::Option* add_to(CLI::App& command);
   Overrides overrides() const;
   LargeMemory large_memory() const { return allow_memory ? LargeMemory::allowed : LargeMemory::refused; }
 };
 
-/// An experiment and its scene; both empty, with errors printed, if they are not valid. Warns of what is not
-/// plausible.
-struct Loaded {
-  std::optional<Experiment> experiment;
+/// An experiment and its scene.
+struct LoadedExperiment {
+  Experiment experiment;
   std::unique_ptr<Scene> scene;
   SceneSummary summary;
-  int exit_code = 0;
 
-  Loaded(const ConfigArguments& arguments, const Registry& registry);
-
- private:
-  void repair(ConfigErrors& errors);
+  /// Warns of what is not plausible. Throws RefusedConfig if the experiment is not valid.
+  LoadedExperiment(const ConfigArguments& arguments, const Registry& registry);
 };
 
 }  // namespace drape

@@ -1,5 +1,3 @@
-#include "core/app/cli/new_command.h"
-
 #include <cerrno>
 #include <cstdio>
 #include <filesystem>
@@ -7,7 +5,7 @@
 #include <stdexcept>
 #include <system_error>
 
-#include "core/app/cli/help.h"
+#include "core/app/cli/commands.h"
 #include "core/app/experiment/exit_codes.h"
 #include "core/app/experiment/experiment.h"
 #include "core/kernel/files/message_text.h"
@@ -80,16 +78,8 @@ std::string text_of(const std::string& file, const std::string& name) {
          name + "\"\n" + first_experiment;
 }
 
-}  // namespace
-
-NewCommand::NewCommand(CLI::App& app)
-    : command_(app.add_subcommand("new", "write a commented first experiment")) {
-  show_example(*command_, "drape new scarf.yaml");
-  command_->add_option("file", file_, "file to write, which must not exist (default: first.yaml)");
-}
-
-int NewCommand::run() const {
-  std::filesystem::path file = file_;
+/// Throws std::runtime_error if the file exists, or cannot be made, or its name cannot be an experiment's.
+int write_first_experiment(std::filesystem::path file) {
   if (file.extension() != ".yaml" && file.extension() != ".yml") file += ".yaml";
   const std::string name = file.stem().string();
   ConfigErrors errors;
@@ -112,6 +102,16 @@ int NewCommand::run() const {
   std::cout << "written: " << printable(file.string()) << "\nnext: drape run " << printable(file.string())
             << "\n";
   return exit_done;
+}
+
+}  // namespace
+
+void add_new_command(Commands& commands) {
+  const auto file = std::make_shared<std::string>("first.yaml");
+  commands
+      .add("new", "write a commented first experiment", "drape new scarf.yaml",
+           [file] { return write_first_experiment(*file); })
+      .add_option("file", *file, "file to write, which must not exist (default: first.yaml)");
 }
 
 }  // namespace drape

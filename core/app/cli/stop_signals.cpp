@@ -1,8 +1,7 @@
-#include "core/app/cli/stop_signals.h"
-
 #include <csignal>
 #include <cstdlib>
 
+#include "core/app/cli/commands.h"
 #include "core/app/experiment/exit_codes.h"
 
 namespace drape {

@@ -1,5 +1,3 @@
-#include "core/app/cli/view_command.h"
-
 #include <fcntl.h>
 #include <spawn.h>
 #include <unistd.h>
@@ -8,8 +6,8 @@
 #include <filesystem>
 #include <iostream>
 
+#include "core/app/cli/commands.h"
 #include "core/app/cli/config_arguments.h"
-#include "core/app/cli/help.h"
 #include "core/app/experiment/exit_codes.h"
 #include "core/app/report/report.h"
 #include "core/app/report/run_collection.h"
@@ -54,16 +52,10 @@ bool is_current(const fs::path& page, const fs::path& results) {
          fs::last_write_time(page, error) >= fs::last_write_time(results, error);
 }
 
-}  // namespace
-
-ViewCommand::ViewCommand(CLI::App& app)
-    : command_(app.add_subcommand("view", "open the report of a run or a sweep, with its 3D viewer")) {
-  show_example(*command_, "drape view results/sphere");
-  command_->add_option("folder", folder_, "results folder, or a sweep's")->required();
-}
-
-int ViewCommand::run() const {
-  const fs::path folder = folder_, page = folder / "report.html";
+/// Opens the report of a run or a sweep, and writes it if it is missing or older than the results. Without a
+/// display or without xdg-open it prints the page's address instead.
+int view(const fs::path& folder) {
+  const fs::path page = folder / "report.html";
   require_run_or_sweep(folder);
   const bool sweep = is_sweep(folder);
   if (!is_current(page, folder / (sweep ? "sweep.json" : "results.json"))) {
@@ -77,6 +69,17 @@ int ViewCommand::run() const {
     std::cout << "open it in a browser: file://" << url_path(fs::absolute(page).lexically_normal())
               << (sweep ? "" : "#in-3d") << "\n";
   return exit_done;
+}
+
+}  // namespace
+
+void add_view_command(Commands& commands) {
+  const auto folder = std::make_shared<std::string>();
+  commands
+      .add("view", "open the report of a run or a sweep, with its 3D viewer", "drape view results/sphere",
+           [folder] { return view(*folder); })
+      .add_option("folder", *folder, "results folder, or a sweep's")
+      ->required();
 }
 
 }  // namespace drape

@@ -4,40 +4,28 @@
 #include <cmath>
 #include <map>
 #include <nlohmann/json.hpp>
-#include <set>
 #include <utility>
 
 #include "core/app/files/json_file.h"
+#include "core/kernel/files/string_utils.h"
 
 namespace drape {
+
+// The words of enumerations in results.json; an unknown word is read as the first.
+NLOHMANN_JSON_SERIALIZE_ENUM(MetricScope, {{MetricScope::pair, "pair"}, {MetricScope::state, "state"}})
+NLOHMANN_JSON_SERIALIZE_ENUM(Better, {{Better::neither, "neither"},
+                                      {Better::lower, "lower"},
+                                      {Better::higher, "higher"}})
+NLOHMANN_JSON_SERIALIZE_ENUM(Shown, {{Shown::tables, "tables"},
+                                     {Shown::stored, "stored"},
+                                     {Shown::summary, "summary"}})
+NLOHMANN_JSON_SERIALIZE_ENUM(ErrorUse, {{ErrorUse::plots, "plots"},
+                                        {ErrorUse::summary, "summary"},
+                                        {ErrorUse::ranking, "ranking"}})
 
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-/// The words of an enumeration in results.json; the first is the default.
-template <class Enum>
-using Words = std::vector<std::pair<const char*, Enum>>;
-
-const Words<MetricScope> scopes = {{"pair", MetricScope::pair}, {"state", MetricScope::state}};
-const Words<Better> directions = {
-    {"neither", Better::neither}, {"lower", Better::lower}, {"higher", Better::higher}};
-const Words<Shown> shown_words = {
-    {"tables", Shown::tables}, {"stored", Shown::stored}, {"summary", Shown::summary}};
-const Words<ErrorUse> error_uses = {
-    {"plots", ErrorUse::plots}, {"summary", ErrorUse::summary}, {"ranking", ErrorUse::ranking}};
-
-template <class Enum>
-const char* word_of(const Words<Enum>& words, Enum value) {
-  return std::find_if(words.begin(), words.end(), [&](const auto& w) { return w.second == value; })->first;
-}
-
-template <class Enum>
-Enum value_of(const Words<Enum>& words, const Json& json, const char* key) {
-  const std::string word = text_member(json, key);
-  const auto found = std::find_if(words.begin(), words.end(), [&](const auto& w) { return w.first == word; });
-  return found == words.end() ? words.front().second : found->second;
-}
 
 const Json& list(const Json& json, const char* key) {
   static const Json none = Json::array();
@@ -46,14 +34,11 @@ const Json& list(const Json& json, const char* key) {
 }
 
 Json column_json(const MetricColumn& c) {
-  Json json = {{"name", c.name},
-               {"label", c.label},
-               {"unit", c.unit},
-               {"better", word_of(directions, c.better)},
-               {"shown", word_of(shown_words, c.shown)}};
+  Json json = {
+      {"name", c.name}, {"label", c.label}, {"unit", c.unit}, {"better", c.better}, {"shown", c.shown}};
   if (c.error.empty()) return json;
   json["error"] = c.error;
-  json["error_use"] = word_of(error_uses, c.error_use);
+  json["error_use"] = c.error_use;
   return json;
 }
 
@@ -62,10 +47,10 @@ MetricColumn column_of(const Json& json) {
   c.name = text_member(json, "name");
   c.label = text_member(json, "label");
   c.unit = text_member(json, "unit");
-  c.better = value_of(directions, json, "better");
-  c.shown = value_of(shown_words, json, "shown");
+  member_of(json, "better").get_to(c.better);
+  member_of(json, "shown").get_to(c.shown);
   c.error = text_member(json, "error");
-  c.error_use = value_of(error_uses, json, "error_use");
+  member_of(json, "error_use").get_to(c.error_use);
   return c;
 }
 
@@ -88,48 +73,28 @@ std::vector<DeclaredMetric> declared_metrics(
 
 void check_declarations(const std::vector<DeclaredMetric>& metrics, const Location& where,
                         ConfigErrors& errors) {
-  // Keys of a level and of a pair of levels. The metric `energy` measures what the first has under its names.
-  static const std::set<std::string> of_level = {"level",
-                                                 "vertices",
-                                                 "triangles",
-                                                 "status",
-                                                 "message",
-                                                 "steps",
-                                                 "iterations",
-                                                 "from_initial_state",
-                                                 "factorisations",
-                                                 "flops",
-                                                 "analyses",
-                                                 "seconds",
-                                                 "seconds_by_phase",
-                                                 "energy",
-                                                 "energy_parts",
-                                                 "energy_on_finest",
-                                                 "energy_released",
-                                                 "energy_parts_released",
-                                                 "decrement",
-                                                 "force_residual",
-                                                 "intersections",
-                                                 "smallest_gap",
-                                                 "mesh",
-                                                 "mesh_checksum",
-                                                 "snapshots",
-                                                 "not_measured"};
-  static const std::set<std::string> of_pair = {"coarse",          "fine",     "fields",
-                                                "fields_checksum", "of_start", "not_measured"};
+  // Keys of a level and of a pair of levels. The metric `energy` measures what
+  // the first has under its names.
+  static const auto of_level = split(
+      "level vertices triangles status message steps iterations from_initial_state factorisations flops "
+      "analyses seconds seconds_by_phase energy energy_parts energy_on_finest energy_released "
+      "energy_parts_released decrement force_residual intersections smallest_gap mesh mesh_checksum "
+      "snapshots not_measured",
+      ' ');
+  static const auto of_pair = split("coarse fine fields fields_checksum of_start not_measured", ' ');
   std::map<std::pair<MetricScope, std::string>, std::string> owners;
   for (const DeclaredMetric& metric : metrics) {
     const auto refuse = [&](const std::string& what) {
       errors.push_back({where, "metric " + metric.name + ": " + what});
     };
-    const std::set<std::string>& taken = metric.scope == MetricScope::state ? of_level : of_pair;
+    const std::vector<std::string>& taken = metric.scope == MetricScope::state ? of_level : of_pair;
     for (const MetricColumn& column : metric.declaration.columns) {
       const std::string value = "the value \"" + column.name + "\"",
                         first = column.name.substr(0, column.name.find('.'));
       const auto [owner, is_new] = owners.insert({{metric.scope, column.name}, metric.name});
       if (column.name.empty())
         refuse("a value needs a name");
-      else if (taken.contains(first) && metric.name != "energy")
+      else if (std::find(taken.begin(), taken.end(), first) != taken.end() && metric.name != "energy")
         refuse(value + " needs another name: results.json has a key \"" + first + "\" of its own");
       else if (!is_new)
         refuse(value + (owner->second == metric.name ? " is declared twice"
@@ -142,7 +107,7 @@ Json json_of(const std::vector<DeclaredMetric>& metrics) {
   Json all = Json::object();
   for (const auto& [name, scope, declaration] : metrics) {
     Json& entry = all[name];
-    entry = {{"scope", word_of(scopes, scope)}, {"text", declaration.text}, {"columns", Json::array()}};
+    entry = {{"scope", scope}, {"text", declaration.text}, {"columns", Json::array()}};
     for (const MetricColumn& column : declaration.columns) entry["columns"].push_back(column_json(column));
     for (const MetricColours& c : declaration.colours)
       entry["colours"].push_back(
@@ -155,7 +120,7 @@ std::vector<DeclaredMetric> declared_metrics(const Json& json) {
   std::vector<DeclaredMetric> metrics;
   if (!json.is_object()) return metrics;
   for (const auto& [name, entry] : json.items()) {
-    DeclaredMetric metric{name, value_of(scopes, entry, "scope"), {}};
+    DeclaredMetric metric{name, member_of(entry, "scope").get<MetricScope>(), {}};
     metric.declaration.text = text_member(entry, "text");
     for (const Json& column : list(entry, "columns"))
       if (!text_member(column, "name").empty()) metric.declaration.columns.push_back(column_of(column));
@@ -188,6 +153,22 @@ void merge(std::vector<DeclaredMetric>& all, const std::vector<DeclaredMetric>& 
 bool beats(Better better, double a, double b) {
   if (better == Better::neither) return false;
   return better == Better::higher ? a > b : std::abs(a) < std::abs(b);
+}
+
+std::vector<ErrorMeasure> error_measures(const std::vector<DeclaredMetric>& metrics) {
+  std::vector<ErrorMeasure> measures;
+  for (const MetricColumn& column : columns_of(metrics, MetricScope::pair, Shown::stored)) {
+    const auto same = [&](const ErrorMeasure& m) { return m.name == column.error; };
+    if (column.error.empty() || std::any_of(measures.begin(), measures.end(), same)) continue;
+    const std::string label = (column.better == Better::higher ? "1 − " : "") + column.label +
+                              (column.unit == "1" ? "" : " [" + column.unit + "]");
+    measures.push_back({column.error, label, column.error_use, column.name, column.better});
+  }
+  std::stable_partition(measures.begin(), measures.end(),
+                        [](const ErrorMeasure& m) { return m.use == ErrorUse::ranking; });
+  measures.push_back(
+      {energy_gap, "energy gap, over the energy released", ErrorUse::summary, "", Better::lower});
+  return measures;
 }
 
 }  // namespace drape

@@ -35,11 +35,7 @@ nlohmann::ordered_json json_value(const ConfigNode& node);
 /// accept the registered names and parameters; without, anything.
 nlohmann::ordered_json json_schema(const Schema& schema, const Registry* registry = nullptr);
 
-/// The JSON Schema of a map from names to plugins of a kind, as an experiment's methods; `type` defaults to
-/// the name.
-nlohmann::ordered_json named_plugins_schema(const std::string& kind, const Registry& registry);
-
-/// The JSON Schema of an experiment's `obstacles`: the items that the registered contact models take.
-nlohmann::ordered_json obstacles_schema(const Registry& registry);
+/// The JSON Schema of experiments, with the registered plugins.
+nlohmann::ordered_json experiment_json_schema(const Registry& registry);
 
 }  // namespace drape

@@ -2,14 +2,16 @@
 
 #include <algorithm>
 #include <cctype>
+#include <stdexcept>
 #include <tuple>
 
+#include "core/app/experiment/cloth.h"
 #include "core/app/experiment/experiment_path.h"
-#include "core/app/experiment/make_plugins.h"
-#include "core/app/experiment/schedule_keys.h"
+#include "core/app/experiment/read_experiment.h"
 #include "core/app/files/file_name.h"
 #include "core/app/files/yaml_file.h"
 #include "core/kernel/files/message_text.h"
+#include "core/kernel/files/string_utils.h"
 
 namespace drape {
 
@@ -43,6 +45,17 @@ void check_start_coordinates(const Experiment& e, ConfigErrors& errors) {
                     "\"" + key +
                         "\" in start says how its \"file\" is read, and it has none; leave it out, "
                         "or set it in cloth if the cloth is of a file"});
+}
+
+/// Appends the faults of the cloth's and the start's mesh files, which are read: the scene of an experiment
+/// that is not valid cannot be built, which would append them.
+void check_mesh_files(const Experiment& e, ConfigErrors& errors) {
+  if (e.parameters.cloth.shape == "file" && !e.parameters.cloth.file.empty()) checked_cloth(e, errors);
+  if (!e.parameters.start.file.empty()) start_mesh(e, errors);
+}
+
+bool contains(const std::vector<std::string>& names, const std::string& name) {
+  return std::find(names.begin(), names.end(), name) != names.end();
 }
 
 }  // namespace
@@ -93,6 +106,63 @@ std::optional<Experiment> read_experiment(ConfigNode source, const Registry& reg
   });
   if (!errors.empty()) return std::nullopt;
   return e;
+}
+
+const Solver& Experiment::solver_of(const std::string& method) const {
+  for (const auto& [name, solver] : methods)
+    if (name == method) return *solver;
+  throw std::logic_error("no method " + method);
+}
+
+std::string Experiment::solver_type(const std::string& method) const {
+  const ConfigNode* node = &resolved;
+  for (const char* key : {"methods", method.c_str(), "type"}) node = node ? node->find(key) : nullptr;
+  return node ? node->scalar : method;
+}
+
+Location Experiment::location_of(const std::string& key) const {
+  const ConfigNode* node = source.find(key);
+  return node ? node->where : source.where;
+}
+
+std::vector<std::size_t> Experiment::obstacle_order() const {
+  std::vector<std::size_t> order;
+  for (const ContactConfig& config : contact_configs)
+    order.insert(order.end(), config.obstacles.begin(), config.obstacles.end());
+  return order;
+}
+
+std::vector<std::string> Experiment::obstacle_names() const {
+  std::vector<std::string> names;
+  for (const std::size_t i : obstacle_order()) {
+    const ConfigNode* name = parameters.obstacles[i].find("name");
+    names.push_back(name ? name->scalar : "");
+  }
+  return names;
+}
+
+std::string default_method(const std::vector<std::string>& methods) {
+  if (contains(methods, "pcs")) return "pcs";
+  return methods.size() == 1 ? methods[0] : "";
+}
+
+std::vector<std::string> chosen_methods(const Experiment& experiment, const std::vector<std::string>& asked) {
+  std::vector<std::string> known, chosen;
+  for (const auto& [name, solver] : experiment.methods) known.push_back(name);
+  for (const std::string& name : asked)
+    if (name != all_methods && !contains(known, name))
+      throw std::runtime_error("--method " + name + ": the experiment's methods are " + joined(known));
+  if (contains(asked, all_methods)) return known;
+  if (asked.empty()) {
+    const std::string name = default_method(known);
+    if (name.empty())
+      throw std::runtime_error("the experiment has no method pcs, which runs by default; name some of " +
+                               joined(known) + " with --method, or run them all with --method all");
+    return {name};
+  }
+  std::copy_if(known.begin(), known.end(), std::back_inserter(chosen),
+               [&](const std::string& name) { return contains(asked, name); });
+  return chosen;
 }
 
 }  // namespace drape

@@ -5,6 +5,22 @@
 
 namespace drape {
 
+namespace {
+
+ParameterHandle coordinate(ParameterHandle p) {
+  return p.unit("m").at_least(-bounds::largest_coordinate).at_most(bounds::largest_coordinate);
+}
+/// The width, height or radius of a cloth.
+ParameterHandle extent(ParameterHandle p) {
+  return p.unit("m").at_least(1e-6).at_most(bounds::largest_length);
+}
+/// A number that counts from 0.
+ParameterHandle natural(ParameterHandle p, double most = bounds::largest_int) {
+  return p.at_least(0).at_most(most);
+}
+
+}  // namespace
+
 void LoopParameters::declare(Declaration<LoopParameters>& d) {
   d.add("points", &LoopParameters::points)
       .unit("m")
@@ -19,22 +35,13 @@ void ClothParameters::declare(Declaration<ClothParameters>& d) {
       .choices({"square", "rectangle", "disc", "polygon", "file"})
       .description(
           "flat pattern in z = 0 with a corner (of a disc, the centre) at the origin, or a mesh file");
-  d.add("side", &ClothParameters::side)
-      .unit("m")
-      .at_least(1e-6)
-      .at_most(bounds::largest_length)
+  extent(d.add("side", &ClothParameters::side))
       .only_with("shape", {"square"})
       .description("side of a square");
-  d.add("size", &ClothParameters::size)
-      .unit("m")
-      .at_least(1e-6)
-      .at_most(bounds::largest_length)
+  extent(d.add("size", &ClothParameters::size))
       .only_with("shape", {"rectangle"})
       .description("width and height of a rectangle");
-  d.add("radius", &ClothParameters::radius)
-      .unit("m")
-      .at_least(1e-6)
-      .at_most(bounds::largest_length)
+  extent(d.add("radius", &ClothParameters::radius))
       .only_with("shape", {"disc"})
       .description("radius of a disc");
   d.add_sections("loops", &ClothParameters::loops)
@@ -63,20 +70,13 @@ void ClothParameters::declare(Declaration<ClothParameters>& d) {
       .at_most(bounds::most_vertices)
       .only_with("shape", {"square", "rectangle", "disc", "polygon"})
       .description("approximate number of vertices of the coarsest level; not beside `columns` and `rows`");
-  d.add("columns", &ClothParameters::columns)
-      .at_least(0)
-      .at_most(bounds::most_vertices)
+  natural(d.add("columns", &ClothParameters::columns), bounds::most_vertices)
       .only_with("shape", {"square", "rectangle"})
       .description("number of vertices along the width of a grid; 0 derives it from `vertices`");
-  d.add("rows", &ClothParameters::rows)
-      .at_least(0)
-      .at_most(bounds::most_vertices)
+  natural(d.add("rows", &ClothParameters::rows), bounds::most_vertices)
       .only_with("shape", {"square", "rectangle"})
       .description("number of vertices along the height of a grid; 0 derives it from `vertices`");
-  d.add("seed", &ClothParameters::seed)
-      .at_least(0)
-      .at_most(bounds::largest_int)
-      .description("seed of a random triangulation");
+  natural(d.add("seed", &ClothParameters::seed)).description("seed of a random triangulation");
 }
 
 void StartParameters::declare(Declaration<StartParameters>& d) {
@@ -105,10 +105,7 @@ void StartParameters::declare(Declaration<StartParameters>& d) {
       .at_least(bounds::smallest_length)
       .at_most(bounds::largest_length)
       .description("wavelength of the noise");
-  d.add("seed", &StartParameters::seed)
-      .at_least(0)
-      .at_most(bounds::largest_int)
-      .description("seed of the noise");
+  natural(d.add("seed", &StartParameters::seed)).description("seed of the noise");
 }
 
 namespace {
@@ -124,10 +121,7 @@ void declare_selection(Declaration<Condition>& d) {
       .description(
           "selects vertices by their rest positions: the coarsest level's vertex nearest to `point`, all "
           "within `radius` of `point`, all in a box, the boundary, or coarsest-level indices");
-  d.add("point", member(&VertexSelection::point))
-      .unit("m")
-      .at_least(-bounds::largest_coordinate)
-      .at_most(bounds::largest_coordinate)
+  coordinate(d.add("point", member(&VertexSelection::point)))
       .only_with("region", {"nearest", "ball"})
       .description("point of `nearest`, centre of `ball`, in the rest shape");
   d.add("radius", member(&VertexSelection::radius))
@@ -136,27 +130,16 @@ void declare_selection(Declaration<Condition>& d) {
       .at_most(bounds::largest_coordinate)
       .only_with("region", {"ball"})
       .description("radius of `ball`");
-  d.add("lower", member(&VertexSelection::lower))
-      .unit("m")
-      .at_least(-bounds::largest_coordinate)
-      .at_most(bounds::largest_coordinate)
+  coordinate(d.add("lower", member(&VertexSelection::lower)))
       .only_with("region", {"box"})
       .description("lower corner of `box`, in the rest shape");
-  d.add("upper", member(&VertexSelection::upper))
-      .unit("m")
-      .at_least(-bounds::largest_coordinate)
-      .at_most(bounds::largest_coordinate)
+  coordinate(d.add("upper", member(&VertexSelection::upper)))
       .only_with("region", {"box"})
       .description("upper corner of `box`, in the rest shape");
-  d.add("vertices", member(&VertexSelection::vertices))
-      .at_least(0)
-      .at_most(bounds::largest_int)
+  natural(d.add("vertices", member(&VertexSelection::vertices)))
       .only_with("region", {"vertices"})
       .description("indices on the coarsest level, from 0");
-  d.add("translate", member(&VertexSelection::translate))
-      .unit("m")
-      .at_least(-bounds::largest_coordinate)
-      .at_most(bounds::largest_coordinate)
+  coordinate(d.add("translate", member(&VertexSelection::translate)))
       .description(
           "translation from the rest position to the target, applied after `rotate`; without both, the "
           "target is the position at the start, without its noise");
@@ -165,10 +148,7 @@ void declare_selection(Declaration<Condition>& d) {
       .at_least(-bounds::largest_angle)
       .at_most(bounds::largest_angle)
       .description("rotation of the rest position about x, then y, then z through `centre`");
-  d.add("centre", member(&VertexSelection::centre))
-      .unit("m")
-      .at_least(-bounds::largest_coordinate)
-      .at_most(bounds::largest_coordinate)
+  coordinate(d.add("centre", member(&VertexSelection::centre)))
       .description("centre of `rotate`, in the rest shape");
 }
 
@@ -177,9 +157,7 @@ void declare_selection(Declaration<Condition>& d) {
 void FollowParameters::declare(Declaration<FollowParameters>& d) {
   d.add("obstacle", &FollowParameters::obstacle)
       .description("name of the obstacle, or its index from 0; without one the pin follows none");
-  d.add("vertices", &FollowParameters::vertices)
-      .at_least(0)
-      .at_most(bounds::largest_int)
+  natural(d.add("vertices", &FollowParameters::vertices))
       .description(
           "vertices of the obstacle, from 0 in the order of its file, at whose triangles the pin may be "
           "attached; all without any");

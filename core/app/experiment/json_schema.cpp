@@ -3,6 +3,7 @@
 #include <string>
 
 #include "core/app/experiment/describe.h"
+#include "core/app/experiment/experiment_parameters.h"
 
 namespace drape {
 namespace {
@@ -115,6 +116,9 @@ Json json_schema(const Schema& schema, const Registry* registry) {
   return json;
 }
 
+namespace {
+
+/// Of an experiment's `obstacles`: the items that the registered contact models take.
 Json obstacles_schema(const Registry& registry) {
   Json alternatives = Json::array();
   for (const RegistryEntry* model : registry.of_kind("contact"))
@@ -131,12 +135,22 @@ Json obstacles_schema(const Registry& registry) {
   return {{"type", "array"}, {"items", {{"anyOf", alternatives}}}};
 }
 
+/// Of a map from names to plugins of a kind, as an experiment's methods; `type` defaults to the name.
 Json named_plugins_schema(const std::string& kind, const Registry& registry) {
   Json one = plugin_schema(kind, registry);
   for (Json& alternative : one["anyOf"])
     if (alternative.contains("required")) alternative["required"].erase(0);  // the type, which comes first
   one["anyOf"].push_back({{"type", "null"}});
   return {{"type", "object"}, {"minProperties", 1}, {"additionalProperties", one}};
+}
+
+}  // namespace
+
+Json experiment_json_schema(const Registry& registry) {
+  Json schema = json_schema(experiment_schema(), &registry);
+  schema["properties"]["methods"].update(named_plugins_schema("solver", registry));
+  schema["properties"]["obstacles"].update(obstacles_schema(registry));
+  return schema;
 }
 
 }  // namespace drape

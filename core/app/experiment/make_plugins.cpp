@@ -1,10 +1,8 @@
-#include "core/app/experiment/make_plugins.h"
-
 #include <set>
 
 #include "core/app/experiment/contact_configs.h"
 #include "core/app/experiment/declared_metrics.h"
-#include "core/app/experiment/method_choice.h"
+#include "core/app/experiment/read_experiment.h"
 #include "core/kernel/files/message_text.h"
 #include "core/kernel/plugin/make.h"
 

@@ -1,10 +1,9 @@
-#include "core/app/experiment/schedule_keys.h"
-
 #include <algorithm>
 #include <cmath>
 #include <set>
 
 #include "core/app/experiment/experiment_path.h"
+#include "core/app/experiment/read_experiment.h"
 #include "core/kernel/files/message_text.h"
 #include "core/kernel/files/string_utils.h"
 

@@ -1,11 +1,11 @@
 #include <pybind11/stl/filesystem.h>
 
-#include "core/app/experiment/plausibility.h"
-#include "core/app/experiment/size_estimate.h"
+#include "core/app/experiment/cloth.h"
 #include "core/app/files/yaml_file.h"
 #include "core/app/python/module.h"
 #include "core/app/python/python_call.h"
 #include "core/app/python/values.h"
+#include "core/app/scene/scene_summary.h"
 
 namespace drape::python {
 

@@ -3,7 +3,7 @@
 #include <exception>
 #include <utility>
 
-#include "core/app/experiment/method_choice.h"
+#include "core/app/experiment/experiment.h"
 #include "core/app/python/module.h"
 #include "core/app/python/python_call.h"
 #include "core/app/python/values.h"

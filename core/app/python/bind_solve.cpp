@@ -1,11 +1,11 @@
 #include <optional>
 #include <set>
 
-#include "core/app/experiment/method_choice.h"
 #include "core/app/python/module.h"
 #include "core/app/python/python_call.h"
 #include "core/app/python/values.h"
 #include "core/app/run/checkpoint_manager.h"
+#include "core/app/scene/scene.h"
 #include "core/numerics/solve/stepped_solve.h"
 
 namespace drape::python {

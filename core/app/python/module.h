@@ -6,7 +6,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "core/app/experiment/experiment.h"
+#include "core/app/scene/scene.h"
 
 namespace drape::python {
 

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "core/app/experiment/error_measures.h"
+#include "core/app/experiment/declared_metrics.h"
 #include "core/app/files/csv.h"
 #include "core/app/files/optional_number.h"
 #include "core/kernel/interfaces/triangle_mesh.h"

@@ -4,7 +4,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "core/app/experiment/method_choice.h"
+#include "core/app/experiment/experiment.h"
 #include "core/app/files/file_name.h"
 #include "core/app/files/gltf.h"
 #include "core/app/picture/surface.h"

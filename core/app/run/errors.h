@@ -7,10 +7,10 @@
 #include <string>
 #include <vector>
 
-#include "core/app/experiment/error_measures.h"
-#include "core/app/experiment/experiment.h"
+#include "core/app/experiment/declared_metrics.h"
 #include "core/app/run/run_folder.h"
 #include "core/app/run/snapshots.h"
+#include "core/app/scene/scene.h"
 
 namespace drape {
 

@@ -54,7 +54,7 @@ Recorder::Recorder(const RunFolder& folder, const Experiment& experiment, const 
   results_["commit"] = commit();
   results_["machine"] = {{"cpu", cpu_name()}, {"cores", core_count()}, {"threads", thread_count()}};
   results_["tolerance"] = {{"force_residual", p.newton.force_tolerance}};
-  const std::vector<std::string> remarks = experiment.remarks(scene);
+  const std::vector<std::string> remarks = remarks_of(experiment, scene);
   if (!remarks.empty()) results_["remarks"] = remarks;
   results_["metrics"] = json_of(declared_metrics(experiment.metrics));
   results_["methods"] = Json::object();

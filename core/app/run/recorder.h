@@ -5,10 +5,10 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "core/app/experiment/experiment.h"
 #include "core/app/run/errors.h"
 #include "core/app/run/run_folder.h"
 #include "core/app/run/snapshots.h"
+#include "core/app/scene/scene.h"
 #include "core/numerics/mesh_files/io.h"
 
 namespace drape {

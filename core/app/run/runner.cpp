@@ -4,12 +4,12 @@
 #include <cstdio>
 #include <optional>
 
-#include "core/app/experiment/method_choice.h"
 #include "core/app/files/yaml_file.h"
 #include "core/app/report/report.h"
 #include "core/app/run/checkpoint_manager.h"
 #include "core/app/run/progress.h"
 #include "core/app/run/recorder_files.h"
+#include "core/app/scene/scene.h"
 #include "core/app/view/live_view.h"
 #include "core/kernel/files/file.h"
 #include "core/kernel/files/message_text.h"
@@ -256,7 +256,7 @@ bool run_experiment(const Experiment& experiment, const Scene& scene, const RunO
     if (!start_file.empty()) write_ply(folder.file("start.ply"), start);
     Recorder recorder(folder, experiment, scene);
     if (options.verbosity != Verbosity::quiet)
-      for (const std::string& line : experiment.remarks(scene))
+      for (const std::string& line : remarks_of(experiment, scene))
         std::fprintf(stderr, "remark: %s\n", printable(line).c_str());
     if (!options.warm_started_from.empty()) recorder.warm_started_from(options.warm_started_from);
     begun.files = fingerprints_of_files(config, folder.path());

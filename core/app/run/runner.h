@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "core/app/experiment/experiment.h"
 #include "core/app/run/checkpoint_manager.h"
 #include "core/app/run/progress.h"
+#include "core/app/scene/scene.h"
 
 namespace drape {
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "core/app/experiment/experiment.h"
+#include "core/app/scene/scene.h"
 
 namespace drape {
 

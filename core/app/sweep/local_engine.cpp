@@ -19,7 +19,7 @@ namespace {
 
 class LocalEngine {
  public:
-  LocalEngine(const Sweep& sweep, const SweepFolder& folder, const LocalOptions& options)
+  LocalEngine(const Sweep& sweep, const SweepFolder& folder, const SweepOptions& options)
       : sweep_(sweep), folder_(folder), options_(options), memory_(sweep, folder) {
     for (const SweepRun& run : sweep.runs) had_ += read_status(folder.files(run.folder)).has_results();
   }
@@ -68,7 +68,7 @@ class LocalEngine {
       growth += std::max(0.0, r.memory - double(r.process.resident_bytes()));
     }
     const double left = available_memory() - growth;
-    return options_.memory_limit > 0 ? std::min(left, options_.memory_limit - promised) : left;
+    return options_.memory > 0 ? std::min(left, options_.memory - promised) : left;
   }
 
   void start_what_fits() {
@@ -83,7 +83,7 @@ class LocalEngine {
       }
       running_.push_back(
           {run, needed,
-           RunProcess(folder_.files(run.folder), {options_.threads, options_.report, options_.time_limit})});
+           RunProcess(folder_.files(run.folder), options_, sweep_.parameters.time_limit.value_or(0))});
       waiting_.pop_front();
       folder_.refresh();
       if (needed > left) return;
@@ -126,7 +126,7 @@ class LocalEngine {
 
   const Sweep& sweep_;
   const SweepFolder& folder_;
-  const LocalOptions& options_;
+  const SweepOptions& options_;
   MemoryEstimate memory_;
   Stopwatch clock_;
   std::deque<std::size_t> waiting_;
@@ -137,19 +137,8 @@ class LocalEngine {
 
 }  // namespace
 
-std::string duration_text(double seconds) {
-  char text[32];
-  if (seconds < 90)
-    std::snprintf(text, sizeof text, "%.1f s", seconds);
-  else if (seconds < 5400)
-    std::snprintf(text, sizeof text, "%.0f min", seconds / 60);
-  else
-    std::snprintf(text, sizeof text, "%.1f h", seconds / 3600);
-  return text;
-}
-
 void run_locally(const Sweep& sweep, const SweepFolder& folder, const std::vector<std::size_t>& missing,
-                 const LocalOptions& options) {
+                 const SweepOptions& options) {
   LocalEngine(sweep, folder, options).run(missing);
 }
 

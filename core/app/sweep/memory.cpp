@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <stdexcept>
 
-#include "core/app/experiment/size_estimate.h"
+#include "core/app/experiment/cloth.h"
 #include "core/app/files/json_file.h"
 
 namespace drape {

@@ -6,7 +6,7 @@
 #include <iterator>
 #include <stdexcept>
 
-#include "core/app/experiment/method_choice.h"
+#include "core/app/experiment/experiment.h"
 #include "core/app/files/file_lock.h"
 #include "core/app/files/json_file.h"
 #include "core/kernel/files/file.h"
@@ -75,7 +75,7 @@ RunStatus begin(const RunFiles& files, int threads, bool resumes) {
   return status;
 }
 
-std::vector<std::string> command(const RunFiles& files, const RunProcessOptions& options, bool resumes) {
+std::vector<std::string> command(const RunFiles& files, const SweepOptions& options, bool resumes) {
   const std::filesystem::path folder = std::filesystem::absolute(files.folder);  // may begin with "-"
   // The config has the chosen methods only.
   std::vector<std::string> all =
@@ -148,12 +148,12 @@ RunStatus resolve_interrupted(const RunFiles& files, RunStatus status) {
   return status;
 }
 
-RunProcess::RunProcess(RunFiles files, const RunProcessOptions& options)
+RunProcess::RunProcess(RunFiles files, const SweepOptions& options, double time_limit)
     : files_(std::move(files)),
       resumes_(is_resumable(files_, read_status(files_), options.threads)),
       status_(begin(files_, options.threads, resumes_)),
       began_(now() - status_.seconds),
-      time_limit_(options.time_limit),
+      time_limit_(time_limit),
       process_(command(files_, options, resumes_), files_.log(), files_.log()) {}
 
 bool RunProcess::ended() {

@@ -7,6 +7,7 @@
 
 #include "core/app/experiment/exit_codes.h"
 #include "core/app/sweep/process.h"
+#include "core/app/sweep/sweep.h"
 
 namespace drape {
 
@@ -50,18 +51,13 @@ bool has_complete_results(const RunFiles& files);
 /// `drape run --resume`; otherwise failed, or cancelled if it is marked as running but is not.
 RunStatus resolve_interrupted(const RunFiles& files, RunStatus status);
 
-struct RunProcessOptions {
-  int threads = 1;
-  bool report = false;
-  double time_limit = 0;  ///< [s]; 0: none
-};
-
 /// A `drape run` of the files' config; updates the status at its beginning and end.
 class RunProcess {
  public:
   /// Marks the run as running and starts it: from its last checkpoint if it was cut with as many threads,
-  /// otherwise from the beginning, without the files of an earlier start.
-  RunProcess(RunFiles files, const RunProcessOptions& options);
+  /// otherwise from the beginning, without the files of an earlier start. A run that takes longer than
+  /// `time_limit` [s] is ended; 0: none.
+  RunProcess(RunFiles files, const SweepOptions& options, double time_limit);
 
   bool ended();  ///< updates the status the first time that it is true
   void stop() { stopped_ = true, process_.signal(SIGINT); }

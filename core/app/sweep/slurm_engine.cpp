@@ -92,7 +92,7 @@ void refuse_while_queued(const SweepFolder& folder) {
 }
 
 SlurmJobs submit(const Sweep& sweep, const SweepFolder& folder, const std::vector<std::size_t>& missing,
-                 const SlurmOptions& options) {
+                 const SweepOptions& options) {
   const fs::path slurm = fs::absolute(folder.slurm()).lexically_normal(), logs = slurm / "logs";
   make_folder(logs);
   const MemoryEstimate memory(sweep, folder);
@@ -180,6 +180,33 @@ void cancel_jobs(const SweepFolder& folder, const std::function<bool()>& stop) {
   const ProgramOutput said = run_program(words);
   if (said.exit.code != 0) throw std::runtime_error("scancel: " + one_line(said.err));
   if (wait_for(folder, *jobs, stop)) collect_tasks(folder);
+}
+
+int run_task(const SweepFolder& folder, int index, const SweepOptions& options) {
+  const Json sweep = folder.read();
+  if (sweep.is_null() || index < 0 || index >= int(sweep["runs"].size()))
+    throw std::runtime_error(folder.path().string() + ": sweep.json has no run " + std::to_string(index));
+  const RunFiles files = folder.files(sweep["runs"][index]["folder"]);
+  // A node that Slurm considers dead may still execute the task that is restarted elsewhere.
+  FileLock lock(files.lock());
+  while (!lock.acquire(1))
+    if (options.stop()) return exit_by_signal + SIGINT;
+  if (const RunStatus before = resolve_interrupted(files, read_status(files)); before.has_results()) {
+    write_status(files, before);
+    return before.exit_code;
+  }
+  RunProcess run(files, options, sweep.value("time_limit", 0.0));
+  for (bool stopped = false; !run.ended();) {
+    if (options.stop() && !stopped) stopped = true, run.stop();
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  }
+  return run.status().exit_code;
+}
+
+void collect_tasks(const SweepFolder& folder) {
+  folder.finalize();
+  std::error_code ignored;
+  std::filesystem::remove(folder.jobs(), ignored);
 }
 
 }  // namespace drape

@@ -1,18 +1,8 @@
 #pragma once
 
-#include <functional>
-
 #include "core/app/sweep/sweep_folder.h"
 
 namespace drape {
-
-struct SlurmOptions {
-  int workers = 0;  ///< concurrent runs; 0: no limit
-  int threads = 1;
-  double memory = 0;  ///< of each run [bytes]; 0: by estimate
-  bool report = false;
-  std::vector<std::string> sbatch;  ///< further options, as "--partition=long"
-};
 
 /// A sweep's jobs: an array over the missing runs, and a subsequent one that collects their statuses.
 struct SlurmJobs {
@@ -28,7 +18,7 @@ void refuse_while_queued(const SweepFolder& folder);
 /// Writes slurm/job.sh and slurm/collect.sh and submits them. Throws std::runtime_error with sbatch's
 /// message.
 SlurmJobs submit(const Sweep& sweep, const SweepFolder& folder, const std::vector<std::size_t>& missing,
-                 const SlurmOptions& options);
+                 const SweepOptions& options);
 
 /// Waits until no job is in the queue, with progress on standard error unless `quiet`; false if `stop` came
 /// first.
@@ -40,8 +30,7 @@ void cancel_jobs(const SweepFolder& folder, const std::function<bool()>& stop);
 
 /// A task of the array, on its node: executes the run with this index in sweep.json, unless it has results.
 /// Returns the task's exit code.
-int run_task(const SweepFolder& folder, int index, int threads, bool report,
-             const std::function<bool()>& stop);
+int run_task(const SweepFolder& folder, int index, const SweepOptions& options);
 
 /// The collecting job.
 void collect_tasks(const SweepFolder& folder);

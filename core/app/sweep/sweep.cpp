@@ -5,11 +5,10 @@
 #include <set>
 #include <tuple>
 
+#include "core/app/experiment/cloth.h"
 #include "core/app/experiment/describe.h"
 #include "core/app/experiment/experiment_path.h"
-#include "core/app/experiment/size_estimate.h"
 #include "core/app/files/yaml_file.h"
-#include "core/app/sweep/experiment_files.h"
 #include "core/app/sweep/variations.h"
 #include "core/kernel/files/message_text.h"
 #include "core/kernel/files/string_utils.h"
@@ -66,14 +65,14 @@ class Reader {
     schema_of<SweepParameters>().read(&p, source_, errors_);
     if (source_.find("name")) check_name("name", p.name, location_of("name"), errors_);
     check_seeds();
-    const std::vector<Setting> common = settings_of(p.set, errors_);
+    check_settings(p.set, errors_);
     const std::vector<Variation> variations = variations_of(p.ablation, errors_);
     const std::size_t before = errors_.size();
     const std::vector<ExperimentSource> experiments = experiment_sources(p, source_, errors_);
     if (errors_.size() > before) return sweep_;
     for (const ExperimentSource& experiment : experiments)
       for (const Variation& variation : variations)
-        add_variation(experiment, common, labelled(variation, experiment.label));
+        add_variation(experiment, labelled(variation, experiment.label));
     complete_settings();
     list_faults(experiments.size() * variations.size());
     return sweep_;
@@ -105,8 +104,7 @@ class Reader {
     return variation;
   }
 
-  void add_variation(const ExperimentSource& base, const std::vector<Setting>& common,
-                     const Variation& variation) {
+  void add_variation(const ExperimentSource& base, const Variation& variation) {
     const SweepParameters& p = sweep_.parameters;
     ConfigNode source = base.root;
     ConfigErrors faults;
@@ -115,13 +113,14 @@ class Reader {
     run.expect = variation.expect;
     run.settings = nlohmann::ordered_json::object();
     if (!base.label.empty()) run.settings["experiment"] = base.label;
-    for (const auto* settings : {&common, &variation.settings})
-      for (const Setting& setting : *settings) {
-        if (setting.path == "start.seed" && !p.seeds.empty())
-          faults.push_back(
-              {setting.where, "\"start.seed\" is what the sweep's seeds set; take one of them out"});
-        set_parameter(source, setting.path, setting.value, setting.where, faults);
-        if (settings == &variation.settings) run.settings[setting.path] = json_value(setting.value);
+    for (const ConfigNode* set : {&p.set, &variation.set})
+      for (std::size_t k = 0; k < set->entries.size(); ++k) {
+        const auto& [path, value] = set->entries[k];
+        const Location& where = set->key_locations[k];
+        if (path == "start.seed" && !p.seeds.empty())
+          faults.push_back({where, "\"start.seed\" is what the sweep's seeds set; take one of them out"});
+        set_parameter(source, path, value, where, faults);
+        if (set == &variation.set) run.settings[path] = json_value(value);
       }
     const bool own = !variation.methods.empty();
     const std::vector<std::string>& methods = own ? variation.methods : p.methods;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <nlohmann/json.hpp>
 
 #include "core/app/experiment/experiment.h"
@@ -11,16 +12,6 @@ struct Expectation {
   std::string status = "converged";
   std::string message;  ///< a part of the message
   static void declare(Declaration<Expectation>& d);
-};
-
-/// A named variation of a sweep's experiments.
-struct VariationParameters {
-  std::string name;
-  ConfigNode set;
-  std::optional<int> levels;
-  std::vector<std::string> methods;
-  Expectation expect;
-  static void declare(Declaration<VariationParameters>& d);
 };
 
 /// A sweep file: variations of one experiment, `base`, or of each of several. `ablation` is a list of
@@ -57,6 +48,18 @@ struct Sweep {
   SweepParameters parameters;
   std::filesystem::path file;
   std::vector<SweepRun> runs;  ///< the seeds of the first variation, then of the next
+};
+
+/// How a sweep's runs are executed, here or on a cluster.
+struct SweepOptions {
+  int workers = 0;      ///< concurrent runs; 0, on a cluster: no limit
+  int threads = 0;      ///< of each run
+  double memory = 0;    ///< [bytes] here of all runs together, on a cluster of each; 0: by estimate
+  bool report = false;  ///< write each run's report
+  bool quiet = false;   ///< say nothing of runs that end well
+  bool retry_failed = false;
+  std::vector<std::string> sbatch;  ///< further options, as "--partition=long"
+  std::function<bool()> stop;       ///< polled
 };
 
 /// Reads and validates a sweep with every experiment in it; empty, with every error appended, if it is not

@@ -53,6 +53,9 @@ class FolderLock {
   FileLock lock_;
 };
 
+/// "3.2 s", "4 min", "1.5 h"
+std::string duration_text(double seconds);
+
 /// The runs of sweep.json for the terminal: variation, seed, status, seconds, and the messages of failed
 /// ones.
 std::string list_of_runs(const nlohmann::ordered_json& sweep);

@@ -1,5 +1,5 @@
 #include "core/app/experiment/describe.h"
-#include "core/app/sweep/sweep.h"
+#include "core/app/sweep/variations.h"
 #include "core/kernel/plugin/bounds.h"
 
 namespace drape {
@@ -13,19 +13,16 @@ void Expectation::declare(Declaration<Expectation>& d) {
       .description("expected part of the message; required unless the status is converged");
 }
 
-void VariationParameters::declare(Declaration<VariationParameters>& d) {
-  d.add("name", &VariationParameters::name)
-      .required()
-      .description("name of the variation and of its runs' folder");
-  d.add("set", &VariationParameters::set)
+void Variation::declare(Declaration<Variation>& d) {
+  d.add("name", &Variation::name).required().description("name of the variation and of its runs' folder");
+  d.add("set", &Variation::set)
       .description("map from paths of keys in the experiment (methods.pcs.hessian, energies.0) to values");
-  d.add("levels", &VariationParameters::levels)
+  d.add("levels", &Variation::levels)
       .at_least(1)
       .at_most(10)
       .description("number of levels, in place of the experiment's");
-  d.add("methods", &VariationParameters::methods)
-      .description("methods to run; by default those of the sweep");
-  d.add_section("expect", &VariationParameters::expect)
+  d.add("methods", &Variation::methods).description("methods to run; by default those of the sweep");
+  d.add_section("expect", &Variation::expect)
       .description("expected status of its runs, checked by `drape table` and the exit code");
 }
 
@@ -65,12 +62,12 @@ void SweepParameters::declare(Declaration<SweepParameters>& d) {
 
 std::string describe_sweep() {
   return describe(schema_of<SweepParameters>()) + "\na variation in ablation:\n\n" +
-         describe(schema_of<VariationParameters>());
+         describe(schema_of<Variation>());
 }
 
 std::string describe_sweep_markdown() {
   return describe_markdown(schema_of<SweepParameters>()) + "\nA variation in `ablation`:\n\n" +
-         describe_markdown(schema_of<VariationParameters>());
+         describe_markdown(schema_of<Variation>());
 }
 
 nlohmann::ordered_json sweep_json_schema() {
@@ -78,12 +75,12 @@ nlohmann::ordered_json sweep_json_schema() {
   Json schema = json_schema(schema_of<SweepParameters>());
   const Json values = {{"type", "array"}, {"minItems", 1}};
   const Json grid = {{"type", "object"}, {"minProperties", 1}, {"additionalProperties", values}};
-  schema["properties"]["ablation"]["anyOf"] = Json::array(
-      {Json{{"type", "array"}, {"minItems", 1}, {"items", json_schema(schema_of<VariationParameters>())}},
-       Json{{"type", "object"},
-            {"properties", {{"grid", grid}}},
-            {"required", {"grid"}},
-            {"additionalProperties", false}}});
+  schema["properties"]["ablation"]["anyOf"] =
+      Json::array({Json{{"type", "array"}, {"minItems", 1}, {"items", json_schema(schema_of<Variation>())}},
+                   Json{{"type", "object"},
+                        {"properties", {{"grid", grid}}},
+                        {"required", {"grid"}},
+                        {"additionalProperties", false}}});
   return schema;
 }
 

@@ -1,17 +1,22 @@
 #include "core/app/sweep/variations.h"
 
+#include <glob.h>
+
 #include <algorithm>
 #include <cctype>
 #include <cstring>
 #include <map>
+#include <utility>
 
 #include "core/app/files/file_name.h"
+#include "core/app/files/yaml_file.h"
 #include "core/kernel/interfaces/solver.h"
 
 namespace drape {
 
 namespace {
 
+namespace fs = std::filesystem;
 using NodeKind = ConfigNode::Kind;
 
 constexpr std::size_t most_variations = 10000;
@@ -61,13 +66,14 @@ std::vector<Variation> product(const ConfigNode& grid, ConfigErrors& errors) {
   for (std::size_t index = 0; index < count; ++index) {
     Variation v;
     v.where = grid.where;
+    v.set = grid;
     std::size_t rest = index;
     for (std::size_t k = grid.entries.size(); k-- > 0;) {
       const auto& [path, values] = grid.entries[k];
       const std::size_t at = rest % values.items.size();
       rest /= values.items.size();
       const ConfigNode& value = values.items[at];
-      v.settings.insert(v.settings.begin(), {path, value, grid.key_locations[k]});
+      v.set.entries[k].second = value;
       const std::string shown = value.kind == NodeKind::scalar
                                     ? value.scalar
                                     : std::to_string(at + 1);  // a map's index in the list
@@ -79,23 +85,28 @@ std::vector<Variation> product(const ConfigNode& grid, ConfigErrors& errors) {
 }
 
 Variation named(const ConfigNode& node, ConfigErrors& errors) {
-  VariationParameters p;
-  schema_of<VariationParameters>("a variation").read(&p, node, errors);
-  Variation v{p.name, "", node.where, {}, p.methods, node.where, p.expect};
-  if (!has_converged(p.expect.status) && p.expect.message.empty())
+  Variation v;
+  schema_of<Variation>("a variation").read(&v, node, errors);
+  if (!has_converged(v.expect.status) && v.expect.message.empty())
     errors.push_back({node.find("expect")->where,
                       "\"expect\" of a status other than converged needs a \"message\": a part of the "
                       "expected message then"});
-  if (p.levels) v.settings.push_back({"levels", *node.find("levels"), node.find("levels")->where});
-  for (Setting& setting : settings_of(p.set, errors)) {
-    if (p.levels && setting.path == "levels")
-      errors.push_back(
-          {setting.where, "\"levels\" is given twice in variation \"" + p.name + "\"; take one of them out"});
-    v.settings.push_back(std::move(setting));
+  check_settings(v.set, errors);
+  if (v.levels) {
+    const ConfigNode set = std::exchange(v.set, {});
+    v.set.add("levels", *node.find("levels"));
+    for (std::size_t k = 0; k < set.entries.size(); ++k) {
+      if (set.entries[k].first == "levels")
+        errors.push_back({set.key_locations[k],
+                          "\"levels\" is given twice in variation \"" + v.name + "\"; take one of them out"});
+      v.set.add(set.entries[k].first, set.entries[k].second);
+      v.set.key_locations.back() = set.key_locations[k];
+    }
   }
+  v.where = v.methods_where = node.where;
   if (const ConfigNode* methods = node.find("methods")) v.methods_where = methods->where;
   if (const ConfigNode* name = node.find("name")) v.where = name->where;
-  if (p.name.empty() && node.find("name"))
+  if (v.name.empty() && node.find("name"))
     errors.push_back({v.where, "\"name\" in a variation must not be empty"});
   return v;
 }
@@ -121,6 +132,47 @@ void check_names(std::vector<Variation>& all, ConfigErrors& errors) {
   }
 }
 
+/// The files in a folder that match a pattern, sorted. A name without wildcard is returned whether it exists
+/// or not.
+std::vector<fs::path> files_of(const fs::path& folder, const std::string& pattern) {
+  const char* const wildcards = "*?[";
+  if (pattern.find_first_of(wildcards) == std::string::npos) return {folder / pattern};
+  std::string literal;  // wildcards in the folder's own name are none
+  for (const char c : folder.string()) {
+    if (c == '\\' || std::strchr(wildcards, c)) literal += '\\';
+    literal += c;
+  }
+  glob_t found{};
+  std::vector<fs::path> files;
+  if (glob((fs::path(literal) / pattern).c_str(), 0, nullptr, &found) == 0)
+    for (std::size_t k = 0; k < found.gl_pathc; ++k) files.emplace_back(found.gl_pathv[k]);
+  globfree(&found);
+  return files;
+}
+
+void read_one(const fs::path& file, const std::string& key, const Location& where,
+              std::vector<ExperimentSource>& all, ConfigErrors& errors) {
+  const std::size_t before = errors.size();
+  ConfigNode root = read_yaml(file, errors);
+  if (errors.size() > before)
+    errors[before].message += " (the sweep's \"" + key + "\", named at " + where.text() + ")";
+  else
+    all.push_back({std::move(root), "", where});
+}
+
+/// Refuses equal names of experiments, whose folders would coincide.
+void label(std::vector<ExperimentSource>& all, ConfigErrors& errors) {
+  std::map<std::string, Location> locations;
+  for (ExperimentSource& one : all) {
+    if (const ConfigNode* name = one.root.find("name")) one.label = name->scalar;
+    const auto [first, is_first] = locations.emplace(one.label, one.root.where);
+    if (!is_first)
+      errors.push_back({one.where, "experiments " + first->second.file + " and " + one.root.where.file +
+                                       " have the same name, \"" + one.label +
+                                       "\"; rename one of them, or name each once"});
+  }
+}
+
 }  // namespace
 
 std::string folder_name(std::string name) {
@@ -132,22 +184,20 @@ std::string folder_name(std::string name) {
   return name;
 }
 
-std::vector<Setting> settings_of(const ConfigNode& set, ConfigErrors& errors) {
-  std::vector<Setting> settings;
-  if (set.kind == NodeKind::null) return settings;
-  if (set.kind != NodeKind::map)
+void check_settings(const ConfigNode& set, ConfigErrors& errors) {
+  if (set.kind != NodeKind::map && set.kind != NodeKind::null)
     errors.push_back({set.where,
                       "\"set\" must be a map of paths of keys and values, as in \"set: {newton.step_size: "
                       "0.2}\""});
   refuse_repeated_keys(set, "set", errors);
-  for (std::size_t k = 0; k < set.entries.size(); ++k)
-    settings.push_back({set.entries[k].first, set.entries[k].second, set.key_locations[k]});
-  return settings;
 }
 
 std::vector<Variation> variations_of(const ConfigNode& ablation, ConfigErrors& errors) {
   std::vector<Variation> all;
-  if (ablation.kind == NodeKind::null) all.push_back({"base", "", ablation.where, {}, {}, {}, {}});
+  if (ablation.kind == NodeKind::null) {
+    all.emplace_back().name = "base";
+    all.back().where = ablation.where;
+  }
   if (ablation.kind == NodeKind::list)
     for (const ConfigNode& node : ablation.items) all.push_back(named(node, errors));
   if (ablation.kind == NodeKind::map) {
@@ -166,6 +216,36 @@ std::vector<Variation> variations_of(const ConfigNode& ablation, ConfigErrors& e
                       "\"ablation\" must be a list of variations, as in \"ablation: [{name: coarse, set: "
                       "{methods.pcs.hessian: coarse}}]\", or a map with a \"grid\""});
   check_names(all, errors);
+  return all;
+}
+
+std::vector<ExperimentSource> experiment_sources(const SweepParameters& p, const ConfigNode& source,
+                                                 ConfigErrors& errors) {
+  std::vector<ExperimentSource> all;
+  const ConfigNode *base = source.find("base"), *several = source.find("experiments");
+  if (bool(base) == bool(several)) {
+    errors.push_back({several ? several->where : source.where,
+                      base ? "\"base\" and \"experiments\" are both given; keep one of them"
+                           : "\"base\" is required and missing, or \"experiments\" in its place"});
+    return all;
+  }
+  if (base) {
+    if (p.base.empty())
+      errors.push_back({base->where, "\"base\" is empty; name an experiment"});
+    else
+      read_one(p.base, "base", base->where, all, errors);
+    return all;
+  }
+  if (p.experiments.empty())
+    errors.push_back({several->where, "\"experiments\" is empty; name an experiment"});
+  for (std::size_t k = 0; k < p.experiments.size(); ++k) {
+    const Location& where = several->items[k].where;
+    const auto files = files_of(fs::path(where.file).parent_path(), p.experiments[k]);
+    if (files.empty())
+      errors.push_back({where, "no file is called like " + p.experiments[k] + ", seen from this file"});
+    for (const fs::path& file : files) read_one(file, "experiments", where, all, errors);
+  }
+  label(all, errors);
   return all;
 }
 

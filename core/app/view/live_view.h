@@ -5,7 +5,7 @@
 #include <map>
 #include <mutex>
 
-#include "core/app/experiment/experiment.h"
+#include "core/app/scene/scene.h"
 #include "core/app/view/live_server.h"
 #include "core/app/view/view_document.h"
 #include "core/kernel/threads/stopwatch.h"

@@ -1,4 +1,4 @@
-#include "core/app/experiment/boundary_conditions.h"
+#include "core/app/scene/boundary_conditions.h"
 
 #include <catch2/catch.hpp>
 

@@ -2,7 +2,7 @@
 
 #include <catch2/catch.hpp>
 
-#include "core/app/experiment/load_schedule.h"
+#include "core/app/scene/load_schedule.h"
 #include "core/numerics/patterns/generate.h"
 #include "tests/support/solve.h"
 

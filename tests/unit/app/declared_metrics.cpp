@@ -3,7 +3,6 @@
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 
-#include "core/app/experiment/error_measures.h"
 #include "core/app/report/run_data.h"
 #include "core/app/report/run_table.h"
 #include "tests/support/command.h"

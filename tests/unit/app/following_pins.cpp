@@ -1,6 +1,6 @@
 // Pins that follow an obstacle, by a mesh, an animation or a shape.
 
-#include "core/app/experiment/following_pins.h"
+#include "core/app/scene/following_pins.h"
 
 #include <Eigen/Geometry>
 #include <catch2/catch.hpp>

@@ -1,9 +1,8 @@
-#include "core/app/experiment/load_schedule.h"
+#include "core/app/scene/load_schedule.h"
 
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "core/app/experiment/schedule_stepping.h"
 #include "tests/support/solve.h"
 
 using namespace drape;

@@ -1,5 +1,3 @@
-#include "core/app/experiment/shared_vertices.h"
-
 #include <catch2/catch.hpp>
 
 #include "tests/support/refusal.h"

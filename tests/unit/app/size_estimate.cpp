@@ -1,6 +1,6 @@
-#include "core/app/experiment/size_estimate.h"
-
 #include <catch2/catch.hpp>
+
+#include "core/app/experiment/cloth.h"
 
 using namespace drape;
 

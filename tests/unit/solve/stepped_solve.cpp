@@ -3,8 +3,8 @@
 #include <catch2/catch.hpp>
 #include <optional>
 
-#include "core/app/experiment/experiment.h"
 #include "core/app/files/yaml_file.h"
+#include "core/app/scene/scene.h"
 #include "tests/support/registry.h"
 
 using namespace drape;

@@ -1,17 +1,61 @@
-#include "core/app/experiment/size_estimate.h"
+#include "core/app/experiment/cloth.h"
 
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <stdexcept>
 
 #include "core/app/files/machine.h"
+#include "core/kernel/files/message_text.h"
 #include "core/kernel/plugin/bounds.h"
+#include "core/numerics/mesh/check.h"
+#include "core/numerics/mesh/rotation.h"
 #include "core/numerics/mesh_files/io.h"
 #include "core/numerics/patterns/generate.h"
 
 namespace drape {
 
 namespace {
+
+TriangleMesh make_grid(const ClothParameters& c, const Eigen::Vector2d& size) {
+  const GridSize counts = grid_size(c);
+  if (c.triangulation == "equilateral") return equilateral(size, counts.columns, counts.rows);
+  return grid(size, counts.columns, counts.rows,
+              c.triangulation == "one_way" ? Diagonals::one_way : Diagonals::criss_cross);
+}
+
+TriangleMesh read_cloth(const ClothParameters& c) {
+  TriangleMesh mesh = read_mesh(c.file);
+  c.convert(mesh.vertices);
+  mesh.vertices *= c.scale;
+  if (!c.rotate.isZero(0)) mesh.vertices *= rotation_matrix(c.rotate).transpose();
+  return mesh;
+}
+
+TriangleMesh make_cloth(const Experiment& e) {
+  const ClothParameters& c = e.parameters.cloth;
+  if (c.shape == "file") {
+    if (c.file.empty()) throw std::runtime_error("\"shape: file\" needs \"file\", the mesh to read");
+    return read_cloth(c);
+  }
+  if (c.shape == "disc") return disc(c.radius, c.vertices);
+  if (c.shape == "polygon") {
+    std::vector<std::vector<Eigen::Vector2d>> loops;
+    for (std::size_t k = 0; k < c.loops.size(); ++k) {
+      const auto& p = c.loops[k].points;
+      if (p.size() % 2 != 0)
+        throw std::runtime_error("loop " + std::to_string(k) +
+                                 " has an odd number of coordinates; give x and y of each point");
+      auto& loop = loops.emplace_back();
+      for (std::size_t i = 0; i + 1 < p.size(); i += 2) loop.emplace_back(p[i], p[i + 1]);
+    }
+    if (loops.empty()) throw std::runtime_error("\"shape: polygon\" needs \"loops\", its outline and holes");
+    return delaunay_polygon(loops, c.vertices, c.seed);
+  }
+  const Eigen::Vector2d size = c.shape == "square" ? Eigen::Vector2d(c.side, c.side) : c.size;
+  if (c.triangulation == "random") return random_triangulation(size, c.vertices, c.seed);
+  return make_grid(c, size);
+}
 
 /// A hinge's Hessian takes 16 blocks and a vertex has 3 hinges: their numbers must fit an int.
 constexpr double max_finest_vertices = 4e7;
@@ -38,6 +82,34 @@ bool is_grid(const ClothParameters& c) {
 }
 
 }  // namespace
+
+std::optional<TriangleMesh> checked_cloth(const Experiment& e, ConfigErrors& errors) {
+  const ClothParameters& c = e.parameters.cloth;
+  try {
+    TriangleMesh cloth = make_cloth(e);
+    const std::vector<std::string> faults = check_mesh(cloth);
+    for (const std::string& fault : faults)
+      errors.push_back({e.location_of("cloth"), (c.shape == "file" ? c.file + ": " : "") + fault});
+    if (faults.empty()) return cloth;
+  } catch (const std::exception& error) {
+    errors.push_back({e.location_of("cloth"), reason_of(error)});
+  }
+  return std::nullopt;
+}
+
+std::optional<TriangleMesh> start_mesh(const Experiment& e, ConfigErrors& errors) {
+  const std::string& file = e.parameters.start.file;
+  try {
+    TriangleMesh mesh = read_mesh(file);
+    e.parameters.start.file_coordinates(e.parameters.cloth).convert(mesh.vertices);
+    const std::vector<std::string> faults = check_coordinates(mesh.vertices);
+    for (const std::string& fault : faults) errors.push_back({e.location_of("start"), file + ": " + fault});
+    if (faults.empty()) return mesh;
+  } catch (const std::exception& problem) {
+    errors.push_back({e.location_of("start"), reason_of(problem)});
+  }
+  return std::nullopt;
+}
 
 GridSize grid_size(const ClothParameters& c) {
   const Eigen::Vector2d size = c.shape == "square" ? Eigen::Vector2d(c.side, c.side) : c.size;

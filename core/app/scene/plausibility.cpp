@@ -1,11 +1,10 @@
-#include "core/app/experiment/plausibility.h"
-
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <map>
 #include <tuple>
 
+#include "core/app/scene/scene_summary.h"
 #include "core/numerics/solve/start_fault.h"
 
 namespace drape {

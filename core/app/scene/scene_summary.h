@@ -2,7 +2,7 @@
 
 #include <optional>
 
-#include "core/app/experiment/experiment.h"
+#include "core/app/scene/scene.h"
 #include "core/kernel/interfaces/gaps.h"
 
 namespace drape {
@@ -34,5 +34,13 @@ std::string length_text(double length);
 
 /// A number with so many significant digits and without exponent, from 1e-4 to 1e15.
 std::string rounded_text(double value, int digits);
+
+/// A warning for every quantity of a scene that is outside any fabric's range, as after a mistake with a
+/// unit: where it is set, what is usual, and what to do. None of them keeps an experiment from running.
+ConfigErrors plausibility_warnings(const Experiment& experiment, const Scene& scene,
+                                   const SceneSummary& summary);
+
+/// Appends an error for every level at whose start an energy or a force is not finite.
+void refuse_infinite_energies(const Experiment& experiment, const Scene& scene, ConfigErrors& errors);
 
 }  // namespace drape

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "core/app/experiment/experiment.h"
+#include "core/app/scene/scene.h"
 
 namespace drape {
 
@@ -9,21 +9,22 @@ namespace drape {
 std::vector<int> selected_vertices(const VertexSelection& selection, const Level& level,
                                    const Level& coarsest);
 
-/// The pins or the handles, as `part` says.
-std::vector<VertexSelection> selections_of(const ExperimentParameters& parameters, LoadPart part);
-
-/// The target [m] of a vertex that a pin or handle selects; without a transform, its position in `placed`
-/// (n×3) [m].
-Eigen::Vector3d target_of(const VertexSelection& selection, int vertex, const Level& level,
-                          const Positions& placed);
-
 /// Appends an error for every pin and handle that selects no vertex of a level, or one that does not exist.
-void check_boundary_conditions(const Experiment& experiment, const std::vector<Level>& levels,
-                               ConfigErrors& errors);
+void check_selections(const Experiment& experiment, const std::vector<Level>& levels, ConfigErrors& errors);
 
-/// The same for pin or handle k alone, as `part` says, with `where` as the errors' location.
+/// Appends an error for every two pins, and every two handles, that select the same vertex of a level and
+/// have different targets for it. `placed` has the positions, n×3 [m] for each level, where those without a
+/// transform hold.
+void check_shared_vertices(const Experiment& experiment, const std::vector<Level>& levels,
+                           const std::vector<Positions>& placed, ConfigErrors& errors);
+
+/// The same two checks for pin or handle k, as `part` says, under a load with these parameters. The errors
+/// have `where` as location.
 void check_selection(const ExperimentParameters& parameters, LoadPart part, std::size_t k,
                      const Location& where, const std::vector<Level>& levels, ConfigErrors& errors);
+void check_shared_vertices(const ExperimentParameters& parameters, LoadPart part, std::size_t k,
+                           const Location& where, const std::vector<Level>& levels,
+                           const std::vector<Positions>& placed, ConfigErrors& errors);
 
 /// The Dirichlet vertices of a level with their targets [m]. Of several pins that select a vertex the last
 /// one counts; they agree on its target (check_shared_vertices). Throws std::runtime_error naming a pin that

@@ -1,4 +1,4 @@
-#include "core/app/experiment/scene_summary.h"
+#include "core/app/scene/scene_summary.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,7 +1,10 @@
-#include "core/app/experiment/boundary_conditions.h"
+#include "core/app/scene/boundary_conditions.h"
 
+#include <algorithm>
+#include <iterator>
 #include <stdexcept>
 
+#include "core/kernel/files/number_text.h"
 #include "core/numerics/mesh/rotation.h"
 #include "core/numerics/model/position_penalty.h"
 
@@ -9,8 +12,33 @@ namespace drape {
 
 namespace {
 
-/// Throws std::runtime_error if a pin or handle has no vertex on a level: check_pin and check_handle look at
-/// the loads of the keys' times, but an increment between them may end at such a load.
+constexpr std::pair<const char*, LoadPart> conditions[] = {{"pins", LoadPart::pins},
+                                                           {"handles", LoadPart::handles}};
+
+std::size_t count(const ExperimentParameters& p, LoadPart part) {
+  return part == LoadPart::pins ? p.pins.size() : p.handles.size();
+}
+
+const VertexSelection& selection(const ExperimentParameters& p, LoadPart part, std::size_t k) {
+  if (part == LoadPart::pins) return p.pins[k];
+  return p.handles[k];
+}
+
+/// "pin 1 (box, line 5)"; without the line if it is 0.
+std::string name_of(const ExperimentParameters& p, LoadPart part, std::size_t k, int line = 0) {
+  return (part == LoadPart::pins ? "pin " : "handle ") + std::to_string(k) + " (" +
+         selection(p, part, k).region + (line > 0 ? ", line " + std::to_string(line) : "") + ")";
+}
+
+/// The target [m] of a vertex that a pin or handle selects; without a transform, its position in `placed`.
+Eigen::Vector3d target_of(const VertexSelection& selection, int vertex, const Level& level,
+                          const Positions& placed) {
+  return selection.has_transform() ? selection.target(level.rest.vertices.row(vertex))
+                                   : Eigen::Vector3d(placed.row(vertex));
+}
+
+/// Throws std::runtime_error if a pin or handle has no vertex on a level: check_selection looks at the loads
+/// of the keys' times, but an increment between them may end at such a load.
 void require_vertices(const std::vector<int>& selected, const std::string& name, const Level& level) {
   if (selected.empty())
     throw std::runtime_error(name + " selects no vertex of level " + std::to_string(level.index));
@@ -49,6 +77,53 @@ class Handles final : public Energy {
   const Level& coarsest_;
   const std::vector<Positions>& placed_;
 };
+
+/// "(0, 0.1, 0.25)".
+std::string text_of(const Eigen::Vector3d& p) {
+  return "(" + general_text(p.x(), 6) + ", " + general_text(p.y(), 6) + ", " + general_text(p.z(), 6) + ")";
+}
+
+/// How two selections conflict on a level; empty if they share no vertex, or want each that they share at the
+/// same place but for round-off.
+std::string conflict(const VertexSelection& one, const VertexSelection& other, const Level& level,
+                     const Level& coarsest, const Positions& placed) {
+  const auto selected = [&](const VertexSelection& selection) {
+    std::vector<int> vertices = selected_vertices(selection, level, coarsest);
+    std::sort(vertices.begin(), vertices.end());
+    return vertices;
+  };
+  const std::vector<int> first = selected(one), second = selected(other);
+  std::vector<int> shared;
+  std::set_intersection(first.begin(), first.end(), second.begin(), second.end(), std::back_inserter(shared));
+  constexpr double rounding = 1e-9;
+  for (const int v : shared) {
+    const Eigen::Vector3d a = target_of(one, v, level, placed), b = target_of(other, v, level, placed);
+    const double size = bounding_box_diagonal(level.rest.vertices) + a.norm();
+    if ((a - b).norm() > rounding * size)
+      return "both select vertex " + std::to_string(v) + " of level " + std::to_string(level.index) +
+             ", at rest at " + text_of(level.rest.vertices.row(v)) + ", but want it at " + text_of(a) +
+             " and at " + text_of(b) + "; let their regions share no vertex, or give both the same target";
+  }
+  return "";
+}
+
+/// Appends an error for pin or handle k and the first conflict with each of the first `end` others.
+/// `written`, if it is not null, has the line of each in its file.
+void check_shared(const ExperimentParameters& p, LoadPart part, std::size_t k, std::size_t end,
+                  const Location& where, const ConfigNode* written, const std::vector<Level>& levels,
+                  const std::vector<Positions>& placed, ConfigErrors& errors) {
+  const auto name = [&](std::size_t of) {
+    return name_of(p, part, of, written ? written->items[of].where.line : 0);
+  };
+  for (std::size_t j = 0; j < end; ++j)
+    for (std::size_t l = 0; l < levels.size() && j != k; ++l) {
+      const std::string why =
+          conflict(selection(p, part, k), selection(p, part, j), levels[l], levels[0], placed[l]);
+      if (why.empty()) continue;
+      errors.push_back({where, name(k) + " and " + name(j) + " " + why});
+      break;
+    }
+}
 
 }  // namespace
 
@@ -95,29 +170,32 @@ std::vector<int> selected_vertices(const VertexSelection& selection, const Level
   return selected;
 }
 
-Eigen::Vector3d target_of(const VertexSelection& selection, int vertex, const Level& level,
-                          const Positions& placed) {
-  return selection.has_transform() ? selection.target(level.rest.vertices.row(vertex))
-                                   : Eigen::Vector3d(placed.row(vertex));
-}
-
-std::vector<VertexSelection> selections_of(const ExperimentParameters& p, LoadPart part) {
-  if (part == LoadPart::pins) return {p.pins.begin(), p.pins.end()};
-  return {p.handles.begin(), p.handles.end()};
-}
-
-void check_boundary_conditions(const Experiment& e, const std::vector<Level>& levels, ConfigErrors& errors) {
-  for (const auto& [key, part] : {std::pair("pins", LoadPart::pins), {"handles", LoadPart::handles}})
-    for (std::size_t k = 0; k < selections_of(e.parameters, part).size(); ++k)
+void check_selections(const Experiment& e, const std::vector<Level>& levels, ConfigErrors& errors) {
+  for (const auto& [key, part] : conditions)
+    for (std::size_t k = 0; k < count(e.parameters, part); ++k)
       check_selection(e.parameters, part, k, e.source.find(key)->items[k].where, levels, errors);
+}
+
+void check_shared_vertices(const Experiment& e, const std::vector<Level>& levels,
+                           const std::vector<Positions>& placed, ConfigErrors& errors) {
+  for (const auto& [key, part] : conditions)
+    for (std::size_t k = 0; k < count(e.parameters, part); ++k) {
+      const ConfigNode* written = e.source.find(key);
+      check_shared(e.parameters, part, k, k, written->items[k].where, written, levels, placed, errors);
+    }
+}
+
+void check_shared_vertices(const ExperimentParameters& p, LoadPart part, std::size_t k, const Location& where,
+                           const std::vector<Level>& levels, const std::vector<Positions>& placed,
+                           ConfigErrors& errors) {
+  check_shared(p, part, k, count(p, part), where, nullptr, levels, placed, errors);
 }
 
 void check_selection(const ExperimentParameters& parameters, LoadPart part, std::size_t k,
                      const Location& where, const std::vector<Level>& levels, ConfigErrors& errors) {
-  const VertexSelection p = selections_of(parameters, part)[k];
+  const VertexSelection& p = selection(parameters, part, k);
   const Level& coarsest = levels[0];
-  const std::string name =
-      (part == LoadPart::pins ? "pin " : "handle ") + std::to_string(k) + " (" + p.region + ")";
+  const std::string name = name_of(parameters, part, k);
   const bool by_index = p.region == "vertices";
   if (by_index ? p.vertices.empty() : selected_vertices(p, coarsest, coarsest).empty())
     errors.push_back({where, name + " selects no vertex of the coarsest level; " +
@@ -125,11 +203,10 @@ void check_selection(const ExperimentParameters& parameters, LoadPart part, std:
   else if (!by_index)
     for (const Level& level : levels)
       if (selected_vertices(p, level, coarsest).empty()) {
-        errors.push_back(
-            {where, name + " selects vertices of the coarsest level, but none of level " +
-                        std::to_string(level.index) +
-                        ", whose rest positions the refiner moves; widen its region, or select by "
-                        "\"nearest\" or \"vertices\""});
+        errors.push_back({where, name + " selects vertices of the coarsest level, but none of level " +
+                                     std::to_string(level.index) +
+                                     ", whose rest positions the refiner moves; widen its region, or select "
+                                     "by \"nearest\" or \"vertices\""});
         break;
       }
   for (int v : p.vertices)

@@ -1,65 +1,21 @@
+#include "core/app/scene/scene.h"
+
 #include <algorithm>
 #include <cmath>
 #include <random>
-#include <stdexcept>
 
-#include "core/app/experiment/boundary_conditions.h"
-#include "core/app/experiment/experiment.h"
-#include "core/app/experiment/following_pins.h"
-#include "core/app/experiment/reference_file.h"
-#include "core/app/experiment/schedule_stepping.h"
-#include "core/app/experiment/shared_vertices.h"
-#include "core/app/experiment/size_estimate.h"
+#include "core/app/experiment/cloth.h"
+#include "core/app/scene/boundary_conditions.h"
+#include "core/app/scene/following_pins.h"
+#include "core/app/scene/load_schedule.h"
 #include "core/kernel/files/message_text.h"
 #include "core/numerics/linear_algebra/same_entries.h"
 #include "core/numerics/mesh/check.h"
-#include "core/numerics/mesh/rotation.h"
 #include "core/numerics/mesh_files/io.h"
-#include "core/numerics/patterns/generate.h"
 
 namespace drape {
 
 namespace {
-
-TriangleMesh make_grid(const ClothParameters& c, const Eigen::Vector2d& size) {
-  const GridSize counts = grid_size(c);
-  if (c.triangulation == "equilateral") return equilateral(size, counts.columns, counts.rows);
-  return grid(size, counts.columns, counts.rows,
-              c.triangulation == "one_way" ? Diagonals::one_way : Diagonals::criss_cross);
-}
-
-TriangleMesh read_cloth(const ClothParameters& c) {
-  TriangleMesh mesh = read_mesh(c.file);
-  c.convert(mesh.vertices);
-  mesh.vertices *= c.scale;
-  if (!c.rotate.isZero(0)) mesh.vertices *= rotation_matrix(c.rotate).transpose();
-  return mesh;
-}
-
-TriangleMesh make_cloth(const Experiment& e) {
-  const ClothParameters& c = e.parameters.cloth;
-  if (c.shape == "file") {
-    if (c.file.empty()) throw std::runtime_error("\"shape: file\" needs \"file\", the mesh to read");
-    return read_cloth(c);
-  }
-  if (c.shape == "disc") return disc(c.radius, c.vertices);
-  if (c.shape == "polygon") {
-    std::vector<std::vector<Eigen::Vector2d>> loops;
-    for (std::size_t k = 0; k < c.loops.size(); ++k) {
-      const auto& p = c.loops[k].points;
-      if (p.size() % 2 != 0)
-        throw std::runtime_error("loop " + std::to_string(k) +
-                                 " has an odd number of coordinates; give x and y of each point");
-      auto& loop = loops.emplace_back();
-      for (std::size_t i = 0; i + 1 < p.size(); i += 2) loop.emplace_back(p[i], p[i + 1]);
-    }
-    if (loops.empty()) throw std::runtime_error("\"shape: polygon\" needs \"loops\", its outline and holes");
-    return delaunay_polygon(loops, c.vertices, c.seed);
-  }
-  const Eigen::Vector2d size = c.shape == "square" ? Eigen::Vector2d(c.side, c.side) : c.size;
-  if (c.triangulation == "random") return random_triangulation(size, c.vertices, c.seed);
-  return make_grid(c, size);
-}
 
 /// Smooth noise with values about ±1, a sum of plane waves that depends on position and seed alone.
 class Noise {
@@ -84,36 +40,6 @@ class Noise {
     double kx, ky, phase;
   } waves_[8];
 };
-
-/// The cloth; empty, with every fault appended, if it is none.
-std::optional<TriangleMesh> checked_cloth(const Experiment& e, ConfigErrors& errors) {
-  const ClothParameters& c = e.parameters.cloth;
-  try {
-    TriangleMesh cloth = make_cloth(e);
-    const std::vector<std::string> faults = check_mesh(cloth);
-    for (const std::string& fault : faults)
-      errors.push_back({e.location_of("cloth"), (c.shape == "file" ? c.file + ": " : "") + fault});
-    if (faults.empty()) return cloth;
-  } catch (const std::exception& error) {
-    errors.push_back({e.location_of("cloth"), reason_of(error)});
-  }
-  return std::nullopt;
-}
-
-/// The mesh of the start's file; empty, with every fault appended, if it is none.
-std::optional<TriangleMesh> start_mesh(const Experiment& e, ConfigErrors& errors) {
-  const std::string& file = e.parameters.start.file;
-  try {
-    TriangleMesh mesh = read_mesh(file);
-    e.parameters.start.file_coordinates(e.parameters.cloth).convert(mesh.vertices);
-    const std::vector<std::string> faults = check_coordinates(mesh.vertices);
-    for (const std::string& fault : faults) errors.push_back({e.location_of("start"), file + ": " + fault});
-    if (faults.empty()) return mesh;
-  } catch (const std::exception& problem) {
-    errors.push_back({e.location_of("start"), reason_of(problem)});
-  }
-  return std::nullopt;
-}
 
 Positions read_start(const Experiment& e, const Level& coarsest, ConfigErrors& errors) {
   const std::optional<TriangleMesh> mesh = start_mesh(e, errors);
@@ -160,6 +86,38 @@ bool check_start(const Experiment& e, const Level& level, const Positions& x, Co
   return faults.empty();
 }
 
+/// The state in the file that the experiment's `reference` names: a mesh, or the reference.ply of a run's
+/// folder. Empty without such a file, and, with an error appended, if it does not fit the finest level.
+std::optional<Positions> read_reference(const Experiment& experiment, const Hierarchy& hierarchy,
+                                        ConfigErrors& errors) {
+  const std::string& named = experiment.parameters.reference.file;
+  if (named.empty()) return std::nullopt;
+  const auto refuse = [&](const std::string& why) {
+    errors.push_back({experiment.location_of("reference"), "\"reference\": " + why});
+    return std::nullopt;
+  };
+  std::filesystem::path file = named;
+  if (std::filesystem::is_directory(file)) {
+    file /= "reference.ply";
+    if (!std::filesystem::is_regular_file(file))
+      return refuse(named + " holds no reference.ply; name a mesh, as in " + named +
+                    "/levels/newton_l3.ply, or run that experiment with a reference of its own");
+  }
+  try {
+    const TriangleMesh mesh = read_mesh(file);
+    const Level& finest = hierarchy.levels.back();
+    if (mesh.vertices.rows() != finest.vertex_count())
+      return refuse(file.string() + " has " + std::to_string(mesh.vertices.rows()) +
+                    " vertices, but the finest level has " + std::to_string(finest.vertex_count()) +
+                    "; take a state of that level");
+    if (!same_entries(mesh.triangles, finest.rest.triangles))
+      return refuse(file.string() + " has other triangles than the finest level; take a state of that level");
+    return mesh.vertices;
+  } catch (const std::exception& problem) {
+    return refuse(problem.what());
+  }
+}
+
 }  // namespace
 
 void refuse_intersecting_start(const Experiment& e, const LevelModel& model, const Positions& start,
@@ -180,53 +138,15 @@ void refuse_intersecting_start(const Experiment& e, const LevelModel& model, con
   }
 }
 
-const Solver& Experiment::solver_of(const std::string& method) const {
-  for (const auto& [name, solver] : methods)
-    if (name == method) return *solver;
-  throw std::logic_error("no method " + method);
-}
-
-std::string Experiment::solver_type(const std::string& method) const {
-  const ConfigNode* node = &resolved;
-  for (const char* key : {"methods", method.c_str(), "type"}) node = node ? node->find(key) : nullptr;
-  return node ? node->scalar : method;
-}
-
-Location Experiment::location_of(const std::string& key) const {
-  const ConfigNode* node = source.find(key);
-  return node ? node->where : source.where;
-}
-
-std::vector<std::size_t> Experiment::obstacle_order() const {
-  std::vector<std::size_t> order;
-  for (const ContactConfig& config : contact_configs)
-    order.insert(order.end(), config.obstacles.begin(), config.obstacles.end());
-  return order;
-}
-
-std::vector<std::string> Experiment::obstacle_names() const {
-  std::vector<std::string> names;
-  for (const std::size_t i : obstacle_order()) {
-    const ConfigNode* name = parameters.obstacles[i].find("name");
-    names.push_back(name ? name->scalar : "");
-  }
-  return names;
-}
-
-std::vector<std::string> Experiment::remarks(const Scene& scene) const {
+std::vector<std::string> remarks_of(const Experiment& e, const Scene& scene) {
   std::vector<std::string> all;
-  for (const auto& contact : contacts)
+  for (const auto& contact : e.contacts)
     for (std::string& line : contact->input_remarks()) all.push_back(std::move(line));
   for (const auto& model : scene.models)
     for (const auto& contact : model->contacts())
       if (const std::string remark = contact->remark(); !remark.empty())
         all.push_back("level " + std::to_string(model->level().index) + ": " + remark);
   return all;
-}
-
-void check_mesh_files(const Experiment& e, ConfigErrors& errors) {
-  if (e.parameters.cloth.shape == "file" && !e.parameters.cloth.file.empty()) checked_cloth(e, errors);
-  if (!e.parameters.start.file.empty()) start_mesh(e, errors);
 }
 
 std::unique_ptr<Scene> build_scene(const Experiment& e, ConfigErrors& errors,
@@ -244,7 +164,7 @@ std::unique_ptr<Scene> build_scene(const Experiment& e, ConfigErrors& errors,
     return nullptr;
   }
   const Level& coarsest = scene->hierarchy.levels[0];
-  check_boundary_conditions(e, scene->hierarchy.levels, errors);
+  check_selections(e, scene->hierarchy.levels, errors);
   const std::vector<Positions> shapes = start_shapes(e, scene->hierarchy, errors);
   if (!errors.empty()) return nullptr;
   scene->energies = e.energies;

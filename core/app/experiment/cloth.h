@@ -1,11 +1,16 @@
 #pragma once
 
-#include <string>
-#include <vector>
+#include <optional>
 
 #include "core/app/experiment/experiment.h"
 
 namespace drape {
+
+/// The cloth of the coarsest level; empty, with every fault appended, if it is none.
+std::optional<TriangleMesh> checked_cloth(const Experiment& experiment, ConfigErrors& errors);
+
+/// The mesh of the start's file; empty, with every fault appended, if it is none.
+std::optional<TriangleMesh> start_mesh(const Experiment& experiment, ConfigErrors& errors);
 
 /// Columns and rows of vertices of a square's or rectangle's grid: as set, otherwise about `vertices`
 /// vertices with square cells.
@@ -18,7 +23,7 @@ struct GridSize {
 GridSize grid_size(const ClothParameters& cloth);
 
 /// Estimated vertices of each level, without building any; reads only a mesh file. Empty if the cloth cannot
-/// be made, which build_scene reports.
+/// be made, which checked_cloth reports.
 std::vector<double> estimated_vertices(const ExperimentParameters& p);
 
 /// Estimated peak memory of a run whose finest level has so many vertices [bytes].

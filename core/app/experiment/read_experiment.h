@@ -4,9 +4,16 @@
 
 namespace drape {
 
+// The steps of read_experiment.
+
 /// Sets the first value of every key of the schedule in an experiment's map, before the map is read.
 /// read_keys reports faults of the keys.
 void set_first_keys(ConfigNode& source);
+
+/// Makes the energies, refiner, contact models, metrics and solvers of an experiment, whose parameters and
+/// source are read, and adds all their parameters to `resolved`. Without `metrics` it makes all that are
+/// registered. Appends every error.
+void make_plugins(const Registry& registry, ConfigErrors& errors, Experiment& experiment);
 
 /// Finds the values of an experiment's keys, and the declared numbers that they change; the plugins must have
 /// been made. Appends the faults of the keys: parameters that may not change, times that do not ascend, and

@@ -1,0 +1,61 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "core/kernel/plugin/registry.h"
+
+namespace drape {
+
+/// The commands of `drape`. An add_… function below adds one or a few, whose options go into a struct that
+/// only the command's action refers to.
+class Commands {
+ public:
+  Commands();
+
+  /// Adds a command; its help page has the example unless that is empty. The action returns the exit code.
+  CLI::App& add(const std::string& name, const std::string& summary, const std::string& example,
+                std::function<int()> action);
+  /// Adds a command that loads the plugins, those of its option --plugin too.
+  CLI::App& add_with_plugins(const std::string& name, const std::string& summary, const std::string& example,
+                             std::function<int(const Registry&)> action);
+
+  /// Performs the command that the command line chooses; `help COMMAND` is `COMMAND --help`. Returns the exit
+  /// code. Throws std::runtime_error, which names the nearest command, for a word that is none.
+  int run(int argc, char** argv);
+
+ private:
+  void require_command(const std::string& word) const;
+
+  CLI::App app_;
+  std::vector<CLI::App*> with_plugins_;
+  std::vector<std::string> plugin_files_;
+  std::function<int()> chosen_;
+};
+
+void add_new_command(Commands& commands);
+void add_check_commands(Commands& commands);  ///< check, check-energy
+void add_run_command(Commands& commands);
+void add_view_command(Commands& commands);
+void add_export_command(Commands& commands);
+void add_figures_command(Commands& commands);
+void add_report_commands(Commands& commands);  ///< report, compare, table
+void add_sweep_commands(Commands& commands);   ///< sweep, and sweep-job, which its jobs on a cluster execute
+void add_plugin_commands(Commands& commands);  ///< list, describe, schema
+void add_reference_command(Commands& commands);
+
+/// Compiles plugins, one C++ file each, unless they were compiled before, and adds them to DRAPE_PLUGIN_PATH,
+/// which the processes of a sweep inherit. Libraries are kept in $XDG_CACHE_HOME/drape or ~/.cache/drape.
+/// Throws std::runtime_error after printing what the compiler says.
+void compile_plugins(const std::vector<std::string>& files);
+
+/// Makes SIGINT, SIGTERM and SIGHUP (a lost terminal) request a stop; a second one ends the process at once.
+/// SIGHUP stays ignored under nohup. SIGPIPE is ignored: a run goes on where nobody reads its progress.
+void stop_on_signals();
+/// The signal that requested the stop, 0 before.
+int stop_signal();
+
+}  // namespace drape

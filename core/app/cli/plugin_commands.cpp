@@ -1,0 +1,137 @@
+// The commands that show what can be written: list, describe, schema and reference.
+
+#include <algorithm>
+#include <iostream>
+#include <nlohmann/json.hpp>
+
+#include "core/app/cli/commands.h"
+#include "core/app/experiment/describe.h"
+#include "core/app/experiment/exit_codes.h"
+#include "core/app/experiment/experiment.h"
+#include "core/app/files/json_file.h"
+#include "core/app/sweep/sweep.h"
+#include "core/kernel/files/file.h"
+#include "core/kernel/files/message_text.h"
+#include "core/kernel/files/string_utils.h"
+
+namespace drape {
+
+namespace {
+
+const std::vector<std::string> kinds = {"energy", "refiner", "contact", "solver", "metric"};
+
+int list(const std::string& asked, const Registry& registry) {
+  if (!asked.empty() && std::find(kinds.begin(), kinds.end(), asked) == kinds.end())
+    throw std::runtime_error("there is no kind \"" + excerpt(asked) + "\"; the kinds are " + joined(kinds));
+  for (const std::string& kind : kinds) {
+    if (!asked.empty() && kind != asked) continue;
+    std::cout << kind << "\n";
+    for (const RegistryEntry* entry : registry.of_kind(kind))
+      std::cout << "  " << padded(entry->name, 24) << " " << entry->summary << "\n";
+  }
+  return exit_done;
+}
+
+int describe_plugin(const std::string& name, const Registry& registry) {
+  std::vector<std::string> names = {"experiment", "sweep"}, found;
+  if (name == names[0]) found.push_back(describe(schema_of<ExperimentParameters>("experiment")));
+  if (name == names[1]) found.push_back(describe_sweep());
+  for (const auto& entry : registry.entries()) {
+    names.push_back(entry->name);
+    if (entry->name == name) found.push_back(describe(*entry));
+  }
+  for (std::size_t k = 0; k < found.size(); ++k) std::cout << (k > 0 ? "\n" : "") << found[k];
+  if (!found.empty()) return exit_done;
+  const std::string near = nearest_word(name, names);
+  throw std::runtime_error("no plugin is called \"" + excerpt(name) + "\"; " +
+                           (near.empty() ? "`drape list` names them all" : "did you mean \"" + near + "\"?"));
+}
+
+int print_schema(const std::string& of, const Registry& registry) {
+  std::cout << json_text(of == "sweep" ? sweep_json_schema() : experiment_json_schema(registry), 2) << "\n";
+  return exit_done;
+}
+
+/// Newton's settings, which experiments and methods have alike: described once, at this link.
+SharedSection newton_section(const std::string& link) {
+  return {schema_of<NewtonParameters>("newton"), "[Newton](" + link + ")"};
+}
+
+/// Writes every plugin's parameters into FOLDER/KIND/NAME/README.md, if that exists.
+int reference_into(const std::filesystem::path& folder, const Registry& registry) {
+  const SharedSection newton = newton_section("../../../docs/reference/configuration.md#newton");
+  int pages = 0;
+  for (const auto& entry : registry.entries()) {
+    const std::filesystem::path file = folder / entry->kind / entry->name / "README.md";
+    if (!std::filesystem::exists(file)) continue;
+    write_file(file, with_parameters(read_file(file), *entry, &newton));
+    ++pages;
+  }
+  if (pages == 0)
+    throw std::runtime_error("--readmes " + folder.string() +
+                             ": no KIND/NAME/README.md of a plugin there; give the folder `plugins`");
+  std::cout << pages << " pages written\n";
+  return exit_done;
+}
+
+int reference(const Registry& registry) {
+  const SharedSection newton = newton_section("#newton");
+  std::cout << "# Configuration reference\n\n"
+               "```sh\n"
+               "drape describe experiment              # a table of this page, in the terminal\n"
+               "drape describe pcs                     # a plugin's\n"
+               "drape run my_drape.yaml --set newton.force_tolerance=1e-4 --set contact.shapes.dhat=2e-3\n"
+               "```\n\n"
+               "Made by `drape reference`; do not edit.\n\n## Experiment\n\n"
+            << describe_markdown(schema_of<ExperimentParameters>("experiment"), &newton)
+            << "\n## Newton\n\nThe section `newton` of an experiment applies to every method. A method's own "
+               "`newton` takes precedence, key by key.\n\n"
+            << describe_markdown(newton.schema);
+  for (const std::string& kind : kinds) {
+    std::cout << "\n## Kind: " << kind << "\n";
+    for (const RegistryEntry* entry : registry.of_kind(kind))
+      std::cout << "\n" << describe_markdown(*entry, &newton);
+  }
+  std::cout << "\n## Sweep\n\n" << describe_sweep_markdown();
+  return exit_done;
+}
+
+}  // namespace
+
+void add_plugin_commands(Commands& commands) {
+  const auto kind = std::make_shared<std::string>();
+  commands
+      .add_with_plugins("list", "list plugins", "drape list energy",
+                        [kind](const Registry& registry) { return list(*kind, registry); })
+      .add_option("kind", *kind, "energy, refiner, contact, solver or metric (default: all)");
+  const auto name = std::make_shared<std::string>();
+  commands
+      .add_with_plugins("describe", "show a plugin's parameters (or `experiment`'s, `sweep`'s)",
+                        "drape describe strain_limit",
+                        [name](const Registry& registry) { return describe_plugin(*name, registry); })
+      .add_option("plugin", *name, "name of the plugin")
+      ->required();
+  const auto of = std::make_shared<std::string>("experiment");
+  commands
+      .add_with_plugins("schema", "print the JSON Schema of experiments (or sweeps), for editors",
+                        "drape schema > experiment.schema.json",
+                        [of](const Registry& registry) { return print_schema(*of, registry); })
+      .add_option("kind", *of, "experiment (default) or sweep")
+      ->check(CLI::IsMember({"experiment", "sweep"}));
+}
+
+void add_reference_command(Commands& commands) {
+  const auto folder = std::make_shared<std::string>();
+  CLI::App& command = commands.add_with_plugins(
+      "reference", "print the configuration reference (Markdown)", "drape reference --readmes plugins",
+      [folder](const Registry& registry) {
+        return folder->empty() ? reference(registry) : reference_into(*folder, registry);
+      });
+  command.group("For developers of drape");
+  command
+      .add_option("--readmes", *folder,
+                  "instead, write each plugin's parameters into FOLDER/KIND/NAME/README.md")
+      ->type_name("FOLDER");
+}
+
+}  // namespace drape

@@ -1,0 +1,178 @@
+// The commands that read results: export, report, compare and table.
+
+#include <cmath>
+#include <iostream>
+#include <map>
+
+#include "core/app/cli/commands.h"
+#include "core/app/cli/config_arguments.h"
+#include "core/app/experiment/exit_codes.h"
+#include "core/app/report/compare.h"
+#include "core/app/report/pictures.h"
+#include "core/app/report/report.h"
+#include "core/app/report/run_collection.h"
+#include "core/app/report/run_export.h"
+#include "core/app/report/run_table.h"
+#include "core/kernel/files/message_text.h"
+#include "core/kernel/files/string_utils.h"
+#include "core/kernel/plugin/parameters.h"
+
+namespace drape {
+
+namespace {
+
+using Folders = std::vector<std::filesystem::path>;
+
+const std::map<std::string, TableFormat> formats = {
+    {"md", TableFormat::markdown}, {"csv", TableFormat::csv}, {"json", TableFormat::json}};
+
+/// The vector that "X,Y,Z" spells; nothing for another text, and for a vector whose length says no direction.
+std::optional<Eigen::Vector3d> direction_of(const std::string& text) {
+  std::vector<double> numbers;
+  for (const std::string& part : split(text, ',')) {
+    const std::optional<double> number = parse_number(part);
+    if (!number || !std::isfinite(*number)) return {};
+    numbers.push_back(*number);
+  }
+  if (numbers.size() != 3) return {};
+  const Eigen::Vector3d direction(numbers[0], numbers[1], numbers[2]);
+  const double length = direction.norm();
+  if (!(length > 1e-9 && length < 1e9)) return {};
+  return direction;
+}
+
+void add_picture_width(CLI::App& command, std::optional<int>& width, const std::string& help) {
+  command.add_option("--width", width, help)
+      ->check(integer_between(
+          least_picture_width, greatest_picture_width,
+          std::to_string(least_picture_width) + " to " + std::to_string(greatest_picture_width) + " pixels"))
+      ->type_name("PIXELS");
+}
+
+int export_states(const std::string& folder, const std::string& file, const ExportOptions& options) {
+  const Folders files = export_run(folder, file, options);
+  std::cout << "written: " << printable(files.front().string());
+  if (files.size() > 1) std::cout << " to " << printable(files.back().string());
+  std::cout << "\n";
+  return exit_done;
+}
+
+int report(const Folders& folders, std::filesystem::path page, std::optional<int> picture_width) {
+  const bool several = folders.size() > 1 || is_sweep(folders.front());
+  if (!several && !page.empty())
+    throw std::runtime_error(
+        "--out is for the page of several runs; a run's own is report.html in its folder");
+  if (several && picture_width)
+    throw std::runtime_error("--width is for the pictures of one run; a page of several runs has none");
+  if (page.empty()) page = folders.front() / "report.html";
+  if (folders.size() > 1 && page == folders.front() / "report.html")
+    throw std::runtime_error("several folders: name the page with --out, as in --out results/together.html");
+  if (several) {
+    write_runs_report(folders, page);
+  } else {
+    require_run_or_sweep(folders.front());
+    warn_of(write_report(folders.front(), {}, picture_width));
+  }
+  std::cout << "report: " << page.string() << "\n";
+  return exit_done;
+}
+
+int print_comparison(const Folders& runs, const std::vector<std::string>& bounds) {
+  const RunCollection before = read_runs({runs[0]}), after = read_runs({runs[1]});
+  const Comparison comparison = compare(before, after, bounds);
+  std::cout << printable_lines(comparison.text);
+  return comparison.broken ? exit_bound_broken : exit_done;
+}
+
+int print_table(const Folders& folders, const std::vector<std::string>& columns, const std::string& format) {
+  const RunTable table = table_of(read_runs(folders));
+  const std::string text = table_text(table, columns, formats.at(format));
+  std::cout << (format == "json" ? text : printable_lines(text));
+  return table.all_pass() ? exit_done : exit_not_converged;
+}
+
+}  // namespace
+
+void add_export_command(Commands& commands) {
+  struct Options : ExportOptions {
+    std::string folder, file;
+  };
+  const auto o = std::make_shared<Options>();
+  CLI::App& command = commands.add("export", "write states of a run as glTF, OBJ, PLY, VTP or PNG",
+                                   "drape export results/sphere --to sphere.glb --frames",
+                                   [o] { return export_states(o->folder, o->file, *o); });
+  command.add_option("folder", o->folder, "results folder")->required();
+  command
+      .add_option("-o,--to", o->file,
+                  "file to write: .glb has every level as a scene, with the obstacles; .obj, .ply and .vtp "
+                  "have the finest level's cloth; .png is a picture of the finest level")
+      ->type_name("FILE")
+      ->required();
+  command.add_option("--method", o->method, "method (default: pcs, or the only one that was run)")
+      ->type_name("NAME");
+  command.add_option("--level", o->level, "this level only")->type_name("N")->check(number_of_at_least(0));
+  command.add_flag("--frames", o->frames,
+                   "with .glb: the recorded snapshots of one level (default: the finest) as an animation; "
+                   "with .png: those of every level, coarse to fine, as numbered pictures");
+  add_picture_width(command, o->picture.width, "with .png: width in pixels (default: 1800)");
+  command
+      .add_option_function<std::string>(
+          "--view", [o = o.get()](const std::string& text) { o->picture.direction = direction_of(text); },
+          "with .png: direction towards the camera (default: that of the report's pictures)")
+      ->check([](const std::string& text) {
+        return direction_of(text) ? "" : "must be a direction, as in 1,-1,0.5, not " + excerpt(text);
+      })
+      ->type_name("X,Y,Z");
+  command.add_flag("--outline", o->picture.outline,
+                   "with .png: draw the outline of the method's coarsest state over the picture");
+  command.add_flag("--xray", o->picture.xray, "with .png: let obstacles show faintly through the cloth");
+  command.add_flag("--overwrite", o->overwrite, "replace existing files");
+}
+
+void add_report_commands(Commands& commands) {
+  struct Options {
+    Folders folders;
+    std::filesystem::path out;
+    std::optional<int> picture_width;
+    std::vector<std::string> bounds, columns;
+    std::string format = "md";
+  };
+  const auto o = std::make_shared<Options>();
+  CLI::App& report_command =
+      commands.add("report", "write the report of a run, of several runs or of a sweep",
+                   "drape report results/sphere results/cube -o results/both.html",
+                   [o] { return report(o->folders, o->out, o->picture_width); });
+  report_command.add_option("folder", o->folders, "results folders, or a sweep's")->required();
+  report_command
+      .add_option("-o,--out", o->out, "page of several runs (default: report.html in a sweep's folder)")
+      ->type_name("FILE");
+  add_picture_width(report_command, o->picture_width, "width of a run's pictures in pixels (default: 900)");
+
+  CLI::App& compare_command =
+      commands.add("compare", "compare two runs or sweeps: what became faster, slower, better or worse",
+                   "drape compare results/before results/after --bound seconds=1.1",
+                   [o] { return print_comparison(o->folders, o->bounds); });
+  compare_command.add_option("runs", o->folders, "the former and the new one")->required()->expected(2);
+  compare_command
+      .add_option("--bound", o->bounds,
+                  "exit with 1 if a quantity exceeds RATIO times its former value; may be repeated")
+      ->type_name("KEY=RATIO")
+      ->allow_extra_args(false);
+
+  CLI::App& table_command = commands.add(
+      "table", "print a table of runs and sweeps, one row per method; exits with 1 unless all pass",
+      "drape table results/sphere --columns method,status,seconds,energy_released",
+      [o] { return print_table(o->folders, o->columns, o->format); });
+  table_command.add_option("folder", o->folders, "results folders, or sweeps'")->required();
+  table_command.add_option("--format", o->format, "md (default), csv or json")
+      ->type_name("NAME")
+      ->check([](const std::string& name) {
+        return formats.contains(name) ? "" : "must be md, csv or json, not " + excerpt(name);
+      });
+  table_command.add_option("--columns", o->columns, "columns, as in run,status,energy_released")
+      ->type_name("A,B")
+      ->delimiter(',')
+      ->allow_extra_args(false);
+}
+
+}  // namespace drape

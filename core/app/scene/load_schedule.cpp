@@ -1,0 +1,247 @@
+#include "core/app/scene/load_schedule.h"
+
+#include <algorithm>
+#include <stdexcept>
+
+#include "core/app/experiment/read_experiment.h"
+#include "core/app/scene/boundary_conditions.h"
+#include "core/app/scene/following_pins.h"
+#include "core/kernel/files/message_text.h"
+#include "core/numerics/model/stretch_limit.h"
+
+namespace drape {
+
+namespace {
+
+void throw_first(const ConfigErrors& errors) {
+  if (!errors.empty()) throw std::runtime_error(errors[0].message);
+}
+
+template <class Interface>
+void make_again(const PluginParameters& parameters, std::shared_ptr<Interface>& object) {
+  ConfigErrors errors;
+  object = std::static_pointer_cast<Interface>(make_plugin(
+      parameters, [](const auto&, const auto&) { return Location(); }, errors, object.get()));
+  throw_first(errors);
+}
+
+/// An increment is tried at most this often, in ever smaller fractions, before it waits for equilibrium.
+constexpr int max_tries = 30;
+constexpr double min_fraction = 1e-6;  // of what remains of the increment
+
+/// Largest feasible motion of the obstacles from one model to the other with the cloth at x.
+StepLimit obstacle_step_limit(const LevelModel& from, const LevelModel& to, const Positions& x) {
+  StepLimit limit;
+  for (std::size_t k = 0; k < to.contacts().size(); ++k) {
+    if (to.contacts()[k] == from.contacts()[k]) continue;
+    StepLimit own = to.contacts()[k]->max_step(*from.contacts()[k], x);
+    if (own.fraction < limit.fraction) limit = std::move(own);
+  }
+  return limit;
+}
+
+/// Binds the energies under a load on every level, as load stepping does. Throws std::runtime_error with the
+/// fault of the first that cannot be bound or has other stencils than under the first load.
+void bind_energies(const LoadState& load, const Scene& scene) {
+  for (const auto& first : scene.models)
+    LevelModel(first->level(), load.parameters->material, load.energies, {}, {}, first.get());
+}
+
+/// The times of a key, and one between each two.
+std::vector<double> times_with_between(const std::vector<double>& times) {
+  constexpr double fraction = 0.38196601125;  // no round one, where two motions may happen to meet
+  std::vector<double> all;
+  for (std::size_t i = 0; i < times.size(); ++i) {
+    if (i > 0) all.push_back(times[i - 1] + fraction * (times[i] - times[i - 1]));
+    all.push_back(times[i]);
+  }
+  return all;
+}
+
+}  // namespace
+
+LoadSchedule::LoadSchedule(const Experiment& e, const Scene& scene)
+    : hierarchy_(scene.hierarchy), placed_(scene.placed), following_(scene.following) {
+  std::size_t first = 0;
+  for (const ScheduleKey& key : e.parameters.schedule.keys) {
+    for (const KeyTarget& target : key.targets)
+      change_of(e, target).numbers.emplace_back(target.numbers, first);
+    first += key.values[0].size();
+  }
+  auto parameters = std::make_shared<const ExperimentParameters>(e.parameters);
+  std::vector<double> values;
+  for (const ScheduleKey& key : e.parameters.schedule.keys)
+    values.insert(values.end(), key.values[0].begin(), key.values[0].end());
+  first_ = std::make_shared<const LoadState>(
+      LoadState{std::move(values), std::move(parameters), scene.energies, e.contacts});
+}
+
+LoadSchedule::Change& LoadSchedule::change_of(const Experiment& e, const KeyTarget& target) {
+  for (Change& change : changes_)
+    if (change.part == target.part && change.item == target.item) return change;
+  PluginParameters first = parameters_of(e, target.part, target.item);
+  if (!first.entry) first.values.reset();
+  return changes_.emplace_back(Change{target.part, target.item, std::move(first), {}});
+}
+
+std::shared_ptr<const LoadState> LoadSchedule::at(std::vector<double> values, const LoadState& before) const {
+  auto load = std::make_shared<LoadState>(before);
+  std::shared_ptr<ExperimentParameters> parameters;  // once one of the experiment's own differs
+  bool new_handles = false;
+  for (const Change& change : changes_) {
+    const bool differs = std::any_of(change.numbers.begin(), change.numbers.end(), [&](const auto& one) {
+      const auto first = static_cast<std::ptrdiff_t>(one.second);
+      return !std::equal(values.begin() + first,
+                         values.begin() + first + static_cast<std::ptrdiff_t>(one.first.count()),
+                         before.values.begin() + first);
+    });
+    if (!differs) continue;
+    const RegistryEntry* entry = change.first.entry;
+    PluginParameters own{entry, entry ? entry->schema.copy(change.first.values.get()) : nullptr};
+    if (!entry && !parameters) parameters = std::make_shared<ExperimentParameters>(*before.parameters);
+    ConfigErrors errors;
+    for (const auto& [numbers, first] : change.numbers)
+      numbers.set(entry ? own.values.get() : parameters.get(), &values[first], errors);
+    throw_first(errors);
+    new_handles = new_handles || change.part == LoadPart::handles;
+    if (change.part == LoadPart::energies) make_again(own, load->energies[change.item].energy);
+    if (change.part == LoadPart::contact) make_again(own, load->contacts[change.item]);
+  }
+  if (parameters) load->parameters = parameters;
+  if (new_handles) load->energies.back().energy = handles_energy(*parameters, hierarchy_.levels[0], placed_);
+  load->values = std::move(values);
+  return load;
+}
+
+std::shared_ptr<const LevelModel> LoadSchedule::model(const LoadState& load, int level,
+                                                      const LevelModel& before) const {
+  const Level &own = hierarchy_.levels[level], &coarsest = hierarchy_.levels[0];
+  const auto with = [&](std::vector<DirichletVertex> dirichlet, const LevelModel& shared) {
+    return std::make_shared<const LevelModel>(own, load.parameters->material, load.energies,
+                                              std::move(dirichlet), load.contacts, &shared);
+  };
+  std::vector<DirichletVertex> dirichlet =
+      dirichlet_vertices(*load.parameters, own, coarsest, placed_[level]);
+  if (following_[level].empty()) return with(std::move(dirichlet), before);
+  const auto moved = with({}, before);  // where the obstacles are decides the targets
+  move_targets(following_[level], moved->contacts(), dirichlet);
+  return with(std::move(dirichlet), *moved);
+}
+
+ScheduleStepping::ScheduleStepping(LoadSchedule schedule, const Scene& scene)
+    : schedule_(std::move(schedule)), load_(schedule_.first()) {
+  for (const auto& model : scene.models) levels_.push_back({load_, load_, model});
+}
+
+std::shared_ptr<const LevelModel> ScheduleStepping::model(int level) {
+  LoadedLevel& l = levels_[level];
+  if (l.made_of != l.load) {
+    l.model = schedule_.model(*l.load, level, *l.model);
+    l.made_of = l.load;
+  }
+  return l.model;
+}
+
+std::shared_ptr<const LoadState> ScheduleStepping::load_at(std::vector<double> values) const {
+  try {
+    return schedule_.at(std::move(values), *load_);
+  } catch (const std::exception& error) {
+    throw std::runtime_error("the schedule at pseudo-time " + std::to_string(time()) + ": " + error.what());
+  }
+}
+
+void ScheduleStepping::set_load(int level, std::shared_ptr<const LoadState> load) {
+  load_ = std::move(load);
+  for (std::size_t l = level; l < levels_.size(); ++l) levels_[l].load = load_;
+}
+
+void ScheduleStepping::begin(int level, bool from_start) {
+  if (from_start)
+    restore(level, {0, schedule_.values(0)});
+  else
+    set_load(level, load_);
+}
+
+void ScheduleStepping::restore(int level, const LoadSteppingState& state) {
+  increment_ = state.increment;
+  set_load(level, load_at(state.values));
+}
+
+StepLimit ScheduleStepping::advance(int level, const Positions& x) {
+  if (complete()) ++increment_;
+  StepLimit limit;
+  double part = 1;
+  for (int tries = 0; tries < max_tries && part >= min_fraction; ++tries) {
+    StepLimit allowed = try_fraction(part, level, x);
+    if (allowed.fraction == 1) {
+      limit.fraction = part;
+      return limit;
+    }
+    if (!allowed.by.empty()) limit.by = std::move(allowed.by);
+    part *= allowed.fraction;
+  }
+  limit.fraction = 0;
+  return limit;
+}
+
+bool ScheduleStepping::advance_by(double fraction, int level, const Positions& x) {
+  return try_fraction(fraction, level, x).fraction == 1;
+}
+
+StepLimit ScheduleStepping::try_fraction(double fraction, int level, const Positions& x) {
+  std::vector<double> values = schedule_.values(increment_);
+  if (fraction < 1)
+    for (std::size_t c = 0; c < values.size(); ++c)
+      values[c] = load_->values[c] + fraction * (values[c] - load_->values[c]);
+  if (fraction < 1 && values == load_->values) return {0, {}};  // less than the numbers can express
+  const std::shared_ptr<const LoadState> next = load_at(std::move(values));
+  const std::shared_ptr<const LevelModel> now = model(level);
+  std::shared_ptr<const LevelModel> then = schedule_.model(*next, level, *now);
+  if (std::string refused = strain_limit_violations(then->limits(), x, 1); !refused.empty())
+    return {0.5, std::move(refused)};  // a limit gives no fraction: try half
+  if (StepLimit limit = obstacle_step_limit(*now, *then, x); limit.fraction < 1) return limit;
+  set_load(level, next);
+  levels_[level] = {next, next, std::move(then)};
+  return {};
+}
+
+void check_schedule_on_levels(const Experiment& e, const Scene& scene, const LoadSchedule& schedule,
+                              ConfigErrors& errors) {
+  const std::vector<ScheduleKey>& keys = e.parameters.schedule.keys;
+  const std::vector<Level>& levels = scene.hierarchy.levels;
+  for (std::size_t k = 0; k < keys.size(); ++k) {
+    const LoadPart part = keys[k].targets[0].part;
+    const std::size_t item = keys[k].targets[0].item;
+    if (part == LoadPart::contact) continue;
+    const bool of_vertices = part == LoadPart::pins || part == LoadPart::handles;
+    const Location where = e.source.find("schedule")->find("keys")->items[k].find("values")->where;
+    // Whether check(load, faults) finds no fault at any of these times; appends those of the first that has.
+    const auto hold_at = [&](const std::vector<double>& times, const auto& check) {
+      for (const double time : times) {
+        ConfigErrors own;
+        try {
+          // With the values that all other keys have at that time: two keys may move the bounds of one
+          // region.
+          check(*schedule.at(schedule.keys().values_at(time)), own);
+        } catch (const std::runtime_error& problem) {
+          own.push_back({where, problem.what()});
+        }
+        for (const ConfigError& error : own)
+          errors.push_back({where, "key \"" + excerpt(keys[k].parameter) + "\" at pseudo-time " +
+                                       three_digits(time) + ": " + error.message});
+        if (!own.empty()) return false;
+      }
+      return true;
+    };
+    const bool bound = hold_at(keys[k].times, [&](const LoadState& load, ConfigErrors& own) {
+      if (of_vertices) check_selection(*load.parameters, part, item, where, levels, own);
+      if (own.empty() && part != LoadPart::pins) bind_energies(load, scene);
+    });
+    if (bound && of_vertices)
+      hold_at(times_with_between(keys[k].times), [&](const LoadState& load, ConfigErrors& own) {
+        check_shared_vertices(*load.parameters, part, item, where, levels, scene.placed, own);
+      });
+  }
+}
+
+}  // namespace drape

@@ -1,0 +1,58 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/app/experiment/experiment.h"
+#include "core/numerics/hierarchy/hierarchy.h"
+
+namespace drape {
+
+/// A vertex of a pin that follows an obstacle, and the point of the obstacle that it is attached to.
+struct FollowingVertex {
+  int pin = 0, vertex = 0;
+  Eigen::Index obstacle = 0;                          ///< in obstacles_of
+  std::string name;                                   ///< the obstacle's, as the pin has it
+  Eigen::Vector3i corners{0, 0, 0};                   ///< of the followed triangle
+  Eigen::Matrix3d first = Eigen::Matrix3d::Zero();    ///< these under the first load, one a column [m]
+  Eigen::Vector3d weights = Eigen::Vector3d::Zero();  ///< barycentric coordinates of the point
+  Eigen::Vector3d offset = Eigen::Vector3d::Zero();   ///< the target from there, in the triangle's frame [m]
+};
+using FollowingVertices = std::vector<FollowingVertex>;
+
+/// The problem of an experiment, and what it was made from.
+struct Scene : Problem {
+  explicit Scene(Hierarchy all) : Problem{levels, {}, {}, nullptr}, levels(std::move(all)) {}
+  Scene(const Scene&) = delete;
+  Scene& operator=(const Scene&) = delete;
+
+  const Hierarchy levels;                    ///< the problem's
+  std::vector<NamedEnergy> energies;         ///< of the models, handles included
+  std::vector<Positions> placed;             ///< the starts without noise, where pins and handles hold [m]
+  std::vector<FollowingVertices> following;  ///< of each level
+  std::optional<Positions> reference;        ///< on the finest level, if the experiment names its file
+
+  /// The finest level's model under the load that it has reached; valid until the next load step.
+  const LevelModel& finest_model() const { return *model(finest()); }
+};
+
+/// Whether a start that intersects something is refused.
+enum class IntersectingStart { refused, allowed };
+
+/// Builds the scene; null, with every fault of the mesh, of pins and of the start appended, if that
+/// is not possible. An intersecting start is `allowed` for repair_start and warm starts alone.
+std::unique_ptr<Scene> build_scene(const Experiment& experiment, ConfigErrors& errors,
+                                   IntersectingStart intersecting = IntersectingStart::refused);
+
+/// How the contact models treat their input and the scene, a line each: repaired obstacles, pairs of the
+/// cloth that have no barrier.
+std::vector<std::string> remarks_of(const Experiment& experiment, const Scene& scene);
+
+/// Appends an error for every intersection of a start: contact only preserves intersection-free
+/// states.
+void refuse_intersecting_start(const Experiment& experiment, const LevelModel& model, const Positions& start,
+                               ConfigErrors& errors);
+
+}  // namespace drape
