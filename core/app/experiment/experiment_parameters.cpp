@@ -77,6 +77,19 @@ void ClothParameters::declare(Declaration<ClothParameters>& d) {
       .at_least(0)
       .at_most(bounds::largest_int)
       .description("seed of a random triangulation");
+  d.add("grain", &ClothParameters::grain)
+      .unit("degree")
+      .at_least(-bounds::largest_angle)
+      .at_most(bounds::largest_angle)
+      .description(
+          "direction of warp on the rest shape, from `grain_along` counter-clockwise seen from the cloth's "
+          "front; null: along x, and neither exported nor drawn");
+  d.add_choice("grain_along", &ClothParameters::grain_along, {{"x", Grain::Axis::x}, {"u", Grain::Axis::u}})
+      .only_with("shape", {"file"})
+      .description(
+          "what `grain` counts from: the x axis, projected into each triangle, or the texture coordinate u "
+          "of "
+          "the file, where that is the pattern");
 }
 
 void StartParameters::declare(Declaration<StartParameters>& d) {

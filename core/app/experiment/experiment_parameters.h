@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/kernel/interfaces/material.h"
+#include "core/kernel/interfaces/triangle_mesh.h"
 #include "core/kernel/plugin/declared_numbers.h"
 #include "core/numerics/mesh_files/file_coordinates.h"
 #include "core/numerics/step/newton_parameters.h"
@@ -33,6 +34,8 @@ struct ClothParameters : FileCoordinates {
   int vertices = 1024;
   int columns = 0, rows = 0;
   int seed = 1;
+  std::optional<double> grain;
+  Grain::Axis grain_along = Grain::Axis::x;
   static void declare(Declaration<ClothParameters>& d);
 };
 

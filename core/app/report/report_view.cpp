@@ -5,7 +5,9 @@
 #include <optional>
 #include <stdexcept>
 
+#include "core/app/files/csv.h"
 #include "core/app/files/json_file.h"
+#include "core/app/files/yaml_file.h"
 #include "core/app/report/recorded_snapshots.h"
 #include "core/app/view/view_document.h"
 #include "core/kernel/files/file.h"
@@ -51,8 +53,11 @@ class ReportViewMaker {
         declared_(declared_fields(run)) {}
 
   ReportView make() {
-    for (int l = 0; l <= run_.finest_level(); ++l)
-      levels_.push_back(Level::of(l, read_mesh(run_.folder / "rest" / ("l" + std::to_string(l) + ".ply"))));
+    for (int l = 0; l <= run_.finest_level(); ++l) {
+      TriangleMesh rest = read_mesh(run_.folder / "rest" / ("l" + std::to_string(l) + ".ply"));
+      rest.grain = grain();
+      levels_.push_back(Level::of(l, std::move(rest)));
+    }
     for (const std::string& name : run_.obstacles) obstacles_.push_back(read_mesh(run_.folder / name));
     document_.emplace(
         levels_, obstacles_, run_.has_contact(),
@@ -70,6 +75,17 @@ class ReportViewMaker {
     Positions x;
     SurfaceFields fields;
   };
+
+  std::optional<Grain> grain() const {
+    ConfigErrors unread;
+    const ConfigNode config = parse_yaml(run_.configuration, "config.yaml", unread);
+    const ConfigNode* cloth = config.find("cloth");
+    const ConfigNode *angle = cloth ? cloth->find("grain") : nullptr,
+                     *along = cloth ? cloth->find("grain_along") : nullptr;
+    const OptionalNumber degrees = angle ? number_of(angle->scalar) : std::nullopt;
+    if (!degrees) return std::nullopt;
+    return Grain{along && along->scalar == "u" ? Grain::Axis::u : Grain::Axis::x, *degrees};
+  }
 
   void read_states() {
     std::vector<const SurfaceFields*> shown;

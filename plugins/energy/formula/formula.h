@@ -22,7 +22,6 @@ class Formula final : public Energy {
     ConfigNode where;
     std::string density, energy;
     std::optional<std::string> role;
-    Eigen::Vector3d axis{1, 0, 0};
 
     static void declare(Declaration<Parameters>& d);
   };
@@ -47,7 +46,6 @@ class Formula final : public Energy {
   std::unique_ptr<BoundEnergy> bind_unchecked(const Level& level, const Material& material) const;
 
   formula::Law law_;
-  Eigen::Vector3d axis_;
   EnergyRole role_;
 };
 
