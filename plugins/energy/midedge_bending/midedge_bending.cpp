@@ -12,8 +12,7 @@ double MidedgeBending::plate_stiffness(const Material& material) const {
 
 std::unique_ptr<BoundEnergy> MidedgeBending::bind(const Level& level, const Material& material) const {
   return std::make_unique<BoundMidedgeBending>(
-      level, ShapeOperators::of(level, bending_stiffness(material), material.poisson_ratio,
-                                parameters_.correction_tolerance));
+      level, ShapeOperators::of(level, material, parameters_.correction_tolerance));
 }
 
 }  // namespace drape
