@@ -13,6 +13,7 @@
 
 #include "core/app/cli/check_command.h"
 #include "core/app/cli/export_command.h"
+#include "core/app/cli/fabric_command.h"
 #include "core/app/cli/figures_command.h"
 #include "core/app/cli/help.h"
 #include "core/app/cli/new_command.h"
@@ -175,6 +176,7 @@ int main_checked(int argc, char** argv) {
   const ViewCommand view(app);
   const ExportCommand export_command(app);
   const FiguresCommand figures(app);
+  const FabricCommand fabric(app);
 
   std::string kind, plugin, help_on, out, readmes_folder, schema_kind = "experiment";
   std::vector<std::string> report_folders, compared, bounds, columns;
@@ -257,6 +259,7 @@ int main_checked(int argc, char** argv) {
   if (view.chosen()) return view.run();
   if (export_command.chosen()) return export_command.run();
   if (figures.chosen()) return figures.run();
+  if (fabric.chosen()) return fabric.run();
   if (*report_command) {
     return report({report_folders.begin(), report_folders.end()}, out, picture_width);
   }

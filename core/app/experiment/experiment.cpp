@@ -5,6 +5,7 @@
 #include <tuple>
 
 #include "core/app/experiment/experiment_path.h"
+#include "core/app/experiment/fabrics.h"
 #include "core/app/experiment/make_plugins.h"
 #include "core/app/experiment/schedule_keys.h"
 #include "core/app/files/file_name.h"
@@ -100,6 +101,7 @@ std::optional<Experiment> read_experiment(ConfigNode source, const Registry& reg
   e.source.name_keys();
   e.registry = &registry;
   set_first_keys(e.source);
+  apply_fabric(e.source, errors);
   experiment_schema().read(&e.parameters, e.source, errors);
   e.resolved = experiment_schema().write(&e.parameters);
   if (const ConfigNode* name = e.source.find("name"); name && name->kind == ConfigNode::Kind::scalar)

@@ -14,6 +14,14 @@ void LoopParameters::declare(Declaration<LoopParameters>& d) {
       .required();
 }
 
+void MaterialParameters::declare(Declaration<MaterialParameters>& d) {
+  declare_material(d);
+  d.add_node("fabric", &MaterialParameters::fabric)
+      .description(
+          "a fabric whose figures stand for the keys that are not written here: a name (`drape fabric` lists "
+          "them), or {file: fabrics.csv, row: NAME}");
+}
+
 void ClothParameters::declare(Declaration<ClothParameters>& d) {
   d.add("shape", &ClothParameters::shape)
       .choices({"square", "rectangle", "disc", "polygon", "file"})
@@ -278,7 +286,7 @@ void ExperimentParameters::declare(Declaration<ExperimentParameters>& d) {
       .description("map from method names to solvers; `type` defaults to the name");
   d.add_node("metrics", &ExperimentParameters::metrics)
       .plugin("metric")
-      .description("metrics to evaluate; all by default");
+      .description("metrics to evaluate; by default all that need no parameter");
   d.add_section("reference", &ExperimentParameters::reference)
       .shorthand("method")
       .description(

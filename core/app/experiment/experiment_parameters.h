@@ -19,6 +19,12 @@ struct LoopParameters {
   static void declare(Declaration<LoopParameters>& d);
 };
 
+/// The cloth's material, from which a fabric of a table may stand (core/app/experiment/fabrics.h).
+struct MaterialParameters : Material {
+  ConfigNode fabric;  ///< NAME, or {file, row}
+  static void declare(Declaration<MaterialParameters>& d);
+};
+
 /// The coarsest level: a flat pattern, or a mesh file that is read by its FileCoordinates, scaled, then
 /// rotated.
 struct ClothParameters : FileCoordinates {
@@ -158,7 +164,7 @@ struct ExperimentParameters {
   std::string description;
   ClothParameters cloth;
   int levels = 4;
-  Material material;
+  MaterialParameters material;
   StartParameters start;
   std::vector<PinParameters> pins;
   std::vector<HandleParameters> handles;
