@@ -1,6 +1,24 @@
 /// The drawing: one WebGL context, views side by side, with one camera.
 
 /* global THREE */
+/// Arrows along warp on both sides of a cloth, of that length. An item of `warp` has the corners of a triangle, and
+/// warp by its edges.
+function arrows(x, warp, length) {
+  const points = [];
+  for (const [i, j, k, a, b] of warp) {
+    const [p, q, r] = [i, j, k].map(v => new THREE.Vector3().fromArray(x, 3 * v));
+    const centre = p.clone().add(q).add(r).divideScalar(3), e1 = q.sub(p), e2 = r.sub(p);
+    const normal = e1.clone().cross(e2).normalize();
+    const along = e1.multiplyScalar(a).addScaledVector(e2, b).normalize(), across = normal.clone().cross(along);
+    for (const side of [1, -1]) {
+      const tip = centre.clone().addScaledVector(normal, .04 * side * length).addScaledVector(along, length / 2);
+      const barb = turn => tip.clone().addScaledVector(along, -.3 * length).addScaledVector(across, .15 * turn * length);
+      points.push(tip.clone().addScaledVector(along, -length), tip, barb(1), tip, barb(-1), tip);
+    }
+  }
+  return new THREE.BufferGeometry().setFromPoints(points);
+}
+
 export class Scene {
   /// Throws without WebGL.
   constructor(canvas, labels) {
@@ -18,6 +36,7 @@ export class Scene {
     this.solid.uniforms.back.value.set(.45, .47, .5);
     // What lies on an obstacle is drawn in front of it, without speckles.
     Object.assign(this.solid, {polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1});
+    this.lines = new THREE.LineBasicMaterial({color: 0x7a2e2e});
     this.lookAt([0, 0, 0], 1);
     new ResizeObserver(() => this.layOut()).observe(canvas.parentElement);
     canvas.addEventListener('webglcontextrestored', () => this.draw());
@@ -125,6 +144,7 @@ export class Scene {
     const view = this.views[k];
     if (view.mesh && (!shape || view.mesh.userData.x !== shape.x)) {
       view.scene.remove(view.mesh);
+      view.mesh.children.forEach(lines => lines.geometry.dispose());
       view.mesh.geometry.setIndex(null);  // the index is the level's, and stays
       view.mesh.geometry.dispose();
       view.mesh = null;
@@ -133,6 +153,7 @@ export class Scene {
     if (!view.mesh) {
       view.mesh = this.fixed(new THREE.Mesh(this.geometry(shape.x, shape.index), this.cloth));
       view.mesh.userData.x = shape.x;
+      if (shape.warp) view.mesh.add(this.fixed(new THREE.LineSegments(arrows(shape.x, shape.warp, .06 * this.home.radius), this.lines)));
       view.scene.add(view.mesh);
     }
     if (shape.tints) view.mesh.geometry.setAttribute('tint', new THREE.BufferAttribute(shape.tints, 3, true));

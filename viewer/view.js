@@ -150,7 +150,7 @@ export class View {
     const [obstacles, index, x, tints] = await Promise.all([this.obstaclesOf(found.state), this.index(entry),
       this.block('x', found.state.x, bytes => positions(bytes, entry.vertices)),
       block ? this.block('scalars', block, scalars).then(values => paint(values, field)) : null]);
-    return {method, end, found, shape: {index, x, tints}, obstacles};
+    return {method, end, found, shape: {index, x, tints, warp: entry.warp}, obstacles};
   }
 
   /// Shows a stop once its data are loaded; a later call supersedes it.

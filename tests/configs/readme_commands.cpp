@@ -1,4 +1,4 @@
-// The commands of README.md and docs/start do what the pages say: each is run, with experiments made small.
+// The commands of README.md, docs/start and docs/guide/fabrics.md do what the pages say: each is run, with experiments made small.
 
 #include <catch2/catch.hpp>
 #include <map>
@@ -76,3 +76,5 @@ void run_all(const fs::path& file, std::size_t at_least) {
 TEST_CASE("every command of README.md runs") { run_all("README.md", 6); }
 
 TEST_CASE("every command of docs/start/first-drape.md runs") { run_all("docs/start/first-drape.md", 8); }
+
+TEST_CASE("every command of docs/guide/fabrics.md runs") { run_all("docs/guide/fabrics.md", 8); }

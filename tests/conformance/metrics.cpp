@@ -6,6 +6,7 @@
 
 #include "core/kernel/interfaces/metric.h"
 #include "core/kernel/threads/parallel.h"
+#include "tests/support/conformance.h"
 #include "tests/support/solve.h"
 
 using namespace drape;
@@ -39,7 +40,9 @@ methods: {newton: {}}
 std::vector<std::pair<std::string, std::shared_ptr<Metric>>> metrics(MetricScope scope) {
   std::vector<std::pair<std::string, std::shared_ptr<Metric>>> chosen;
   for (const RegistryEntry* entry : test_registry().of_kind("metric"))
-    if (const auto metric = make_plugin_from<Metric>(entry->name); metric->scope() == scope)
+    if (const auto metric =
+            make_plugin_from<Metric>(conformance_config(*entry, conformance_parameters(*entry)));
+        metric->scope() == scope)
       chosen.emplace_back(entry->name, metric);
   REQUIRE(chosen.size() >= 2);
   return chosen;

@@ -51,7 +51,7 @@ void check_membrane(const std::function<long double(double, double, long double,
     mesh.vertices.row(1) = e1, mesh.vertices.row(2) = e2;
     mesh.triangles.resize(1, 3);
     mesh.triangles << 0, 1, 2;
-    return material_triangles(Eigen::Vector3d::UnitX(), Level::of(0, mesh))[0].template head<5>();
+    return material_triangles(Level::of(0, mesh))[0].template head<5>();
   };
   const typename Kernel::Rest rest = rest_of(rest1, rest2);
 

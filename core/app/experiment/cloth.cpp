@@ -9,6 +9,7 @@
 #include "core/kernel/files/message_text.h"
 #include "core/kernel/plugin/bounds.h"
 #include "core/numerics/mesh/check.h"
+#include "core/numerics/mesh/grain.h"
 #include "core/numerics/mesh/rotation.h"
 #include "core/numerics/mesh_files/io.h"
 #include "core/numerics/patterns/generate.h"
@@ -87,7 +88,9 @@ std::optional<TriangleMesh> checked_cloth(const Experiment& e, ConfigErrors& err
   const ClothParameters& c = e.parameters.cloth;
   try {
     TriangleMesh cloth = make_cloth(e);
-    const std::vector<std::string> faults = check_mesh(cloth);
+    if (c.grain) cloth.grain = {c.grain_along, *c.grain};
+    std::vector<std::string> faults = check_mesh(cloth);
+    if (faults.empty()) faults = grain_faults(cloth);
     for (const std::string& fault : faults)
       errors.push_back({e.location_of("cloth"), (c.shape == "file" ? c.file + ": " : "") + fault});
     if (faults.empty()) return cloth;

@@ -7,11 +7,13 @@
 
 #include "core/app/experiment/cloth.h"
 #include "core/app/experiment/experiment_path.h"
+#include "core/app/experiment/fabrics.h"
 #include "core/app/experiment/read_experiment.h"
 #include "core/app/files/file_name.h"
 #include "core/app/files/yaml_file.h"
 #include "core/kernel/files/message_text.h"
 #include "core/kernel/files/string_utils.h"
+#include "core/numerics/elements/orthotropic_stiffness.h"
 
 namespace drape {
 
@@ -58,6 +60,30 @@ bool contains(const std::vector<std::string>& names, const std::string& name) {
   return std::find(names.begin(), names.end(), name) != names.end();
 }
 
+/// A number of the material that others hide or that has no meaning without them is refused, unless it is the
+/// default, which a saved config has. So is bending that is not positive definite.
+void check_material(const Experiment& e, ConfigErrors& errors) {
+  const Material &m = e.parameters.material, plain;
+  const ConfigNode* material = e.source.find("material");
+  const auto refuse = [&](bool fault, const char* key, const std::string& message) {
+    if (!fault || !material) return;
+    const ConfigNode* written = material->find(key);
+    errors.push_back({written ? written->where : material->where, "\"" + std::string(key) + "\" " + message});
+  };
+  refuse(m.warp_stiffness && m.membrane_modulus != plain.membrane_modulus, "membrane_modulus",
+         "is not read beside \"warp_stiffness\"; leave one out");
+  refuse(m.warp_bending && m.bending_modulus != plain.bending_modulus, "bending_modulus",
+         "is not read beside \"warp_bending\"; leave one out");
+  refuse(m.weft_stiffness && !m.warp_stiffness, "weft_stiffness", "needs \"warp_stiffness\"");
+  refuse(m.weft_bending && !m.warp_bending, "weft_bending", "needs \"warp_bending\"");
+  refuse(m.bias_bending && !m.warp_bending, "bias_bending", "needs \"warp_bending\"");
+  try {
+    plate_stiffness(m);
+  } catch (const std::exception& error) {
+    errors.push_back({e.location_of("material"), error.what()});
+  }
+}
+
 }  // namespace
 
 void check_name(const std::string& what, const std::string& name, const Location& where,
@@ -88,12 +114,14 @@ std::optional<Experiment> read_experiment(ConfigNode source, const Registry& reg
   e.source.name_keys();
   e.registry = &registry;
   set_first_keys(e.source);
+  apply_fabric(e.source, errors);
   experiment_schema().read(&e.parameters, e.source, errors);
   e.resolved = experiment_schema().write(&e.parameters);
   if (const ConfigNode* name = e.source.find("name"); name && name->kind == ConfigNode::Kind::scalar)
     check_name("name", e.parameters.name, name->where, errors);
   check_vertex_counts(e, errors);
   check_start_coordinates(e, errors);
+  check_material(e, errors);
   make_plugins(registry, errors, e);
   read_keys(e, errors);
   if (!errors.empty()) check_mesh_files(e, errors);

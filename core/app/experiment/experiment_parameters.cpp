@@ -30,6 +30,14 @@ void LoopParameters::declare(Declaration<LoopParameters>& d) {
       .required();
 }
 
+void MaterialParameters::declare(Declaration<MaterialParameters>& d) {
+  declare_material(d);
+  d.add_node("fabric", &MaterialParameters::fabric)
+      .description(
+          "a fabric whose figures stand for the keys that are not written here: a name (`drape fabric` lists "
+          "them), or {file: fabrics.csv, row: NAME}");
+}
+
 void ClothParameters::declare(Declaration<ClothParameters>& d) {
   d.add("shape", &ClothParameters::shape)
       .choices({"square", "rectangle", "disc", "polygon", "file"})
@@ -77,6 +85,19 @@ void ClothParameters::declare(Declaration<ClothParameters>& d) {
       .only_with("shape", {"square", "rectangle"})
       .description("number of vertices along the height of a grid; 0 derives it from `vertices`");
   natural(d.add("seed", &ClothParameters::seed)).description("seed of a random triangulation");
+  d.add("grain", &ClothParameters::grain)
+      .unit("degree")
+      .at_least(-bounds::largest_angle)
+      .at_most(bounds::largest_angle)
+      .description(
+          "direction of warp on the rest shape, from `grain_along` counter-clockwise seen from the cloth's "
+          "front; null: along x, and neither exported nor drawn");
+  d.add_choice("grain_along", &ClothParameters::grain_along, {{"x", Grain::Axis::x}, {"u", Grain::Axis::u}})
+      .only_with("shape", {"file"})
+      .description(
+          "what `grain` counts from: the x axis, projected into each triangle, or the texture coordinate u "
+          "of "
+          "the file, where that is the pattern");
 }
 
 void StartParameters::declare(Declaration<StartParameters>& d) {
@@ -243,7 +264,7 @@ void ExperimentParameters::declare(Declaration<ExperimentParameters>& d) {
       .description("map from method names to solvers; `type` defaults to the name");
   d.add("metrics", &ExperimentParameters::metrics)
       .plugin("metric")
-      .description("metrics to evaluate; all by default");
+      .description("metrics to evaluate; by default all that need no parameter");
   d.add_section("reference", &ExperimentParameters::reference)
       .shorthand("method")
       .description(

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/kernel/interfaces/material.h"
+#include "core/kernel/interfaces/triangle_mesh.h"
 #include "core/kernel/plugin/declared_numbers.h"
 #include "core/numerics/mesh_files/file_coordinates.h"
 #include "core/numerics/step/newton_parameters.h"
@@ -16,6 +17,12 @@ namespace drape {
 struct LoopParameters {
   std::vector<double> points;  ///< x0, y0, x1, y1, … [m]
   static void declare(Declaration<LoopParameters>& d);
+};
+
+/// The cloth's material, from which a fabric of a table may stand (core/app/experiment/fabrics.h).
+struct MaterialParameters : Material {
+  ConfigNode fabric;  ///< NAME, or {file, row}
+  static void declare(Declaration<MaterialParameters>& d);
 };
 
 /// The coarsest level: a flat pattern, or a mesh file that is read by its FileCoordinates, scaled, then
@@ -33,6 +40,8 @@ struct ClothParameters : FileCoordinates {
   int vertices = 1024;
   int columns = 0, rows = 0;
   int seed = 1;
+  std::optional<double> grain;
+  Grain::Axis grain_along = Grain::Axis::x;
   static void declare(Declaration<ClothParameters>& d);
 };
 
@@ -155,7 +164,7 @@ struct ExperimentParameters {
   std::string description;
   ClothParameters cloth;
   int levels = 4;
-  Material material;
+  MaterialParameters material;
   StartParameters start;
   std::vector<PinParameters> pins;
   std::vector<HandleParameters> handles;

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <set>
 
 #include "core/app/experiment/contact_configs.h"
@@ -49,8 +50,11 @@ class PluginMaker {
     make_contacts();
 
     if (!e_.source.find("metrics"))
-      for (const RegistryEntry* entry : registry_.of_kind("metric"))
-        e_.parameters.metrics.push_back(scalar_node(entry->name));
+      for (const RegistryEntry* entry : registry_.of_kind("metric")) {
+        const std::vector<Parameter>& own = entry->schema.parameters;
+        if (std::none_of(own.begin(), own.end(), [](const Parameter& p) { return p.required; }))
+          e_.parameters.metrics.push_back(scalar_node(entry->name));
+      }
     for (const ConfigNode& node : e_.parameters.metrics)
       if (auto metric = make<Metric>(node, metrics)) e_.metrics.emplace_back(name_of(node), metric);
     check_metrics();

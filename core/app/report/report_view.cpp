@@ -4,6 +4,7 @@
 #include <map>
 #include <stdexcept>
 
+#include "core/app/files/yaml_file.h"
 #include "core/app/report/recorded_snapshots.h"
 #include "core/app/view/view_document.h"
 #include "core/kernel/files/message_text.h"
@@ -58,6 +59,18 @@ void add_declared(const RunData& run, const MethodRecord& method, int level, Sta
     }
 }
 
+/// The grain of the run's cloth, if it has one.
+std::optional<Grain> grain_of(const RunData& run) {
+  ConfigErrors unread;
+  const ConfigNode config = parse_yaml(run.configuration, "config.yaml", unread);
+  const ConfigNode* cloth = config.find("cloth");
+  const ConfigNode *angle = cloth ? cloth->find("grain") : nullptr,
+                   *along = cloth ? cloth->find("grain_along") : nullptr;
+  const std::optional<double> degrees = angle ? parse_number(angle->scalar) : std::nullopt;
+  if (!degrees) return std::nullopt;
+  return Grain{along && along->scalar == "u" ? Grain::Axis::u : Grain::Axis::x, *degrees};
+}
+
 States read_states(const RunData& run, const std::vector<Level>& levels, const ViewDocument& document) {
   States states;
   for (const MethodRecord& method : run.methods)
@@ -106,7 +119,11 @@ Json states_json(const RunData& run, const LevelRecord& level, const State& last
 ReportView view_of(const RunData& run) {
   ReportView view;
   std::vector<Level> levels;
-  for (int l = 0; l <= run.finest_level(); ++l) levels.push_back(Level::of(l, run.mesh(rest_file(l))));
+  for (int l = 0; l <= run.finest_level(); ++l) {
+    TriangleMesh rest = run.mesh(rest_file(l));
+    rest.grain = grain_of(run);
+    levels.push_back(Level::of(l, std::move(rest)));
+  }
   std::vector<TriangleMesh> obstacles;
   for (const std::string& name : run.obstacles) obstacles.push_back(run.mesh(name));
   ViewDocument document(

@@ -63,7 +63,7 @@ class Handles final : public Energy {
       double own_area = 0, coarse_area = 0;
       for (int v : own) own_area += level.vertex_area[v];
       for (int v : selected_vertices(handle, coarsest_, coarsest_)) coarse_area += coarsest_.vertex_area[v];
-      const double stiffness = handle.stiffness.value_or(material.membrane_modulus);
+      const double stiffness = handle.stiffness.value_or(material.mean_membrane_modulus());
       for (int v : own)
         terms.push_back(
             {v, target_of(handle, v, level, placed_[level.index]),

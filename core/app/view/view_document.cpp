@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "core/app/view/view_blocks.h"
+#include "core/numerics/elements/green_strain.h"
 #include "core/numerics/elements/vertex_fields.h"
 #include "core/numerics/mesh_files/base64.h"
 
@@ -14,6 +15,19 @@ const Eigen::VectorXd* find(const SurfaceFields& fields, const std::string& name
   const auto found =
       std::find_if(fields.begin(), fields.end(), [&](const auto& field) { return field.first == name; });
   return found == fields.end() ? nullptr : &found->second;
+}
+
+/// Where arrows along warp are, on some 150 triangles: the corners' indices, then a and b [1/m] of warp's
+/// image a e₁ + b e₂ by the triangle's edges.
+ViewDocument::Json warp_arrows(const Level& level) {
+  constexpr int most = 150;
+  const std::vector<MaterialTriangle> triangles = material_triangles(level);
+  ViewDocument::Json arrows = ViewDocument::Json::array();
+  for (int t = 0; t < level.triangle_count(); t += (level.triangle_count() - 1) / most + 1) {
+    const auto v = level.rest.triangles.row(t);
+    arrows.push_back({v[0], v[1], v[2], triangles[t][0], triangles[t][1]});
+  }
+  return arrows;
 }
 
 }  // namespace
@@ -32,6 +46,7 @@ ViewDocument::ViewDocument(const std::vector<Level>& levels, const Obstacles& ob
     keep_(name, encode_triangles(level.rest.triangles));
     level_entries_.push_back(
         {{"vertices", level.vertex_count()}, {"triangles", level.triangle_count()}, {"block", name}});
+    if (level.rest.grain) level_entries_.back()["warp"] = warp_arrows(level);
   }
   for (std::size_t k = 0; k < obstacles_.size(); ++k) {
     const std::string name = "obstacle" + std::to_string(k);

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <optional>
+
+#include "core/kernel/plugin/bounds.h"
 #include "core/kernel/plugin/parameters.h"
 
 namespace drape {
@@ -7,19 +10,85 @@ namespace drape {
 /// What estimates of a cloth's weight take for gravity [m/s²].
 inline constexpr double standard_gravity = 9.81;
 
-/// An isotropic cloth material. Moduli are Young's moduli of the bulk, as in the supplement's Table 2.
+/// A cloth material. Moduli are Young's moduli of the bulk, as in the supplement's Table 2. Stiffnesses by
+/// direction, as laboratories measure them on strips, replace the modulus: laws with directions read them
+/// (core/numerics/elements/orthotropic_stiffness.h), isotropic ones their geometric mean.
 struct Material {
-  double density = 472.6;         ///< ρ [kg/m³]
-  double thickness = 3.18e-4;     ///< d [m]
-  double membrane_modulus = 8e4;  ///< E_mem [Pa]
-  double bending_modulus = 8e4;   ///< E_bend [Pa]
-  double poisson_ratio = 0.243;   ///< ν [1]
+  double density = 472.6;                                ///< ρ [kg/m³]
+  double thickness = 3.18e-4;                            ///< d [m]
+  double membrane_modulus = 8e4;                         ///< E_mem [Pa]
+  double bending_modulus = 8e4;                          ///< E_bend [Pa]
+  double poisson_ratio = 0.243;                          ///< ν [1]
+  std::optional<double> warp_stiffness, weft_stiffness;  ///< in stretching [N/m]
+  std::optional<double> shear_stiffness;                 ///< [N/m]
+  std::optional<double> warp_bending, weft_bending;      ///< rigidity of a strip along warp or weft [N·m]
+  std::optional<double> bias_bending;                    ///< of a strip at 45° [N·m]
 
   static void declare(Declaration<Material>& d);
   bool operator==(const Material&) const = default;
 
   /// Mass per area, ρ d [kg/m²].
   double area_density() const { return density * thickness; }
+  /// Young's modulus of an isotropic membrane that stands for this material [Pa].
+  double mean_membrane_modulus() const;
+  /// Young's modulus of an isotropic plate that stands for this material [Pa].
+  double mean_bending_modulus() const;
 };
+
+/// Declares the material's parameters for it, or for a struct that is derived from it.
+template <class Struct>
+void declare_material(Declaration<Struct>& d) {
+  d.add("density", &Struct::density)
+      .unit("kg/m³")
+      .at_least(1e-6)
+      .at_most(1e6)
+      .description("ρ, mass per volume")
+      .source("supplement, Table 2");
+  d.add("thickness", &Struct::thickness)
+      .unit("m")
+      .at_least(bounds::smallest_length)
+      .at_most(10)
+      .description("d, thickness of the cloth")
+      .source("supplement, Table 2");
+  d.add("membrane_modulus", &Struct::membrane_modulus)
+      .unit("Pa")
+      .at_least(1e-6)
+      .at_most(bounds::largest_modulus)
+      .description("E_mem, Young's modulus in stretching")
+      .source("supplement, Table 2");
+  d.add("bending_modulus", &Struct::bending_modulus)
+      .unit("Pa")
+      .at_least(0)
+      .at_most(bounds::largest_modulus)
+      .description("E_bend, Young's modulus in bending")
+      .source("supplement, Table 2");
+  d.add("poisson_ratio", &Struct::poisson_ratio)
+      .at_least(0)
+      .below(0.5)
+      .description(
+          "ν, of both moduli; where warp and weft differ, the geometric mean of their two Poisson's ratios")
+      .source("supplement, Table 2");
+  const auto measured = [&](const char* name, std::optional<double> Material::*member, const char* unit,
+                            const char* description) {
+    d.add(name, static_cast<std::optional<double> Struct::*>(member))
+        .unit(unit)
+        .at_least(1e-12)
+        .at_most(bounds::largest_modulus)
+        .description(description);
+  };
+  measured("warp_stiffness", &Material::warp_stiffness, "N/m",
+           "force per width over strain of a strip along warp, in place of `membrane_modulus`; null: that "
+           "modulus times the thickness");
+  measured("weft_stiffness", &Material::weft_stiffness, "N/m", "the same along weft; null: as along warp");
+  measured("shear_stiffness", &Material::shear_stiffness, "N/m",
+           "shear force per width over the angle in radians; null: as of an isotropic cloth with the mean of "
+           "warp and weft");
+  measured("warp_bending", &Material::warp_bending, "N m",
+           "bending rigidity of a strip along warp per width, in place of `bending_modulus`; null: that "
+           "modulus times d³/12");
+  measured("weft_bending", &Material::weft_bending, "N m", "the same along weft; null: as along warp");
+  measured("bias_bending", &Material::bias_bending, "N m",
+           "the same at 45°; null: as of an isotropic cloth with the mean of warp and weft");
+}
 
 }  // namespace drape

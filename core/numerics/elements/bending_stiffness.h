@@ -6,11 +6,11 @@
 
 namespace drape {
 
-/// The coefficient k = E_bend d³ / (24 (1 - ν²)) [J] of every bending energy: half a plate's bending
-/// stiffness (docs/theory/method.md, section 5).
+/// The coefficient k = E_bend d³ / (24 (1 - ν²)) [J] of every isotropic bending energy: half a plate's
+/// bending stiffness (docs/theory/method.md, section 5).
 inline double bending_stiffness(const Material& material) {
   const double nu = material.poisson_ratio;
-  return material.bending_modulus * std::pow(material.thickness, 3) / (24 * (1 - nu * nu));
+  return material.mean_bending_modulus() * std::pow(material.thickness, 3) / (24 * (1 - nu * nu));
 }
 
 }  // namespace drape

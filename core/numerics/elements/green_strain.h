@@ -14,9 +14,9 @@ namespace drape {
 /// [m²] and the rest position of the centroid [m].
 using MaterialTriangle = Eigen::Matrix<double, 8, 1>;
 
-/// The triangles of the level; the material's first axis is `axis`, projected into each. Throws
-/// std::runtime_error for one without area.
-std::vector<MaterialTriangle> material_triangles(const Eigen::Vector3d& axis, const Level& level);
+/// The triangles of the level; the material's first axis is warp (warp_directions). Throws std::runtime_error
+/// for one without area.
+std::vector<MaterialTriangle> material_triangles(const Level& level);
 
 /// Columns of the deformation gradient F, and the Green strains G = (FᵀF - I)/2. T is double or a Pack.
 template <class T>

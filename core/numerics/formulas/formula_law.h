@@ -21,8 +21,8 @@ struct MaterialSymbols {
   static constexpr double pi = std::numbers::pi;
 
   explicit MaterialSymbols(const Material& m)
-      : E(m.membrane_modulus),
-        E_bend(m.bending_modulus),
+      : E(m.mean_membrane_modulus()),
+        E_bend(m.mean_bending_modulus()),
         nu(m.poisson_ratio),
         mu(E / (2 * (1 + nu))),
         lambda(E * nu / (1 - nu * nu)),

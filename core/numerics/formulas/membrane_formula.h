@@ -93,8 +93,7 @@ struct PrincipalFormula {
   }
 };
 
-/// The energy that DRAPE_MEMBRANE registers. A parameter `axis` turns the material's first axis, which is
-/// that of x otherwise.
+/// The energy that DRAPE_MEMBRANE registers.
 template <class Law>
 class MembraneFormula final : public Energy {
  public:
@@ -133,7 +132,7 @@ class MembraneFormula final : public Energy {
     if (!isotropic)
       return bind_buckling_strains(
           [law](const Eigen::Vector3d& g, const double* place) { return energy(law, g, place); },
-          triangles(level), level, s);
+          material_triangles(level), level, s);
     return bind_buckling_membrane(PrincipalFormula<Law>{law}, level, numbers(level), s);
   }
 
@@ -150,7 +149,7 @@ class MembraneFormula final : public Energy {
   std::unique_ptr<BoundEnergy> bind_with(const Law& law, const Level& level) const {
     using Kernel = MembraneFormulaKernel<Law, numbers>;
     std::vector<typename Kernel::Rest> rest;
-    for (const MaterialTriangle& triangle : triangles(level))
+    for (const MaterialTriangle& triangle : material_triangles(level))
       rest.emplace_back(triangle.template head<numbers>());
     return std::make_unique<ElementEnergy<Kernel>>(level.rest.triangles, rest, level.triangle_order,
                                                    Kernel{law});
@@ -168,14 +167,9 @@ class MembraneFormula final : public Energy {
   /// Of PrincipalFormula.
   std::vector<Eigen::Vector4d> numbers(const Level& level) const {
     std::vector<Eigen::Vector4d> numbers;
-    for (const MaterialTriangle& triangle : triangles(level)) numbers.emplace_back(triangle.tail<4>());
+    for (const MaterialTriangle& triangle : material_triangles(level))
+      numbers.emplace_back(triangle.tail<4>());
     return numbers;
-  }
-
-  std::vector<MaterialTriangle> triangles(const Level& level) const {
-    Eigen::Vector3d axis = Eigen::Vector3d::UnitX();
-    if constexpr (requires { p_.axis; }) axis = p_.axis;
-    return material_triangles(axis, level);
   }
 
   Parameters p_;

@@ -22,7 +22,7 @@ ProlongationMatrix midpoint_weights(const Level& coarse) {
 
 TriangleMesh refined_rest(const Level& coarse, const ProlongationMatrix& weights) {
   return {weights * coarse.rest.vertices, split_triangles(coarse.rest.triangles, coarse.topology),
-          split_uv(coarse.rest.uv)};
+          split_uv(coarse.rest.uv), coarse.rest.grain};
 }
 
 }  // namespace drape

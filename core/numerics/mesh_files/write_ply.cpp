@@ -4,6 +4,7 @@
 #include <cstring>
 
 #include "core/kernel/files/file.h"
+#include "core/numerics/mesh/grain.h"
 #include "core/numerics/mesh_files/io.h"
 #include "core/numerics/mesh_files/io_formats.h"
 
@@ -30,6 +31,8 @@ std::string ply_bytes(const TriangleMesh& mesh, const VertexFields& fields) {
       "element face " + std::to_string(mesh.triangles.rows()) + "\nproperty list uchar int vertex_indices\n";
   const bool with_uv = mesh.uv.rows() > 0;
   if (with_uv) bytes += "property list uchar double texcoord\n";
+  const Positions warp = mesh.grain ? warp_directions(mesh) : Positions();
+  if (mesh.grain) bytes += "property double warp_x\nproperty double warp_y\nproperty double warp_z\n";
   bytes += "end_header\n";
   for (int v = 0; v < mesh.vertices.rows(); ++v) {
     for (int k = 0; k < 3; ++k) append(bytes, mesh.vertices(v, k));
@@ -38,9 +41,9 @@ std::string ply_bytes(const TriangleMesh& mesh, const VertexFields& fields) {
   for (int t = 0; t < mesh.triangles.rows(); ++t) {
     append(bytes, std::uint8_t{3});
     for (int k = 0; k < 3; ++k) append(bytes, std::int32_t{mesh.triangles(t, k)});
-    if (!with_uv) continue;
-    append(bytes, std::uint8_t{6});
-    for (int k = 0; k < 6; ++k) append(bytes, mesh.uv(t, k));
+    if (with_uv) append(bytes, std::uint8_t{6});
+    for (int k = 0; with_uv && k < 6; ++k) append(bytes, mesh.uv(t, k));
+    for (int k = 0; mesh.grain && k < 3; ++k) append(bytes, warp(t, k));
   }
   return bytes;
 }

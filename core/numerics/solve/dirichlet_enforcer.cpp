@@ -66,7 +66,7 @@ void DirichletEnforcer::begin_penalty(const std::string& blocked_by) {
   blocked_by_ = blocked_by;
   // The number of the modulus, as in the supplement, but not below what the membrane would notice
   // (departure).
-  stiffness_ = std::max(model_->material().membrane_modulus,
+  stiffness_ = std::max(model_->material().mean_membrane_modulus(),
                         min_initial_stiffness * membrane_stiffness() / smallest_mass());
   best_ = INFINITY;
   idle_ = 0;
@@ -74,7 +74,7 @@ void DirichletEnforcer::begin_penalty(const std::string& blocked_by) {
 }
 
 double DirichletEnforcer::membrane_stiffness() const {
-  return model_->material().membrane_modulus * model_->material().thickness;
+  return model_->material().mean_membrane_modulus() * model_->material().thickness;
 }
 
 double DirichletEnforcer::smallest_mass() const {

@@ -164,7 +164,7 @@ class Newton {
   /// carry the motion's impacts.
   void follow_contact_forces() {
     if (!(iterate_.force_residual() < balanced)) return;
-    if (!f_.contacts().raise_stiffness(iterate_.x(), f_.model().material().membrane_modulus)) return;
+    if (!f_.contacts().raise_stiffness(iterate_.x(), f_.model().material().mean_membrane_modulus())) return;
     step_.factor().invalidate();
     start_over();
   }

@@ -68,7 +68,7 @@ class TargetObjective : public Objective {
     slots_.reset();
     if (count > 0) {
       penalty_ =
-          make_stretch_penalty(model().level(), material.thickness, material.membrane_modulus, violating_);
+          make_stretch_penalty(model().level(), material.thickness, material.mean_membrane_modulus(), violating_);
       slots_ = std::make_unique<BlockSlots>(*pattern_, penalty_->stencils());
     }
     return count;

@@ -36,11 +36,6 @@ void Formula::Parameters::declare(Declaration<Parameters>& d) {
       .description(
           "what the energy is for; null: membrane for triangles, bending for hinges, external for "
           "vertices");
-  d.add("axis", &Parameters::axis)
-      .unit("1")
-      .at_least(-1e6)
-      .at_most(1e6)
-      .description("direction of the material's first axis (warp) at rest, projected into each triangle");
 }
 
 namespace {
@@ -126,7 +121,7 @@ std::string rest_remark(const Energy& energy, ElementKind kind, const Material& 
 
 }  // namespace
 
-Formula::Formula(const Parameters& p) : law_(p.law()), axis_(p.axis), role_(role_of(p)) {
+Formula::Formula(const Parameters& p) : law_(p.law()), role_(role_of(p)) {
   require_computable(law_, p.density.empty() ? "energy" : "density", *this);
 }
 
@@ -148,7 +143,7 @@ double Formula::plate_stiffness(const Material& material) const {
 std::unique_ptr<BoundEnergy> Formula::bind_unchecked(const Level& level, const Material& material) const {
   switch (law_.kind) {
     case ElementKind::triangle:
-      return formula::bind_membrane(law_, axis_, level, material);
+      return formula::bind_membrane(law_, level, material);
     case ElementKind::hinge:
       return formula::bind_hinges(law_, level, material);
     case ElementKind::vertex:
@@ -172,7 +167,7 @@ std::unique_ptr<BoundEnergy> Formula::bind(const Level& level, const Material& m
 
 std::unique_ptr<BoundEnergy> Formula::bind_buckling(const Level& level, const Material& material,
                                                     double s) const {
-  return law_.kind == ElementKind::triangle ? formula::bind_buckling(law_, axis_, level, material, s)
+  return law_.kind == ElementKind::triangle ? formula::bind_buckling(law_, level, material, s)
                                             : bind(level, material);
 }
 

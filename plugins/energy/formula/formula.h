@@ -12,15 +12,13 @@
 namespace drape {
 namespace formula {
 
-/// Binds a formula to all triangles of the level. The material's first axis is `axis`, projected into each
-/// triangle at rest. Throws std::runtime_error naming a triangle without area.
-std::unique_ptr<BoundEnergy> bind_membrane(const Law& law, const Eigen::Vector3d& axis, const Level& level,
-                                           const Material& material);
+/// Binds a formula to all triangles of the level. Throws std::runtime_error naming a triangle without area.
+std::unique_ptr<BoundEnergy> bind_membrane(const Law& law, const Level& level, const Material& material);
 /// Binds a formula to a level on which the cloth buckles below the mesh: as bind_buckling_membrane does if it
 /// depends on principal stretches alone, else as bind_buckling_strains does. A formula of both principal
 /// stretches and strains keeps its plain energy.
-std::unique_ptr<BoundEnergy> bind_buckling(const Law& law, const Eigen::Vector3d& axis, const Level& level,
-                                           const Material& material, double s);
+std::unique_ptr<BoundEnergy> bind_buckling(const Law& law, const Level& level, const Material& material,
+                                           double s);
 /// Binds a formula to all hinges of the level. Throws std::runtime_error naming a hinge whose triangles have
 /// no area.
 std::unique_ptr<BoundEnergy> bind_hinges(const Law& law, const Level& level, const Material& material);
@@ -40,7 +38,6 @@ class Formula final : public Energy {
     ConfigNode where;
     std::string density, energy;
     std::optional<std::string> role;
-    Eigen::Vector3d axis{1, 0, 0};
 
     static void declare(Declaration<Parameters>& d);
     /// The law that they write. Throws RefusedParameters with every fault and its place.
@@ -67,7 +64,6 @@ class Formula final : public Energy {
   std::unique_ptr<BoundEnergy> bind_unchecked(const Level& level, const Material& material) const;
 
   formula::Law law_;
-  Eigen::Vector3d axis_;
   EnergyRole role_;
 };
 

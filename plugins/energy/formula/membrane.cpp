@@ -214,9 +214,8 @@ Jet<3, double> energy_at(const Program& program, const Eigen::Vector3d& g, const
 
 }  // namespace
 
-std::unique_ptr<BoundEnergy> bind_membrane(const Law& law, const Eigen::Vector3d& axis, const Level& level,
-                                           const Material& material) {
-  const std::vector<MaterialTriangle> triangles = material_triangles(axis, level);
+std::unique_ptr<BoundEnergy> bind_membrane(const Law& law, const Level& level, const Material& material) {
+  const std::vector<MaterialTriangle> triangles = material_triangles(level);
   const bool stretches = uses_stretches(law);
   StrainKernel kernel(
       compile_triangle(law, material, stretches ? TriangleVariables::both : TriangleVariables::strains),
@@ -225,11 +224,11 @@ std::unique_ptr<BoundEnergy> bind_membrane(const Law& law, const Eigen::Vector3d
                                                        level.triangle_order);
 }
 
-std::unique_ptr<BoundEnergy> bind_buckling(const Law& law, const Eigen::Vector3d& axis, const Level& level,
-                                           const Material& material, double s) {
-  const std::vector<MaterialTriangle> triangles = material_triangles(axis, level);
+std::unique_ptr<BoundEnergy> bind_buckling(const Law& law, const Level& level, const Material& material,
+                                           double s) {
+  const std::vector<MaterialTriangle> triangles = material_triangles(level);
   if (uses_strains(law)) {
-    if (uses_stretches(law)) return bind_membrane(law, axis, level, material);
+    if (uses_stretches(law)) return bind_membrane(law, level, material);
     const Program program = compile_triangle(law, material, TriangleVariables::strains).all;
     const auto energy = [program](const Eigen::Vector3d& g, const double* place) {
       return energy_at(program, g, place);

@@ -24,7 +24,6 @@ class LawReader {
     read_constants();
     read_where();
     read_energy();
-    if (p_.axis.norm() == 0) refuse("axis", "\"axis\" is a direction, not [0, 0, 0]");
     if (!faults_.empty()) throw RefusedParameters(faults_);
     return std::move(law_);
   }

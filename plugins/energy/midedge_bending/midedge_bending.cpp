@@ -29,8 +29,7 @@ class MidedgeBending final : public Energy {
   double plate_stiffness(const Material& material) const override { return 2 * bending_stiffness(material); }
   std::unique_ptr<BoundEnergy> bind(const Level& level, const Material& material) const override {
     return std::make_unique<BoundMidedgeBending>(
-        level, ShapeOperators::of(level, bending_stiffness(material), material.poisson_ratio,
-                                  parameters_.correction_tolerance));
+        level, ShapeOperators::of(level, material, parameters_.correction_tolerance));
   }
 
  private:

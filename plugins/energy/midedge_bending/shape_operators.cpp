@@ -5,6 +5,10 @@
 #include <array>
 #include <cmath>
 
+#include "core/numerics/elements/bending_stiffness.h"
+#include "core/numerics/elements/orthotropic_stiffness.h"
+#include "core/numerics/mesh/grain.h"
+
 namespace drape {
 namespace {
 
@@ -159,27 +163,44 @@ class EdgeNormals {
   std::vector<int> hinges_;
 };
 
-/// Edge k's l n nᵀ / Ā of a triangle, in coordinates in which (1 - ν) tr S² + ν (tr S)² is the square of the
-/// norm.
-std::array<Eigen::Vector3d, 3> edge_directions(const Eigen::Vector3d* x, double poisson_ratio) {
-  const double nu = poisson_ratio;
+/// A plate's energy as k ‖(S11 + a S22, b S22, c S12)‖².
+struct PlateNorm {
+  double k, a, b, c;
+  bool isotropic;
+
+  explicit PlateNorm(const Material& material) : isotropic(!material.warp_bending) {
+    if (isotropic) {
+      const double nu = material.poisson_ratio;
+      k = bending_stiffness(material), a = nu, b = std::sqrt(1 - nu * nu), c = std::sqrt(2 * (1 - nu));
+    } else {
+      const OrthotropicStiffness plate = plate_stiffness(material);
+      k = plate.c11 / 2, a = plate.c12 / plate.c11;
+      b = std::sqrt(plate.c22 / plate.c11 - a * a), c = 2 * std::sqrt(plate.c66 / plate.c11);
+    }
+  }
+};
+
+/// Edge k's l n nᵀ / Ā of a triangle, in the coordinates of the plate's norm about `axis`.
+std::array<Eigen::Vector3d, 3> edge_directions(const Eigen::Vector3d* x, const Eigen::Vector3d& axis,
+                                               const PlateNorm& plate) {
   const Eigen::Vector3d normal = (x[1] - x[0]).cross(x[2] - x[0]);
-  const Eigen::Vector3d e1 = (x[1] - x[0]).normalized(), e2 = normal.cross(e1).normalized();
+  const Eigen::Vector3d e1 = axis.normalized(), e2 = normal.cross(e1).normalized();
   std::array<Eigen::Vector3d, 3> directions;
   for (int k = 0; k < 3; ++k) {
     const Eigen::Vector3d edge = x[(k + 2) % 3] - x[(k + 1) % 3];
     const Point n(edge.dot(e2), -edge.dot(e1));  // of the edge's length
     const Eigen::Vector3d s(n.x() * n.x(), n.x() * n.y(), n.y() * n.y());
-    directions[k] =
-        Eigen::Vector3d(s[0] + nu * s[2], std::sqrt(1 - nu * nu) * s[2], std::sqrt(2 * (1 - nu)) * s[1]) /
-        (edge.norm() * normal.norm() / 2);
+    directions[k] = Eigen::Vector3d(s[0] + plate.a * s[2], plate.b * s[2], plate.c * s[1]) /
+                    (edge.norm() * normal.norm() / 2);
   }
   return directions;
 }
 
 }  // namespace
 
-ShapeOperators ShapeOperators::of(const Level& level, double k, double poisson_ratio, double tolerance) {
+ShapeOperators ShapeOperators::of(const Level& level, const Material& material, double tolerance) {
+  const PlateNorm plate(material);
+  const Positions warp = plate.isotropic ? Positions() : warp_directions(level.rest);
   const EdgeNormals normals(level, tolerance);
   std::vector<Correction> corrections(level.topology.edges.rows());
   for (int e = 0; e < level.topology.edges.rows(); ++e)
@@ -190,10 +211,11 @@ ShapeOperators ShapeOperators::of(const Level& level, double k, double poisson_r
     result.start.push_back(static_cast<int>(result.terms.size()));
     Eigen::Vector3d x[3];
     for (int i = 0; i < 3; ++i) x[i] = level.rest.vertices.row(level.rest.triangles(t, i)).transpose();
-    const std::array<Eigen::Vector3d, 3> directions = edge_directions(x, poisson_ratio);
+    const std::array<Eigen::Vector3d, 3> directions = edge_directions(
+        x, plate.isotropic ? Eigen::Vector3d(x[1] - x[0]) : Eigen::Vector3d(warp.row(t)), plate);
 
     // A free normal removes its component from the others.
-    Eigen::Matrix3d projection = Eigen::Matrix3d::Identity() * std::sqrt(k * normals.triangle_area(t));
+    Eigen::Matrix3d projection = Eigen::Matrix3d::Identity() * std::sqrt(plate.k * normals.triangle_area(t));
     for (int i = 0; i < 3; ++i) {
       if (normals.hinge(level.topology.triangle_edges(t, i)) != -1) continue;
       const Eigen::Vector3d free = (projection * directions[i]).stableNormalized();

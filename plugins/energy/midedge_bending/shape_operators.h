@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "core/kernel/interfaces/level.h"
+#include "core/kernel/interfaces/material.h"
 
 namespace drape {
 
@@ -17,15 +18,16 @@ struct ShapeOperators {
   std::vector<int> start;  ///< triangles + 1; terms of triangle t are start[t] … start[t + 1] - 1
   std::vector<Term> terms;
 
-  /// For the energy Ā k ((1 - ν) tr S² + ν (tr S)²) of a triangle with rest area Ā and shape operator S,
-  /// from normals at its edge midpoints: S = 1/Ā Σ l φ n nᵀ, with the edge's length l, its normal n in the
+  /// For the energy Ā k ((1 - ν) tr S² + ν (tr S)²) of a triangle with rest area Ā and shape operator S, or
+  /// with the material's rigidity by direction Ā (½ c11 S11² + ½ c22 S22² + c12 S11 S22 + 2 c66 S12²), from
+  /// normals at its edge midpoints: S = 1/Ā Σ l φ n nᵀ, with the edge's length l, its normal n in the
   /// triangle's plane, and the angle φ about the edge from the triangle's normal to the edge's.
   ///
   /// φ is half the dihedral angle plus a correction from the angles at the edge and at the other edges of its
   /// two triangles. The correction has the smallest weights that make φ exact for all quadratic surfaces over
   /// the rest shape; it vanishes on regular meshes, and is dropped if no weight exceeds `tolerance`. φ at a
   /// border edge minimises the triangle's energy: no moment acts there.
-  static ShapeOperators of(const Level& level, double k, double poisson_ratio, double tolerance);
+  static ShapeOperators of(const Level& level, const Material& material, double tolerance);
 };
 
 }  // namespace drape

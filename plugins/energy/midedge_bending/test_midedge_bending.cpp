@@ -1,7 +1,9 @@
+#include <Eigen/Geometry>
 #include <catch2/catch.hpp>
 #include <cmath>
 
 #include "core/numerics/elements/dihedral_angle.h"
+#include "core/numerics/elements/orthotropic_stiffness.h"
 #include "core/numerics/patterns/generate.h"
 #include "plugins/energy/midedge_bending/shape_operators.h"
 #include "tests/support/kernel_check.h"
@@ -49,8 +51,9 @@ double angle_at(const Level& level, const Positions& x, int hinge) {
 }
 
 /// Energies per rest area [J/m²] of triangles without a border vertex.
-std::vector<double> inner_densities(const Level& level, const Positions& x, double tolerance) {
-  const ShapeOperators operators = ShapeOperators::of(level, k, nu, tolerance);
+std::vector<double> inner_densities(const Level& level, const Positions& x, double tolerance,
+                                    const Material& of = material) {
+  const ShapeOperators operators = ShapeOperators::of(level, of, tolerance);
   std::vector<double> densities;
   for (int t = 0; t < level.triangle_count(); ++t) {
     const auto v = level.rest.triangles.row(t);
@@ -115,6 +118,77 @@ TEST_CASE(
       CHECK(mean == Approx(expected).epsilon(0.005));
     }
   }
+}
+
+TEST_CASE("midedge_bending: the rigidity by direction is the plate's on every triangulation") {
+  Material woven = material;
+  woven.warp_bending = 3, woven.weft_bending = 0.5, woven.bias_bending = 0.8;
+  const OrthotropicStiffness c = plate_stiffness(woven);
+  CHECK(c.strip(0) == Approx(3));
+  CHECK(c.strip(M_PI / 2) == Approx(0.5));
+  CHECK(c.strip(M_PI / 4) == Approx(0.8));
+  const double grain = 25;
+  const Eigen::Rotation2Dd to_warp(-grain * M_PI / 180);
+  for (auto& [name, mesh] : triangulations(12)) {
+    mesh.grain = {Grain::Axis::x, grain};
+    const Level level = Level::of(0, mesh);
+    for (const Eigen::Matrix2d& shape : shapes()) {
+      const double curvature = 1e-4;
+      Positions x = mesh.vertices;
+      for (int i = 0; i < level.vertex_count(); ++i) {
+        const Eigen::Vector2d p = x.row(i).head<2>().transpose();
+        x(i, 2) = curvature / 2 * p.dot(shape * p);
+      }
+      const Eigen::Matrix2d own = to_warp.toRotationMatrix() * shape * to_warp.toRotationMatrix().transpose();
+      const double expected = curvature * curvature *
+                              (0.5 * (c.c11 * own(0, 0) * own(0, 0) + c.c22 * own(1, 1) * own(1, 1)) +
+                               c.c12 * own(0, 0) * own(1, 1) + 2 * c.c66 * own(0, 1) * own(0, 1));
+      INFO(name << ", shape\n" << shape);
+      CHECK(largest_miss(inner_densities(level, x, 0, woven), expected) < 1e-6);
+    }
+  }
+}
+
+TEST_CASE("midedge_bending: equal rigidities are the isotropic plate, and a quarter turn changes nothing") {
+  Material isotropic = material, woven = material;
+  const double strip = 2 * k * (1 - nu * nu);
+  isotropic.warp_bending = isotropic.weft_bending = isotropic.bias_bending = strip;
+  woven.warp_bending = 3, woven.weft_bending = 0.5, woven.bias_bending = 0.8;
+  for (auto& [name, mesh] : triangulations(8)) {
+    INFO(name);
+    const Level level = Level::of(0, mesh);
+    Positions x = mesh.vertices;
+    for (int i = 0; i < level.vertex_count(); ++i)
+      x(i, 2) = 0.1 * std::sin(7 * x(i, 0)) * std::cos(5 * x(i, 1) + 1);
+    const double plain = bind(level)->value(x);
+    CHECK(std::abs(MidedgeBending({}).bind(level, isotropic)->value(x) / plain - 1) < 1e-12);
+
+    Eigen::Matrix3d turn;
+    turn << 0, -1, 0, 1, 0, 0, 0, 0, 1;
+    TriangleMesh turned = mesh;
+    turned.vertices = mesh.vertices * turn.transpose();
+    turned.grain = {Grain::Axis::x, 90};
+    const double own = MidedgeBending({}).bind(level, woven)->value(x),
+                 after = MidedgeBending({}).bind(Level::of(0, turned), woven)->value(x * turn.transpose());
+    CHECK(std::abs(own / plain - 1) > 0.1);
+    CHECK(std::abs(after / own - 1) < 1e-12);
+  }
+}
+
+TEST_CASE("midedge_bending: a bias rigidity that no plate has is refused with its eigenvalue") {
+  Material woven = material;
+  woven.warp_bending = 1, woven.weft_bending = 1, woven.bias_bending = 10;
+  CHECK_THROWS_WITH(MidedgeBending({}).bind(Level::of(0, grid({1, 1}, 3, 3, Diagonals::one_way)), woven),
+                    Catch::Contains("not positive definite") && Catch::Contains("eigenvalue -1"));
+}
+
+TEST_CASE("midedge_bending: the average of the triangles' normals alone is not the plate's") {
+  const Level level = Level::of(0, grid({0.6, 0.6}, 12, 12, Diagonals::criss_cross));
+  Positions x = level.rest.vertices;
+  for (int i = 0; i < level.vertex_count(); ++i) x(i, 2) = 1e-4 * x(i, 0) * x(i, 1);
+  const double expected = 1e-8 * plate_density(shapes()[5]);
+  for (const double d : inner_densities(level, x, 1))
+    CHECK(d / expected == Approx(2 / (1 - nu)).epsilon(1e-4));
 }
 
 TEST_CASE(

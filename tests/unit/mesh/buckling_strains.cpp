@@ -49,7 +49,7 @@ struct Fixture {
     return mesh;
   }());
   double area = level.vertex_area.sum(), s = largest_compression * stiff * area;
-  std::vector<MaterialTriangle> triangles = material_triangles(Vector3d::UnitX(), level);
+  std::vector<MaterialTriangle> triangles = material_triangles(level);
 
   std::unique_ptr<BoundEnergy> bind(const StrainLaw& law, double own_s) const {
     return bind_buckling_strains(law, triangles, level, own_s);

@@ -1,0 +1,101 @@
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <iostream>
+#include <memory>
+#include <numbers>
+
+#include "core/app/cli/commands.h"
+#include "core/app/cli/config_arguments.h"
+#include "core/app/experiment/exit_codes.h"
+#include "core/app/experiment/experiment_parameters.h"
+#include "core/app/experiment/fabrics.h"
+#include "core/kernel/files/string_utils.h"
+#include "core/numerics/elements/orthotropic_stiffness.h"
+
+namespace drape {
+namespace {
+
+/// A quantity along warp, weft and the bias.
+using Directions = std::array<double, 3>;
+
+Directions strips(const OrthotropicStiffness& stiffness) {
+  return {stiffness.strip(0), stiffness.strip(std::numbers::pi / 2), stiffness.strip(std::numbers::pi / 4)};
+}
+
+void print_row(const std::string& label, const Directions& values, double unit,
+               const std::string& unit_name) {
+  std::cout << padded(label, 22);
+  for (const double value : values) {
+    char text[32];
+    std::snprintf(text, sizeof text, "%11.4g", value / unit);
+    std::cout << text;
+  }
+  std::cout << "  " << unit_name << "\n";
+}
+
+void print_sheet(const Material& material) {
+  const Directions bending = strips(plate_stiffness(material));
+  const double weight = material.area_density() * standard_gravity;
+  Directions length;
+  for (std::size_t i = 0; i < 3; ++i) length[i] = std::cbrt(bending[i] / weight);
+  std::cout << padded("mass", 22) << 1e3 * material.area_density() << " g/m²\n"
+            << padded("", 22) << "       warp       weft       bias\n";
+  print_row("bending length c", length, 1e-3, "mm (ASTM D1388, BS 3356, FAST-2)");
+  print_row("overhang at 41.5°", length, 0.5e-3, "mm");
+  print_row("flexural rigidity G", bending, standard_gravity * 1e-8, "mg cm");
+  print_row("bending rigidity B", bending, 1e-6, "µN m (FAST-2)");
+  print_row("", bending, standard_gravity * 1e-5, "gf cm²/cm (KES-FB2)");
+  print_row("tensile stiffness", strips(membrane_stiffness(material)), 1, "N/m");
+}
+
+struct FabricOptions {
+  std::string name, file;
+};
+
+int print_fabric(const FabricOptions& options) {
+  if (options.name.empty()) {
+    if (!options.file.empty()) throw std::runtime_error("--file needs the name or number of a row");
+    for (const std::string& name : fabric_names()) {
+      ConfigErrors none;
+      std::cout << padded(name, 22) << fabric_row(ConfigNode::of(name), none).find("source")->scalar << "\n";
+    }
+    return exit_done;
+  }
+  ConfigNode fabric = ConfigNode::of(options.name), row;
+  if (!options.file.empty()) {
+    row.add("file", ConfigNode::of(options.file));
+    row.add("row", fabric);
+    fabric = row;
+  }
+  ConfigErrors errors;
+  const ConfigNode values = fabric_row(fabric, errors);
+  ConfigNode material;
+  for (const auto& [key, value] : values.entries)
+    if (key != "source") material.add(key, value);
+  MaterialParameters own;
+  if (errors.empty()) schema_of<MaterialParameters>("material").read(&own, material, errors);
+  if (!errors.empty()) return report_errors(errors);
+  std::cout << options.name;
+  if (const ConfigNode* source = values.find("source")) std::cout << ": " << source->scalar;
+  std::cout << "\n";
+  print_sheet(own);
+  std::cout << "Where a figure is not known, the material's default stands for it: material: {fabric: "
+            << (options.file.empty() ? options.name
+                                     : "{file: " + options.file + ", row: " + options.name + "}")
+            << "}\n";
+  return exit_done;
+}
+
+}  // namespace
+
+void add_fabric_command(Commands& commands) {
+  const auto options = std::make_shared<FabricOptions>();
+  CLI::App& command = commands.add("fabric", "print what a laboratory would measure of a fabric",
+                                   "drape fabric gray-interlock", [=] { return print_fabric(*options); });
+  command.add_option("name", options->name,
+                     "a fabric of the table, or a row of FILE; without it, all are listed");
+  command.add_option("--file", options->file, "a CSV file of your own")->type_name("FILE");
+}
+
+}  // namespace drape

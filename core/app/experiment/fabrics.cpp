@@ -1,0 +1,182 @@
+#include "core/app/experiment/fabrics.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <optional>
+#include <sstream>
+
+#include "core/app/experiment/fabric_table.h"
+#include "core/app/files/csv.h"
+#include "core/kernel/files/file.h"
+#include "core/kernel/files/message_text.h"
+#include "core/kernel/files/string_utils.h"
+#include "core/kernel/interfaces/material.h"
+
+namespace drape {
+namespace {
+
+/// A column of a table and what it gives: a key of `material`, or "mass", in SI units after the factor.
+struct Column {
+  const char *name, *key;
+  double factor = 1;
+};
+constexpr Column columns[] = {
+    {"mass", "mass"},
+    {"density", "density"},
+    {"thickness", "thickness"},
+    {"membrane_modulus", "membrane_modulus"},
+    {"bending_modulus", "bending_modulus"},
+    {"poisson_ratio", "poisson_ratio"},
+    {"warp_stiffness", "warp_stiffness"},
+    {"weft_stiffness", "weft_stiffness"},
+    {"shear_stiffness", "shear_stiffness"},
+    {"warp_bending", "warp_bending"},
+    {"weft_bending", "weft_bending"},
+    {"bias_bending", "bias_bending"},
+    // ClothDrapeTester's dataset.csv (Feng et al. 2022)
+    {"density[kg.m-2]", "mass"},
+    {"linear warp[SI*1e9]", "warp_bending", 1e-9},
+    {"linear weft[SI*1e9]", "weft_bending", 1e-9},
+    {"linear diag[SI*1e9]", "bias_bending", 1e-9},
+};
+
+struct Table {
+  std::string file;  ///< for messages
+  std::vector<std::string> header;
+  std::vector<std::vector<std::string>> rows;
+
+  Table(std::string name, const std::string& text) : file(std::move(name)) {
+    std::istringstream lines(text);
+    for (std::string line; std::getline(lines, line);) {
+      if (line.find_first_not_of(" \t\r") == std::string::npos) continue;
+      std::vector<std::string> cells = split(line, ',');
+      for (std::string& cell : cells) {
+        const std::size_t first = cell.find_first_not_of(" \t\r"), last = cell.find_last_not_of(" \t\r");
+        cell = first == std::string::npos ? "" : cell.substr(first, last - first + 1);
+      }
+      if (header.empty())
+        header = std::move(cells);
+      else
+        rows.push_back(std::move(cells));
+    }
+  }
+
+  std::string cell(std::size_t row, const std::string& column) const {
+    const auto i = std::find(header.begin(), header.end(), column) - header.begin();
+    return i < std::ssize(header) && i < std::ssize(rows[row]) ? rows[row][i] : "";
+  }
+  std::vector<std::string> names() const {
+    std::vector<std::string> all;
+    for (std::size_t i = 0; i < rows.size(); ++i) all.push_back(cell(i, "name"));
+    return all;
+  }
+  /// The row of this name or number, from 1.
+  std::optional<std::size_t> find(const std::string& row) const {
+    const std::vector<std::string> all = names();
+    if (const auto i = std::find(all.begin(), all.end(), row); i != all.end()) return i - all.begin();
+    const std::optional<int> number = parse_integer(row);
+    if (number && *number >= 1 && *number <= std::ssize(rows)) return *number - 1;
+    return std::nullopt;
+  }
+};
+
+const Table& own_table() {
+  static const Table table("the table of fabrics", fabric_table);
+  return table;
+}
+
+/// The row's numbers by keys of `material`. Appends an error for a cell that is not a number, and for a row
+/// without mass or bending.
+ConfigNode material_of(const Table& table, std::size_t row, const std::string& name, const Location& where,
+                       ConfigErrors& errors) {
+  const auto refuse = [&](const std::string& what) {
+    errors.push_back({where, table.file + ": row \"" + name + "\" " + what});
+  };
+  ConfigNode material;
+  std::optional<double> mass;
+  for (const Column& column : columns) {
+    const std::string text = table.cell(row, column.name);
+    if (text.empty()) continue;
+    const OptionalNumber value = number_of(text);
+    if (!value)
+      refuse("has \"" + excerpt(text) + "\" in column \"" + column.name + "\", which is not a number");
+    else if (column.key == std::string("mass"))
+      mass = *value;
+    else
+      material.add(column.key, ConfigNode::of(column.factor * *value));
+  }
+  if (mass) {
+    const double thickness = number_of(table.cell(row, "thickness")).value_or(Material().thickness);
+    material.add("density", ConfigNode::of(*mass / thickness));
+  } else if (!material.find("density")) {
+    refuse("lacks column \"mass\" [kg/m²]");
+  }
+  if (!material.find("warp_bending") && !material.find("bending_modulus"))
+    refuse("lacks column \"warp_bending\" [N m]");
+  if (const std::string source = table.cell(row, "source"); !source.empty())
+    material.add("source", ConfigNode::of(source));
+  return material;
+}
+
+std::string remedy(const std::string& name, const std::vector<std::string>& names) {
+  const std::string nearest = nearest_word(name, names);
+  return nearest.empty() ? "it has " + joined(names) : "did you mean \"" + nearest + "\"?";
+}
+
+/// The row that {file, row} names.
+ConfigNode row_of_file(const ConfigNode& fabric, ConfigErrors& errors) {
+  const ConfigNode *file = fabric.find("file"), *row = fabric.find("row");
+  if (fabric.kind != ConfigNode::Kind::map || !file || !row || fabric.entries.size() != 2) {
+    errors.push_back({fabric.where, "\"fabric\" is a name, or {file: fabrics.csv, row: NAME}"});
+    return {};
+  }
+  const std::filesystem::path path =
+      std::filesystem::path(file->where.file).parent_path() / std::filesystem::path(file->scalar);
+  if (!std::filesystem::is_regular_file(path)) {
+    errors.push_back({file->where, "\"file\": " + path.string() + " is not a file"});
+    return {};
+  }
+  const Table table(path.string(), read_file(path));
+  const auto found = table.find(row->scalar);
+  if (found) return material_of(table, *found, row->scalar, row->where, errors);
+  errors.push_back({row->where, table.file + " has " + std::to_string(table.rows.size()) +
+                                    " rows and none named \"" + excerpt(row->scalar) + "\"; " +
+                                    remedy(row->scalar, table.names())});
+  return {};
+}
+
+}  // namespace
+
+std::vector<std::string> fabric_names() { return own_table().names(); }
+
+ConfigNode fabric_row(const ConfigNode& fabric, ConfigErrors& errors) {
+  if (fabric.kind != ConfigNode::Kind::scalar) return row_of_file(fabric, errors);
+  const std::string& name = fabric.scalar;
+  const Table& table = own_table();
+  const std::vector<std::string> names = table.names();
+  const auto found = std::find(names.begin(), names.end(), name);
+  if (found != names.end()) return material_of(table, found - names.begin(), name, fabric.where, errors);
+  errors.push_back({fabric.where, "unknown fabric \"" + excerpt(name) + "\"; " + remedy(name, names)});
+  return {};
+}
+
+void apply_fabric(ConfigNode& experiment, ConfigErrors& errors) {
+  for (auto& [key, material] : experiment.entries) {
+    if (key != "material" || material.kind != ConfigNode::Kind::map) continue;
+    const auto at = std::find_if(material.entries.begin(), material.entries.end(),
+                                 [](const auto& entry) { return entry.first == "fabric"; });
+    if (at == material.entries.end() || at->second.kind == ConfigNode::Kind::null) continue;
+    const ConfigNode fabric = at->second;
+    material.key_locations.erase(material.key_locations.begin() + (at - material.entries.begin()));
+    material.entries.erase(at);
+    const ConfigNode row = fabric_row(fabric, errors);
+    for (const auto& [name, value] : row.entries) {
+      if (name == "source" || material.find(name)) continue;
+      ConfigNode own = value;
+      own.where = fabric.where;
+      material.add(name, own);
+    }
+  }
+}
+
+}  // namespace drape

@@ -1,0 +1,21 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "core/kernel/plugin/config_node.h"
+
+namespace drape {
+
+/// Names of the fabrics that come with drape (fabrics.csv), in its order.
+std::vector<std::string> fabric_names();
+
+/// A fabric's values for keys of `material`, and its `source`: of NAME in the table that comes with drape, or
+/// of {file, row}, a CSV file with columns like that table's or ClothDrapeTester's. Appends errors with their
+/// place: an unknown name, with the nearest one, a missing file, row or column, a cell that is not a number.
+ConfigNode fabric_row(const ConfigNode& fabric, ConfigErrors& errors);
+
+/// Replaces `material.fabric` of an experiment by its values for the keys that `material` does not have.
+void apply_fabric(ConfigNode& experiment, ConfigErrors& errors);
+
+}  // namespace drape

@@ -1,0 +1,103 @@
+#include <Eigen/Dense>
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "core/numerics/elements/orthotropic_stiffness.h"
+#include "core/numerics/patterns/generate.h"
+#include "tests/support/evaluate.h"
+#include "tests/support/registry.h"
+
+using namespace drape;
+
+namespace {
+
+const Material fabric = [] {
+  Material m;
+  m.thickness = 3e-4;
+  m.warp_stiffness = 2000, m.weft_stiffness = 700, m.shear_stiffness = 50, m.poisson_ratio = 0.2;
+  return m;
+}();
+
+Level sheet(double grain = 0) {
+  TriangleMesh mesh = random_triangulation({0.6, 0.5}, 120, 8);
+  mesh.grain = {Grain::Axis::x, grain};
+  return Level::of(0, mesh);
+}
+
+Positions wrinkled(const Level& level, double size) {
+  Positions x = level.rest.vertices;
+  for (Eigen::Index i = 0; i < x.size(); ++i) x.data()[i] += size * std::sin(static_cast<double>(41 * i + 2));
+  return x;
+}
+
+}  // namespace
+
+TEST_CASE("woven: strips have the stiffness that was measured, in every direction") {
+  const OrthotropicStiffness c = membrane_stiffness(fabric);
+  CHECK(c.strip(0) == Approx(2000));
+  CHECK(c.strip(M_PI / 2) == Approx(700));
+  // The smallest energy of all states with a strain of 1 along the strip.
+  for (const double angle : {0., 0.3, M_PI / 4, 1.2}) {
+    const double s = std::sin(angle), o = std::cos(angle);
+    Eigen::Matrix3d strains;  // columns: along, across and shear of the strip as (g11, g22, g12)
+    strains << o * o, s * s, -2 * o * s, s * s, o * o, 2 * o * s, o * s, -o * s, o * o - s * s;
+    Eigen::Matrix3d stiffness = Eigen::Matrix3d::Zero();
+    stiffness << c.c11, c.c12, 0, c.c12, c.c22, 0, 0, 0, 4 * c.c66;
+    const Eigen::Matrix3d own = strains.transpose() * stiffness * strains;
+    CHECK(c.strip(angle) == Approx(1 / own.inverse()(0, 0)));
+  }
+}
+
+TEST_CASE("woven: the isotropic cloth is stvk, and at rest neo_hookean") {
+  Material material;
+  material.poisson_ratio = 0.3;
+  const Level level = sheet(17);
+  const auto own = make_plugin_from<Energy>("woven")->bind(level, material),
+             stvk = make_plugin_from<Energy>("stvk")->bind(level, material),
+             neo_hookean = make_plugin_from<Energy>("neo_hookean")->bind(level, material);
+  const Positions x = wrinkled(level, 0.004);
+  CHECK(std::abs(own->value(x) / stvk->value(x) - 1) < 1e-12);
+  CHECK((gradient_of(*own, x) - gradient_of(*stvk, x)).norm() < 1e-12 * gradient_of(*stvk, x).norm());
+  const auto h = dense(hessian_of(*own, level.rest.vertices, Projection::none)),
+             other = dense(hessian_of(*neo_hookean, level.rest.vertices, Projection::none));
+  CHECK((h - other).norm() < 1e-12 * other.norm());
+}
+
+TEST_CASE("woven: a quarter turn of grain and cloth changes no energy") {
+  const Level level = sheet(25);
+  Eigen::Matrix3d turn;
+  turn << 0, -1, 0, 1, 0, 0, 0, 0, 1;
+  TriangleMesh turned = level.rest;
+  turned.vertices = level.rest.vertices * turn.transpose();
+  turned.grain->angle += 90;
+  Material swapped = fabric;
+  std::swap(swapped.warp_stiffness, swapped.weft_stiffness);
+  TriangleMesh other = level.rest;
+  other.grain->angle += 90;
+  const auto energy = make_plugin_from<Energy>("woven");
+  const Positions x = wrinkled(level, 0.004);
+  for (const double s : {-1., 1e-3}) {  // plain, and buckling
+    const auto value = [&](const TriangleMesh& mesh, const Material& m, const Positions& y) {
+      const Level own = Level::of(0, mesh);
+      return (s < 0 ? energy->bind(own, m) : energy->bind_buckling(own, m, s))->value(y);
+    };
+    const double own = value(level.rest, fabric, x);
+    CHECK(std::abs(value(turned, fabric, x * turn.transpose()) / own - 1) < 1e-12);
+    CHECK(std::abs(value(other, swapped, x) / own - 1) < 1e-12);
+    CHECK(std::abs(value(other, fabric, x) / own - 1) > 1e-3);
+  }
+}
+
+TEST_CASE("woven: the isotropic cloth buckles below the mesh as stvk does, and woven cloth softly") {
+  Material material;
+  const Level level = sheet(17);
+  const auto energy = make_plugin_from<Energy>("woven");
+  const auto own = energy->bind_buckling(level, material, 1e-5),
+             stvk = make_plugin_from<Energy>("stvk")->bind_buckling(level, material, 1e-5);
+  const Positions x = wrinkled(level, 5e-4);
+  CHECK(own->value(x) == Approx(stvk->value(x)).epsilon(1e-9));
+  CHECK((gradient_of(*own, x) - gradient_of(*stvk, x)).norm() < 1e-7 * gradient_of(*stvk, x).norm());
+  const Positions pressed = 0.95 * level.rest.vertices;
+  CHECK(energy->bind_buckling(level, fabric, 1e-5)->value(pressed) <
+        0.05 * energy->bind(level, fabric)->value(pressed));
+}

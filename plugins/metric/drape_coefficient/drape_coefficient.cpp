@@ -1,0 +1,117 @@
+#include "plugins/metric/drape_coefficient/drape_coefficient.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "core/kernel/plugin/plugin.h"
+
+namespace drape {
+namespace {
+
+using std::numbers::pi;
+
+constexpr int directions = 3600;
+/// A fold stands out by this part of the specimen's radius at least.
+constexpr double least_fold = 0.01;
+
+/// The outline's turning points, highest and lowest by turns, that differ by `least` from the next.
+struct Folds {
+  double highest = 0, lowest = 0;  ///< sums
+  int count = 0;
+
+  Folds(const std::vector<double>& radii, double least) {
+    const auto n = static_cast<int>(radii.size());
+    const auto start = static_cast<int>(std::max_element(radii.begin(), radii.end()) -
+                                        radii.begin());  // of the highest fold
+    double high = radii[start], low = high;
+    bool falling = true;
+    for (int i = 1; i <= n; ++i) {
+      const double r = radii[(start + i) % n];
+      if (falling) {
+        low = std::min(low, r);
+        if (r - low < least) continue;
+        highest += high, lowest += low, ++count;  // the fold before this valley, and the valley
+        high = r, falling = false;
+      } else {
+        high = std::max(high, r);
+        if (high - r < least) continue;
+        low = r, falling = true;
+      }
+    }
+  }
+};
+
+}  // namespace
+
+MetricDeclaration DrapeCoefficient::declaration() const {
+  return {
+      .columns =
+          {{.name = "drape_coefficient",
+            .label = "drape coefficient",
+            .unit = "%",
+            .better = Better::neither,
+            .shown = Shown::summary,
+            .decimals = 1},
+           {.name = "folds", .label = "folds", .unit = "1", .better = Better::neither, .decimals = 0},
+           {.name = "fold_amplitude", .label = "fold amplitude", .unit = "m", .better = Better::neither}},
+      .text =
+          "The drape coefficient is the part of the overhanging ring that the cloth's shadow covers "
+          "(BS 5058, ISO 9073-9): 100 % does not drape. Fold amplitude is half the mean difference of folds "
+          "and valleys in the shadow's outline."};
+}
+
+std::vector<double> DrapeCoefficient::outline(const Level& level, const Positions& x, int count) {
+  std::vector<double> radii(static_cast<std::size_t>(count), 0);
+  const Eigen::Vector2d centre = (x.leftCols<2>().transpose() * level.vertex_area) / level.vertex_area.sum();
+  for (Eigen::Index e = 0; e < level.topology.edges.rows(); ++e) {
+    const auto at = [&](int end) -> Eigen::Vector2d {
+      return x.row(level.topology.edges(e, end)).head<2>().transpose() - centre;
+    };
+    Eigen::Vector2d a = at(0), b = at(1);
+    const auto cross = [](const Eigen::Vector2d& p, const Eigen::Vector2d& q) {
+      return p.x() * q.y() - p.y() * q.x();
+    };
+    if (cross(a, b) < 0) std::swap(a, b);
+    // The directions from a, counter-clockwise, to b.
+    const double turn = std::atan2(cross(a, b), a.dot(b)), spacing = 2 * pi / count,
+                 begin = std::atan2(a.y(), a.x());
+    const int first = static_cast<int>(std::ceil(begin / spacing)),
+              last = static_cast<int>(std::floor((begin + turn) / spacing));
+    for (int i = first; i <= last; ++i) {
+      const Eigen::Vector2d m(std::cos(i * spacing), std::sin(i * spacing));
+      const double across = cross(m, b - a);
+      const double r = across == 0 ? std::max(a.norm(), b.norm()) : cross(a, b - a) / across;
+      double& own = radii[static_cast<std::size_t>((i % count + count) % count)];
+      own = std::max(own, std::min(r, std::max(a.norm(), b.norm())));
+    }
+  }
+  return radii;
+}
+
+MetricResult DrapeCoefficient::measure(const MetricInput& input) const {
+  const std::vector<double> radii = outline(input.level, input.x, directions);
+  double shadow = 0;
+  for (std::size_t i = 0; i < radii.size(); ++i)
+    shadow += radii[i] * radii[(i + 1) % radii.size()] * std::sin(2 * pi / directions) / 2;
+  const double specimen = input.level.vertex_area.sum(), support = pi * support_radius * support_radius;
+  if (specimen <= support)
+    throw std::runtime_error(
+        "drape_coefficient: the cloth is not larger than its support; choose a smaller "
+        "\"support_radius\"");
+  const Folds folds(radii, least_fold * std::sqrt(specimen / pi));
+  MetricResult result;
+  result.values = {
+      {"drape_coefficient", 100 * (shadow - support) / (specimen - support)},
+      {"folds", static_cast<double>(folds.count)},
+      {"fold_amplitude", folds.count == 0 ? 0 : (folds.highest - folds.lowest) / folds.count / 2}};
+  return result;
+}
+
+}  // namespace drape
+
+DRAPE_PLUGIN(registry) {
+  registry.add<drape::Metric, drape::DrapeCoefficient>(
+      "drape_coefficient", "Cusick's drape coefficient, with the number and amplitude of folds.");
+}

@@ -1,0 +1,130 @@
+// Fabrics by name and from a file, and materials that do not fit together.
+
+#include "core/app/experiment/fabrics.h"
+
+#include <catch2/catch.hpp>
+
+#include "core/numerics/elements/orthotropic_stiffness.h"
+#include "tests/support/command.h"
+#include "tests/support/solve.h"
+
+using namespace drape;
+
+namespace {
+
+std::string experiment(const std::string& material) {
+  return "name: fabric\nmaterial: {" + material +
+         "}\nenergies: [woven, midedge_bending, gravity]\nmethods: {newton: {}}\n";
+}
+
+Material material_of(const std::string& material) {
+  return experiment_from(experiment(material)).parameters.material;
+}
+
+void check_refused(const std::string& material, const std::string& message) {
+  INFO(material);
+  CHECK_THROWS_WITH(material_of(material), Catch::Contains(message));
+}
+
+}  // namespace
+
+TEST_CASE("fabrics: every fabric of the table is a material with a source") {
+  CHECK(fabric_names().size() >= 10);
+  for (const std::string& name : fabric_names()) {
+    INFO(name);
+    ConfigErrors errors;
+    const ConfigNode row = fabric_row(ConfigNode::of(name), errors);
+    CHECK(errors.empty());
+    REQUIRE(row.find("source"));
+    const Material m = material_of("fabric: " + name);
+    CHECK(m.area_density() > 0.1);
+    CHECK(m.area_density() < 0.4);
+    // A bending length of 5 to 50 mm along warp.
+    const double length = std::cbrt(plate_stiffness(m).strip(0) / (m.area_density() * standard_gravity));
+    CHECK(length > 0.005);
+    CHECK(length < 0.05);
+  }
+}
+
+TEST_CASE("fabrics: what is written beside a fabric takes precedence, and the numbers are saved") {
+  const Experiment e = experiment_from(experiment("fabric: gray-interlock, warp_bending: 3e-5"));
+  const Material m = e.parameters.material;
+  CHECK(m.area_density() == Approx(0.187));
+  CHECK(m.warp_bending == 3e-5);
+  CHECK(m.weft_bending == 14.27e-6);
+  CHECK(m.poisson_ratio == Material().poisson_ratio);
+  const ConfigNode* saved = e.resolved.find("material");
+  CHECK(saved->find("weft_bending")->scalar == "1.427e-05");
+  CHECK(saved->find("fabric")->kind == ConfigNode::Kind::null);
+}
+
+TEST_CASE("fabrics: isotropic energies take the mean of warp and weft") {
+  Material m;
+  m.thickness = 1e-3;
+  m.warp_stiffness = 100, m.weft_stiffness = 400, m.warp_bending = 1e-6, m.weft_bending = 4e-6;
+  CHECK(m.mean_membrane_modulus() == Approx(200 / 1e-3));
+  CHECK(m.mean_bending_modulus() == Approx(12 * 2e-6 / 1e-9));
+}
+
+TEST_CASE("fabrics: a name that the table does not have is refused with the nearest one") {
+  check_refused("fabric: gray_interlok",
+                "unknown fabric \"gray_interlok\"; did you mean \"gray-interlock\"?");
+  check_refused("fabric: [a, b]", "\"fabric\" is a name, or {file: fabrics.csv, row: NAME}");
+}
+
+TEST_CASE("fabrics: a row of a file, whose faults are named") {
+  const Scratch folder;
+  const std::string file = (folder / "own.csv").string();
+  folder.write("own.csv",
+               "name, mass, thickness, warp_bending, weft_bending\n"
+               "twill, 0.3, 5e-4, 2e-5, 9e-6\nlight, , , 1e-6,\nworse, 0.1, 5e-4, stiff, 1e-6\nbare, 0.2, "
+               "5e-4, , 1e-6\n");
+  const auto row = [&](const std::string& name) { return "fabric: {file: " + file + ", row: " + name + "}"; };
+  const Material m = material_of(row("twill"));
+  CHECK(m.density == Approx(600));
+  CHECK(m.warp_bending == 2e-5);
+  CHECK(m.weft_bending == 9e-6);
+  CHECK_FALSE(m.bias_bending);
+  CHECK(material_of(row("1")) == m);
+  check_refused(row("twil"), "own.csv has 4 rows and none named \"twil\"; did you mean \"twill\"?");
+  check_refused(row("light"), "row \"light\" lacks column \"mass\" [kg/m²]");
+  check_refused(row("worse"),
+                "row \"worse\" has \"stiff\" in column \"warp_bending\", which is not a number");
+  check_refused(row("bare"), "row \"bare\" lacks column \"warp_bending\" [N m]");
+  check_refused("fabric: {file: " + (folder / "none.csv").string() + ", row: 1}", "is not a file");
+}
+
+TEST_CASE("fabrics: rows of ClothDrapeTester's table are read by number") {
+  const Scratch folder;
+  folder.write("dataset.csv",
+               "density[kg.m-2], linear warp[SI*1e9], linear weft[SI*1e9], linear diag[SI*1e9], nonlinear "
+               "warp[SI*1e12]\n"
+               "0.2, 9000, 7000, 4000, -44000\n");
+  const Material m = material_of("fabric: {file: " + (folder / "dataset.csv").string() + ", row: 1}");
+  CHECK(m.area_density() == Approx(0.2));
+  CHECK(*m.warp_bending == Approx(9e-6));
+  CHECK(*m.weft_bending == Approx(7e-6));
+  CHECK(*m.bias_bending == Approx(4e-6));
+}
+
+TEST_CASE("fabrics: numbers that hide each other, or that no cloth has, are refused") {
+  check_refused("warp_bending: 1e-5, bending_modulus: 1e5", "\"bending_modulus\" is not read beside");
+  check_refused("warp_stiffness: 100, membrane_modulus: 1e5", "\"membrane_modulus\" is not read beside");
+  check_refused("weft_bending: 1e-5", "\"weft_bending\" needs \"warp_bending\"");
+  check_refused("warp_bending: 1e-5, bias_bending: 1e-3", "not positive definite: with \"bias_bending\"");
+}
+
+TEST_CASE("drape fabric prints what a laboratory measures, and lists the table") {
+  const Scratch folder;
+  const Ended list = drape_with("fabric", folder.path);
+  CHECK(list.exit_code == 0);
+  CHECK(list.out.find("11oz-black-denim      Wang et al. 2011") != std::string::npos);
+  const Ended sheet = drape_with("fabric gray-interlock", folder.path);
+  CHECK(sheet.exit_code == 0);
+  CHECK(sheet.out.find("187 g/m²") != std::string::npos);
+  // c = (23.19e-6 / (0.187 · 9.81))^⅓, in mm
+  CHECK(sheet.out.find("bending length c             23.3") != std::string::npos);
+  const Ended wrong = drape_with("fabric denim", folder.path);
+  CHECK(wrong.exit_code == 2);
+  CHECK(wrong.err.find("unknown fabric \"denim\"") != std::string::npos);
+}

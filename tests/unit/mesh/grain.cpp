@@ -1,0 +1,104 @@
+// The direction of warp: on patterns and meshes, over the levels, in files.
+
+#include "core/numerics/mesh/grain.h"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "core/kernel/files/file.h"
+#include "core/numerics/elements/green_strain.h"
+#include "core/numerics/mesh_files/io.h"
+#include "core/numerics/patterns/generate.h"
+#include "tests/support/command.h"
+#include "tests/support/solve.h"
+
+using namespace drape;
+
+namespace {
+
+std::string experiment(const std::string& cloth) {
+  return "name: grain\ncloth: " + cloth +
+         "\nlevels: 2\nenergies: [neo_hookean, hinge, gravity]\nmethods: {newton: {}}\n";
+}
+
+/// A square that stands in the plane y = 0, with u along z and v along -x.
+constexpr const char* standing =
+    "v 0 0 0\nv 1 0 0\nv 1 0 1\nv 0 0 1\nvt 0 1\nvt 0 0\nvt 1 0\nvt 1 1\nf 1/1 2/2 3/3\nf 1/1 3/3 4/4\n";
+
+}  // namespace
+
+TEST_CASE("grain: warp turns counter-clockwise from x, in every triangle") {
+  TriangleMesh mesh = grid({1, 1}, 4, 4, Diagonals::criss_cross);
+  for (const double angle : {0., 30., 90., -135.}) {
+    mesh.grain = {Grain::Axis::x, angle};
+    const Positions warp = warp_directions(mesh);
+    REQUIRE(warp.rows() == mesh.triangles.rows());
+    const Eigen::RowVector3d expected(std::cos(angle * M_PI / 180), std::sin(angle * M_PI / 180), 0);
+    CHECK((warp.rowwise() - expected).cwiseAbs().maxCoeff() < 1e-15);
+  }
+  mesh.grain.reset();
+  CHECK(warp_directions(mesh).col(0).isConstant(1));
+  CHECK(grain_faults(mesh).empty());
+}
+
+TEST_CASE("grain: strains of a material's frame follow the grain") {
+  TriangleMesh mesh = random_triangulation({1, 1}, 30, 3);
+  mesh.grain = {Grain::Axis::x, 30};
+  const Level level = Level::of(0, mesh);
+  Eigen::Matrix2d f;
+  f << 1.1, 0.2, -0.1, 0.9;
+  const Eigen::Matrix2d c = (f.transpose() * f - Eigen::Matrix2d::Identity()) / 2;
+  const Eigen::Vector2d warp(std::cos(M_PI / 6), 0.5), weft(-0.5, std::cos(M_PI / 6));
+  for (int t = 0; const MaterialTriangle& m : material_triangles(level)) {
+    const auto v = mesh.triangles.row(t++);
+    Eigen::Vector3d e[2] = {Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};
+    for (int k = 0; k < 2; ++k)
+      e[k].head<2>() = f * (mesh.vertices.row(v[k + 1]) - mesh.vertices.row(v[0])).head<2>().transpose();
+    const GreenStrain<double> g(e, m.data());
+    CHECK(g.g11 == Approx(warp.dot(c * warp)));
+    CHECK(g.g22 == Approx(weft.dot(c * weft)));
+    CHECK(g.g12 == Approx(warp.dot(c * weft)));
+  }
+}
+
+TEST_CASE("grain: every level of an experiment has it, and its files and the saved config too") {
+  const Scratch folder;
+  folder.write("own.yaml", experiment("{shape: rectangle, size: [0.3, 0.2], vertices: 30, grain: 30}") +
+                               "pins: [{point: [0, 0, 0]}]\nnewton: {max_steps: 1}\n");
+  CHECK(drape_with("run own.yaml --out out --quiet --no-report", folder.path).exit_code != 2);
+  for (const char* level : {"out/rest/l0.ply", "out/rest/l1.ply"}) {
+    const std::string bytes = read_file(folder / level);
+    CHECK(bytes.find("property double warp_x\nproperty double warp_y\nproperty double warp_z\n") !=
+          std::string::npos);
+    CHECK_NOTHROW(read_mesh(folder / level));
+  }
+  CHECK(read_file(folder / "out/config.yaml").find("grain: 30") != std::string::npos);
+  const Solved s = scene_from(experiment("{shape: disc, radius: 0.2, vertices: 50, grain: 20}"));
+  for (const Level& level : s.scene->hierarchy.levels) {
+    REQUIRE(level.rest.grain);
+    CHECK(warp_directions(level.rest)(3, 1) == Approx(std::sin(20 * M_PI / 180)));
+  }
+}
+
+TEST_CASE("grain: a mesh's pattern may be its texture coordinates") {
+  const Scratch folder;
+  folder.write("standing.obj", standing);
+  folder.write("turned.obj", std::string(standing).replace(0, std::string(standing).find("vt"),
+                                                           "v 0 0 0\nv 0 1 0\nv 0 1 1\nv 0 0 1\n"));
+  const auto warp_of = [&](const std::string& cloth) {
+    const Solved s = scene_from(experiment("{shape: file, file: " + (folder / cloth).string()));
+    return Eigen::RowVector3d(warp_directions(s.level().rest).row(0));
+  };
+  CHECK(warp_of("standing.obj, grain: 0, grain_along: u}").isApprox(Eigen::RowVector3d(0, 0, 1)));
+  CHECK(warp_of("standing.obj, grain: 0}").isApprox(Eigen::RowVector3d(1, 0, 0)));
+  CHECK(warp_of("turned.obj}").isApprox(Eigen::RowVector3d(0, 1, 0)));  // normal to x, which nobody asked for
+  CHECK_THROWS_WITH(warp_of("turned.obj, grain: 10}"),
+                    Catch::Contains("\"grain\" has no direction in triangle 0, which is normal to x"));
+  std::string plain = standing;
+  for (std::size_t at; (at = plain.find("/")) != std::string::npos;) plain.erase(at, 2);
+  folder.write("plain.obj", plain);
+  CHECK_THROWS_WITH(warp_of("plain.obj, grain: 10, grain_along: u}"),
+                    Catch::Contains("needs a mesh with texture coordinates"));
+  CHECK_THROWS_WITH(scene_from(experiment("{shape: square, grain: 10, grain_along: u}")),
+                    Catch::Contains("grain_along"));
+}
