@@ -6,6 +6,7 @@
 #include "core/app/experiment/exit_codes.h"
 #include "core/app/files/json_file.h"
 #include "core/kernel/files/string_utils.h"
+#include "core/kernel/interfaces/solver.h"
 
 namespace drape {
 
