@@ -79,7 +79,7 @@ template <class Kernel>
 requires requires { Kernel::cloth(); }
 const BoundEnergy& energy() {
   static const BoundMidedgeBending made(Kernel::cloth().level,
-                                        ShapeOperators::of(Kernel::cloth().level, 1e-7, 0.243, 0.02));
+                                        ShapeOperators::of(Kernel::cloth().level, Material(), 0.02));
   return made;
 }
 

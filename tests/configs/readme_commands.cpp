@@ -1,4 +1,5 @@
-// The commands of README.md, docs/start and docs/guide/fabrics.md do what the pages say: each is run, with experiments made small.
+// The commands of README.md, docs/start and docs/guide/fabrics.md do what the pages say: each is run, with
+// experiments made small.
 
 #include <catch2/catch.hpp>
 #include <map>

@@ -6,6 +6,7 @@
 
 #include "core/app/experiment/experiment.h"
 #include "core/app/sweep/sweep.h"
+#include "core/app/sweep/variations.h"
 #include "tests/support/registry.h"
 
 using namespace drape;
@@ -30,7 +31,7 @@ template <class Visit>
 void for_each_parameter(const Visit& visit) {
   for_each_parameter("experiment", schema_of<ExperimentParameters>(), visit);
   for_each_parameter("sweep", schema_of<SweepParameters>(), visit);
-  for_each_parameter("variation", schema_of<VariationParameters>(), visit);
+  for_each_parameter("variation", schema_of<Variation>(), visit);
   for (const auto& entry : test_registry().entries())
     for_each_parameter(entry->kind + " " + entry->name, entry->schema, visit);
 }

@@ -75,7 +75,7 @@ int print_fabric(const FabricOptions& options) {
     if (key != "source") material.add(key, value);
   MaterialParameters own;
   if (errors.empty()) schema_of<MaterialParameters>("material").read(&own, material, errors);
-  if (!errors.empty()) return report_errors(errors);
+  require_none(errors);
   std::cout << options.name;
   if (const ConfigNode* source = values.find("source")) std::cout << ": " << source->scalar;
   std::cout << "\n";

@@ -32,7 +32,7 @@ void LoopParameters::declare(Declaration<LoopParameters>& d) {
 
 void MaterialParameters::declare(Declaration<MaterialParameters>& d) {
   declare_material(d);
-  d.add_node("fabric", &MaterialParameters::fabric)
+  d.add("fabric", &MaterialParameters::fabric)
       .description(
           "a fabric whose figures stand for the keys that are not written here: a name (`drape fabric` lists "
           "them), or {file: fabrics.csv, row: NAME}");

@@ -67,8 +67,8 @@ class TargetObjective : public Objective {
     penalty_.reset();
     slots_.reset();
     if (count > 0) {
-      penalty_ =
-          make_stretch_penalty(model().level(), material.thickness, material.mean_membrane_modulus(), violating_);
+      penalty_ = make_stretch_penalty(model().level(), material.thickness, material.mean_membrane_modulus(),
+                                      violating_);
       slots_ = std::make_unique<BlockSlots>(*pattern_, penalty_->stencils());
     }
     return count;

@@ -52,9 +52,8 @@ MetricDeclaration DrapeCoefficient::declaration() const {
             .label = "drape coefficient",
             .unit = "%",
             .better = Better::neither,
-            .shown = Shown::summary,
-            .decimals = 1},
-           {.name = "folds", .label = "folds", .unit = "1", .better = Better::neither, .decimals = 0},
+            .shown = Shown::summary},
+           {.name = "folds", .label = "folds", .unit = "1", .better = Better::neither},
            {.name = "fold_amplitude", .label = "fold amplitude", .unit = "m", .better = Better::neither}},
       .text =
           "The drape coefficient is the part of the overhanging ring that the cloth's shadow covers "
