@@ -199,7 +199,7 @@ TEST_CASE("each fault of a key, a value or a plugin is named where it stands") {
   const std::string own = "; a plugin of your own is given by --plugin or found by DRAPE_PLUGIN_PATH";
   const std::string energies =
       "known: constant_load, formula, gravity, hinge, midedge_bending, neo_hookean, pressure, "
-      "quadratic_bending, strain_limit, stvk";
+      "quadratic_bending, strain_limit, stvk, woven";
   check_refused({
       {"levels: 2", "wind: 2", "3:1: unknown key \"wind\"; known keys are " + top_keys},
       {"levels: 2", "lvels: 2", "3:1: unknown key \"lvels\"; did you mean \"levels\"?"},
@@ -217,7 +217,8 @@ TEST_CASE("each fault of a key, a value or a plugin is named where it stands") {
       {"levels: 2", "refiner: butterfly", "3:10: unknown refiner \"butterfly\"; known: loop, midpoint" + own},
       {"levels: 2", "contact: [ipc, glue]", "3:16: unknown contact \"glue\"; known: ipc, shapes" + own},
       {"levels: 2", "metrics: [{type: shine}]",
-       "3:18: unknown metric \"shine\"; known: curvature_consistency, distance, energy, energy_above_end, "
+       "3:18: unknown metric \"shine\"; known: curvature_consistency, distance, drape_coefficient, energy, "
+       "energy_above_end, "
        "residuals, silhouette, stretch" +
            own},
       {"  cascadic: {}", "  psc: {depth: 2}",
@@ -293,7 +294,7 @@ TEST_CASE("all errors of a config are listed in file order, those of --set last"
         "\"nearst\"; did you mean \"nearest\"?\n"
         "error: e.yaml:8:25: unknown energy \"hinje\"; did you mean \"hinge\"? known: constant_load, "
         "formula, gravity, hinge, midedge_bending, "
-        "neo_hookean, pressure, quadratic_bending, strain_limit, stvk\n"
+        "neo_hookean, pressure, quadratic_bending, strain_limit, stvk, woven\n"
         "error: e.yaml:12:28: \"prolongation\" must be \"midpoint\" or \"refiner\", not \"linear\"\n"
         "error: --set newton.max_steps: \"max_steps\" must be an integer, not \"few\"\n");
 }

@@ -135,17 +135,26 @@ PictureSet draw_pictures(const RunData& run, const std::function<bool()>& cancel
     write_file(run.folder / "pictures" / name, encode_png(image));
     set.pictures.insert_or_assign(name, std::move(image));
   };
+  // An earlier report may have drawn a state whose mesh is gone.
+  const auto remove_stale = [&](const std::string& name) {
+    std::filesystem::remove(run.folder / "pictures" / name);
+  };
   try {
     for (const MethodRecord& method : run.methods)
       for (const LevelRecord& level : method.levels)
         if (const TriangleMesh* state = scene.state(method.name, level.level))
           keep(state_picture(method, level.level), scene.draw(*state));
+        else
+          remove_stale(state_picture(method, level.level));
     for (const MethodRecord& method : run.methods) {
       const std::optional<LevelPair> levels = widest_levels(method);
       if (!levels) continue;
       const TriangleMesh* coarse = scene.state(method.name, levels->coarse);
       const Image* fine = set.find(state_picture(method, levels->fine));
-      if (!coarse || !fine) continue;
+      if (!coarse || !fine) {
+        remove_stale(outline_picture(method, *levels));
+        continue;
+      }
       Image outlined = *fine;
       scene.draw_outline(outlined, *coarse);
       keep(outline_picture(method, *levels), std::move(outlined));
