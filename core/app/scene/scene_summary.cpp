@@ -5,7 +5,7 @@
 
 #include "core/kernel/files/number_text.h"
 #include "core/kernel/interfaces/gaps.h"
-#include "core/numerics/elements/bending_stiffness.h"
+#include "core/numerics/elements/orthotropic_stiffness.h"
 
 namespace drape {
 

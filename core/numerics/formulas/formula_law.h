@@ -4,7 +4,7 @@
 
 #include "core/kernel/interfaces/material.h"
 #include "core/kernel/plugin/parameters.h"
-#include "core/numerics/elements/bending_stiffness.h"
+#include "core/numerics/elements/orthotropic_stiffness.h"
 
 namespace drape {
 

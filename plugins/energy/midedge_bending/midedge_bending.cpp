@@ -1,7 +1,7 @@
 #include "core/kernel/interfaces/energy.h"
 #include "core/kernel/plugin/parameters.h"
 #include "core/kernel/plugin/plugin.h"
-#include "core/numerics/elements/bending_stiffness.h"
+#include "core/numerics/elements/orthotropic_stiffness.h"
 #include "plugins/energy/midedge_bending/bound_midedge_bending.h"
 
 namespace drape {

@@ -5,7 +5,6 @@
 #include <array>
 #include <cmath>
 
-#include "core/numerics/elements/bending_stiffness.h"
 #include "core/numerics/elements/orthotropic_stiffness.h"
 #include "core/numerics/mesh/grain.h"
 

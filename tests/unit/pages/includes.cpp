@@ -116,7 +116,7 @@ TEST_CASE("the kernel stays small, and no folder of the core has more files than
   int lines = 0;
   for (const fs::path& file : sources_in("core/kernel"))
     lines += static_cast<int>(lines_of(fs::path(folders::source()) / file).size());
-  CHECK(lines <= 4100);
+  CHECK(lines <= 4200);
   for (const std::string& folder : folders_of_core()) {
     if (folder.rfind("core/app/", 0) == 0) continue;
     CAPTURE(folder);
