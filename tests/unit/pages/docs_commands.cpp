@@ -100,7 +100,7 @@ TEST_CASE("commands in the pages name commands, options and files that there are
 TEST_CASE("docs/reference/command.md lists every command") {
   const std::string page = pages::text_of(fs::path(folders::source()) / "docs/reference/command.md");
   const std::string cli = cli_sources();
-  const std::regex command("\\.add(?:_with_plugins)?\\(\\s*\"([a-z0-9-]+)\"");
+  const std::regex command("commands\\s*\\.add(?:_with_plugins)?\\(\\s*\"([a-z0-9-]+)\"");
   int commands = 0;
   for (std::sregex_iterator it(cli.begin(), cli.end(), command), end; it != end; ++it) {
     const std::string name = (*it)[1];
