@@ -27,7 +27,7 @@ std::string read_sweep(const fs::path& folder, RunCollection& collection) {
     throw std::runtime_error(path.string() + ": not a sweep's list of runs; is it cut short?");
   const JsonFile file(path, "run the sweep again, which writes it");
   collection.complete = collection.complete && member_of(json, "complete") == true;
-  const std::string name = text_member(json, "sweep");
+  std::string name = text_member(json, "sweep");
   collection.name += (collection.name.empty() ? "" : ", ") + name;
   for (const Json& entry : json["runs"]) {
     if (!entry.is_object()) continue;
