@@ -130,8 +130,7 @@ TEST_CASE("a start or a reference that is no regular file, or is not finite") {
         "error: e.yaml:4:8: start.ply: vertex 3 (counted from 0) has a coordinate that is not finite\n");
   CHECK(said_with(1e11) ==
         "error: e.yaml:4:8: start.ply: 1 vertex has too large a coordinate: 3 with 1e+11 m (counted from 0); "
-        "at most 1e+09 "
-        "m can be computed with: is the file in metres?\n");
+        "at most 1e+09 m can be computed with: is the file in metres?\n");
   CHECK(said_with(0.1) == "");
   CHECK_THAT(
       drape_with("check e.yaml --set cloth.side=0.1 --set 'start.translate=[9e8, 0, 0]'", folder.path).err,
@@ -218,8 +217,7 @@ TEST_CASE("each fault of a key, a value or a plugin is named where it stands") {
       {"levels: 2", "contact: [ipc, glue]", "3:16: unknown contact \"glue\"; known: ipc, shapes" + own},
       {"levels: 2", "metrics: [{type: shine}]",
        "3:18: unknown metric \"shine\"; known: curvature_consistency, distance, drape_coefficient, energy, "
-       "energy_above_end, "
-       "residuals, silhouette, stretch" +
+       "energy_above_end, residuals, silhouette, stretch" +
            own},
       {"  cascadic: {}", "  psc: {depth: 2}",
        "12:8: unknown solver \"psc\"; did you mean \"pcs\"? known: cascadic, newton, pcs"},
@@ -285,13 +283,11 @@ TEST_CASE("all errors of a config are listed in file order, those of --set last"
   text = replaced(text, "cascadic: {}", "cascadic: {prolongation: linear}");
   CHECK(said_of(text, "--set newton.max_steps=few") ==
         "error: e.yaml:2:16: \"shape\" must be \"square\", \"rectangle\", \"disc\", \"polygon\" or \"file\", "
-        "not "
-        "\"sqare\"; did you mean \"square\"?\n"
+        "not \"sqare\"; did you mean \"square\"?\n"
         "error: e.yaml:3:9: \"levels\" must be an integer, not 2.5\n"
         "error: e.yaml:4:16: \"scale\" must be a list of 3 numbers, not of 2\n"
         "error: e.yaml:7:14: \"region\" must be \"nearest\", \"ball\", \"box\", \"border\" or \"vertices\", "
-        "not "
-        "\"nearst\"; did you mean \"nearest\"?\n"
+        "not \"nearst\"; did you mean \"nearest\"?\n"
         "error: e.yaml:8:25: unknown energy \"hinje\"; did you mean \"hinge\"? known: constant_load, "
         "formula, gravity, hinge, midedge_bending, "
         "neo_hookean, pressure, quadratic_bending, strain_limit, stvk, woven\n"

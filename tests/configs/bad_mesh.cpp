@@ -73,8 +73,8 @@ TEST_CASE("a mesh that is no surface with one side up is named with the element"
   CHECK(said_of_mesh(replaced(sheet, "f 5 9 8\n", "f 5 8 9\n")) ==
         file +
             "2 edges run in the same direction in both triangles: (4, 7) in triangles 4, 7, (4, 8) in "
-            "triangles "
-            "6, 7 (counted from 0); turn one side over, so that all triangles have the same front side\n");
+            "triangles 6, 7 (counted from 0); turn one side over, so that all triangles have the same front "
+            "side\n");
   CHECK(said_of_mesh("") == file + "is empty\n");
   CHECK(said_of_mesh("v 0 0 0\n") ==
         file + "the mesh has no triangles\n" + file +

@@ -352,8 +352,7 @@ namespace {
 /// A run of the sheets in its folder `out`, with a checkpoint at every step.
 const std::string sheets_run =
     "run e.yaml --out out --method all --quiet --no-report --threads 1 --checkpoint 0 --set "
-    "newton.max_steps=8 "
-    "--set start.translate=[-0.2,-0.2,0.1015]";
+    "newton.max_steps=8 --set start.translate=[-0.2,-0.2,0.1015]";
 const std::string go_on = "run --resume out --quiet --no-report --threads 1 --checkpoint 0";
 
 long rows_in(const fs::path& file) {
@@ -564,8 +563,7 @@ TEST_CASE("Resuming a complete run returns its exit code and checks its files") 
   fs::remove(folder / "good/levels/pcs_l1.ply");
   CHECK(refused_by("run --resume good", folder.path) ==
         "error: good: the run is complete, but files are damaged or missing: levels/pcs_l0.ply, "
-        "levels/pcs_l1.ply; "
-        "run the experiment again, as in drape run good/config.yaml --out ANOTHER\n");
+        "levels/pcs_l1.ply; run the experiment again, as in drape run good/config.yaml --out ANOTHER\n");
 }
 
 TEST_CASE("A checkpoint whose values do not fit its experiment is refused before the first write") {

@@ -59,11 +59,10 @@ TEST_CASE("a start that touches an obstacle is refused, with the pairs and the l
 
 TEST_CASE("a start is checked on every level") {
   // Noise whose valleys only the finer level is fine enough for.
-  const std::string said =
-      said_of_contact(replaced(contact_experiment(), "{type: strain_limit, limit: 1.06}, ", ""),
-                      "--set contact=shapes --set 'obstacles=[{name: floor, shape: half_space}]' --set "
-                      "start.perturbation=5e-3 "
-                      "--set start.perturbation_wavelength=0.06 --set start.translate=[0,0,0.0075]");
+  const std::string said = said_of_contact(
+      replaced(contact_experiment(), "{type: strain_limit, limit: 1.06}, ", ""),
+      "--set contact=shapes --set 'obstacles=[{name: floor, shape: half_space}]' --set "
+      "start.perturbation=5e-3 --set start.perturbation_wavelength=0.06 --set start.translate=[0,0,0.0075]");
   CHECK_THAT(said, Catch::StartsWith("error: e.yaml:4:8: the start of level 1 touches: cloth triangle ") &&
                        Contains(" and floor: half_space at ("));
 }

@@ -279,8 +279,7 @@ TEST_CASE("a metric that throws leaves a note, and the run continues") {
     CHECK(method["status"] == "infeasible");
     CHECK(method["levels"][0]["message"] ==
           "energy or forces at the start are not finite: energy neo_hookean is not, as triangle 0 (0, 1, 7) "
-          "has no area "
-          "there; change the start");
+          "has no area there; change the start");
     CHECK_THAT(method["consistency"][0]["not_measured"]["curvature_consistency"].get<std::string>(),
                Catch::Matchers::StartsWith("curvature: the triangles around vertex 0 "));
   }

@@ -62,8 +62,7 @@ TEST_CASE(
   CHECK(ended.exit_code == 2);
   CHECK(ended.err ==
         "error: --levels: level 0 would have about 90000 vertices and take about 3.1 GB of memory, where "
-        "this "
-        "machine has 3.0 GB; ask for fewer vertices, or allow it with --allow-memory\n");
+        "this machine has 3.0 GB; ask for fewer vertices, or allow it with --allow-memory\n");
   const Ended allowed = Command(line + " --allow-memory", folder.path).wait();
   CHECK(allowed.err == "");
   CHECK(allowed.exit_code == 0);

@@ -267,8 +267,8 @@ TEST_CASE("A strip on its edge buckles sideways at Timoshenko's load", "[physics
       const double high = lateral_buckling(triangulation, "midedge_bending", nu, 1. / 40),
                    low = lateral_buckling(triangulation, "midedge_bending", nu, 1. / 80),
                    hinge = lateral_buckling(triangulation, "hinge", nu, 1. / 80), theory = critical_gamma(nu);
-      const double limit =
-          2 * low - high;  // theory is for a line: its clamp does not hold the section in shape
+      // Theory is for a line: its clamp does not hold the section in shape.
+      const double limit = 2 * low - high;
       row("%14s %6g %10.3f %12.3f %12.3f %12.3f %12.3f", triangulation.c_str(), nu, hinge, high, low, limit,
           theory);
       INFO(triangulation << ", ν " << nu);

@@ -156,8 +156,7 @@ TEST_CASE("an expectation needs a message") {
                "  - {name: b, expect: {status: refuse}}\n");
   CHECK(drape_with("sweep s.yaml", folder.path).err ==
         "error: s.yaml:4:23: \"expect\" of a status other than converged needs a \"message\": a part of "
-        "the expected message "
-        "then\n"
+        "the expected message then\n"
         "error: s.yaml:5:32: \"status\" must be \"converged\", \"converged_to_rounding\", \"infeasible\", "
         "\"stalled\", \"max_steps_reached\" or \"refused\", not \"refuse\"; did you mean \"refused\"?\n");
 }

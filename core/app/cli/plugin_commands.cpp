@@ -18,9 +18,8 @@ namespace drape {
 
 namespace {
 
-const std::vector<std::string> kinds = {"energy", "refiner", "contact", "solver", "metric"};
-
 int list(const std::string& asked, const Registry& registry) {
+  const std::vector<std::string>& kinds = plugin_kinds();
   if (!asked.empty() && std::find(kinds.begin(), kinds.end(), asked) == kinds.end())
     throw std::runtime_error("there is no kind \"" + excerpt(asked) + "\"; the kinds are " + joined(kinds));
   for (const std::string& kind : kinds) {
@@ -87,7 +86,7 @@ int reference(const Registry& registry) {
             << "\n## Newton\n\nThe section `newton` of an experiment applies to every method. A method's own "
                "`newton` takes precedence, key by key.\n\n"
             << describe_markdown(newton.schema);
-  for (const std::string& kind : kinds) {
+  for (const std::string& kind : plugin_kinds()) {
     std::cout << "\n## Kind: " << kind << "\n";
     for (const RegistryEntry* entry : registry.of_kind(kind))
       std::cout << "\n" << describe_markdown(*entry, &newton);

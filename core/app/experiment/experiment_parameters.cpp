@@ -96,8 +96,7 @@ void ClothParameters::declare(Declaration<ClothParameters>& d) {
       .only_with("shape", {"file"})
       .description(
           "what `grain` counts from: the x axis, projected into each triangle, or the texture coordinate u "
-          "of "
-          "the file, where that is the pattern");
+          "of the file, where that is the pattern");
 }
 
 void StartParameters::declare(Declaration<StartParameters>& d) {

@@ -120,9 +120,8 @@ void bind_model(py::module_& m) {
   py::class_<ModelHandle>(
       m, "Model",
       "The plain model of one level: the sum E of its energies, strain limits and contacts, without "
-      "friction. "
-      "Immutable. Every x is n×3 [m]; another shape raises ValueError, another dtype TypeError. With "
-      "contacts, x must be finite.")
+      "friction. Immutable. Every x is n×3 [m]; another shape raises ValueError, another dtype TypeError. "
+      "With contacts, x must be finite.")
       .def_property_readonly("level", &ModelHandle::level)
       .def_property_readonly("material", [](const ModelHandle& h) { return h.model().material(); })
       .def_property_readonly(

@@ -4,9 +4,11 @@
 
 #include <pybind11/stl.h>
 
+#include <algorithm>
 #include <vector>
 
 #include "core/app/run/runner.h"
+#include "core/kernel/files/string_utils.h"
 #include "core/kernel/plugin/abi.h"
 #include "core/kernel/plugin/loader.h"
 #include "core/kernel/threads/parallel.h"
@@ -27,16 +29,12 @@ Registry& mutable_registry() {
 }
 
 std::vector<std::pair<std::string, std::string>> plugins(const std::string& kind) {
-  std::string kinds;
+  const std::vector<std::string>& kinds = plugin_kinds();
+  if (std::find(kinds.begin(), kinds.end(), kind) == kinds.end())
+    throw py::value_error("there is no kind \"" + kind + "\"; the kinds are " + joined(kinds));
   std::vector<std::pair<std::string, std::string>> names;
-  for (const char* known : {"energy", "refiner", "contact", "solver", "metric"}) {
-    kinds += (kinds.empty() ? "" : ", ") + std::string(known);
-    if (kind != known) continue;
-    for (const RegistryEntry* entry : registry().of_kind(kind))
-      names.emplace_back(entry->name, entry->summary);
-    return names;
-  }
-  throw py::value_error("there is no kind \"" + kind + "\"; the kinds are " + kinds);
+  for (const RegistryEntry* entry : registry().of_kind(kind)) names.emplace_back(entry->name, entry->summary);
+  return names;
 }
 
 /// A module that was built against other headers than the library that it found, as a plugin would be.

@@ -160,8 +160,7 @@ void bind_prototype_problem(py::module_& m) {
       .def("start", &SolverProblem::start, py::arg("level"), "The initial state of a level, n×3 [m].")
       .def("prolong", &SolverProblem::prolong, py::arg("level"), py::arg("x"),
            "A level's state on the next finer one, by linear interpolation over the rest shape, Dirichlet "
-           "vertices at "
-           "their targets.")
+           "vertices at their targets.")
       .def("begin", &SolverProblem::begin, py::arg("level"), "Begin a level, finer than the last.")
       .def("iteration", &SolverProblem::iteration, py::arg("x"), py::arg("energy") = py::none(),
            py::arg("force_residual") = py::none(), py::arg("step_length") = 1.0,

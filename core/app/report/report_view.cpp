@@ -4,7 +4,6 @@
 #include <map>
 #include <stdexcept>
 
-#include "core/app/files/yaml_file.h"
 #include "core/app/report/recorded_snapshots.h"
 #include "core/app/view/view_document.h"
 #include "core/kernel/files/message_text.h"
@@ -62,9 +61,7 @@ void add_declared(const RunData& run, const MethodRecord& method, int level, Sta
 
 /// The grain of the run's cloth, if it has one.
 std::optional<Grain> grain_of(const RunData& run) {
-  ConfigErrors unread;
-  const ConfigNode config = parse_yaml(run.configuration, "config.yaml", unread);
-  const ConfigNode* cloth = config.find("cloth");
+  const ConfigNode* cloth = run.config.find("cloth");
   const ConfigNode *angle = cloth ? cloth->find("grain") : nullptr,
                    *along = cloth ? cloth->find("grain_along") : nullptr;
   const std::optional<double> degrees = angle ? parse_number(angle->scalar) : std::nullopt;
@@ -120,9 +117,10 @@ Json states_json(const RunData& run, const LevelRecord& level, const State& last
 ReportView view_of(const RunData& run) {
   ReportView view;
   std::vector<Level> levels;
+  const std::optional<Grain> grain = grain_of(run);
   for (int l = 0; l <= run.finest_level(); ++l) {
     TriangleMesh rest = run.mesh(rest_file(l));
-    rest.grain = grain_of(run);
+    rest.grain = grain;
     levels.push_back(Level::of(l, std::move(rest)));
   }
   std::vector<TriangleMesh> obstacles;

@@ -76,9 +76,8 @@ void check_material(const ExperimentParameters& p, const SceneSummary& s, Warnin
 void check_contact(const SceneSummary& s, Warnings& warnings) {
   if (s.dhat > largest_dhat * s.median_edge)
     warnings.add("contact", "the contact distance dhat of " + length_text(s.dhat) +
-                                " is longer than most edges"
-                                " of level " +
-                                std::to_string(s.level) + " (" + length_text(s.median_edge) +
+                                " is longer than most edges of level " + std::to_string(s.level) + " (" +
+                                length_text(s.median_edge) +
                                 "); a tenth to a half of an edge is usual; lower \"dhat\", or take fewer "
                                 "vertices or levels");
   for (std::size_t i = 0; i < s.obstacles.size(); ++i)

@@ -70,11 +70,7 @@ void declare_material(Declaration<Struct>& d) {
       .source("supplement, Table 2");
   const auto measured = [&](const char* name, std::optional<double> Material::*member, const char* unit,
                             const char* description) {
-    d.add(name, static_cast<std::optional<double> Struct::*>(member))
-        .unit(unit)
-        .at_least(1e-12)
-        .at_most(bounds::largest_modulus)
-        .description(description);
+    d.add(name, member).unit(unit).at_least(1e-12).at_most(bounds::largest_modulus).description(description);
   };
   measured("warp_stiffness", &Material::warp_stiffness, "N/m",
            "force per width over strain of a strip along warp, in place of `membrane_modulus`; null: that "

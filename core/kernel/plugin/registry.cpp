@@ -72,6 +72,11 @@ const RegistryEntry* Registry::find(const std::string& kind, const std::string& 
   return nullptr;
 }
 
+const std::vector<std::string>& plugin_kinds() {
+  static const std::vector<std::string> kinds = {"energy", "refiner", "contact", "solver", "metric"};
+  return kinds;
+}
+
 std::vector<const RegistryEntry*> Registry::of_kind(const std::string& kind) const {
   std::vector<const RegistryEntry*> found;
   for (const auto& entry : entries_)

@@ -10,9 +10,12 @@
 
 namespace drape {
 
+/// "energy", "refiner", "contact", "solver", "metric": one for each interface in core/kernel/interfaces.
+const std::vector<std::string>& plugin_kinds();
+
 /// One plugin that experiments choose by name.
 struct RegistryEntry {
-  std::string kind;     ///< "energy", "refiner", "contact", "solver", "metric"
+  std::string kind;     ///< one of plugin_kinds
   std::string name;     ///< as written in YAML, snake_case
   std::string summary;  ///< one sentence
   std::string library;  ///< path of its shared library

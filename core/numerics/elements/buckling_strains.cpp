@@ -40,7 +40,12 @@ struct Relaxed {
 
   Relaxed(const StrainLaw& law, const Vector3d& g, const double* place, double s, const Wrinkles& p) {
     using J = Jet<N, double>;
-    const auto strain = [&](int i) { return N == 6 ? J::variable(g[i], (3 + i) % N) : J(g[i]); };
+    const auto strain = [&](int i) {
+      if constexpr (N == 6)
+        return J::variable(g[i], 3 + i);
+      else
+        return J(g[i]);
+    };
     const J g11 = strain(0), g22 = strain(1), g12 = strain(2);
     const J q1 = J::variable(p[0], 0), q2 = J::variable(p[1], 1), angle = J::variable(p[2], 2);
     const J c11 = 1.0 + 2.0 * g11, c22 = 1.0 + 2.0 * g22, c12 = 2.0 * g12, x = cos(angle), y = sin(angle);

@@ -6,6 +6,15 @@
 
 namespace drape {
 
+namespace {
+
+/// The stiffness in shear that an isotropic material with the mean of the two has.
+double isotropic_shear(double warp, double weft, double nu) {
+  return std::sqrt(warp * weft) / (2 * (1 + nu));
+}
+
+}  // namespace
+
 OrthotropicStiffness OrthotropicStiffness::of_strips(double warp, double weft, double nu, double shear) {
   const double c = 1 / (1 - nu * nu);
   return {c * warp, c * weft, c * nu * std::sqrt(warp * weft), shear};
@@ -26,8 +35,8 @@ double OrthotropicStiffness::strip(double angle) const {
 OrthotropicStiffness membrane_stiffness(const Material& m) {
   const double warp = m.warp_stiffness.value_or(m.membrane_modulus * m.thickness),
                weft = m.weft_stiffness.value_or(warp);
-  const double isotropic = std::sqrt(warp * weft) / (2 * (1 + m.poisson_ratio));
-  return OrthotropicStiffness::of_strips(warp, weft, m.poisson_ratio, m.shear_stiffness.value_or(isotropic));
+  const double shear = m.shear_stiffness.value_or(isotropic_shear(warp, weft, m.poisson_ratio));
+  return OrthotropicStiffness::of_strips(warp, weft, m.poisson_ratio, shear);
 }
 
 OrthotropicStiffness plate_stiffness(const Material& m) {
@@ -35,7 +44,7 @@ OrthotropicStiffness plate_stiffness(const Material& m) {
                weft = m.weft_bending.value_or(warp);
   if (!m.bias_bending)
     return OrthotropicStiffness::of_strips(warp, weft, m.poisson_ratio,
-                                           std::sqrt(warp * weft) / (2 * (1 + m.poisson_ratio)));
+                                           isotropic_shear(warp, weft, m.poisson_ratio));
   const OrthotropicStiffness plate =
       OrthotropicStiffness::of_strips_with_bias(warp, weft, m.poisson_ratio, *m.bias_bending);
   if (plate.c66 > 0 && std::isfinite(plate.c66)) return plate;

@@ -48,8 +48,7 @@ void CageParameters::declare(Declaration<CageParameters>& d) {
       .below(1)
       .description(
           "alpha of the innermost cage's alpha wrap, relative to the diagonal of the mesh's bounding box; "
-          "sets "
-          "the size of the holes that are closed, and of triangles")
+          "sets the size of the holes that are closed, and of triangles")
       .source("Portaneri et al. 2022");
   d.add("offset", &P::offset)
       .unit("1")

@@ -31,8 +31,7 @@ BroadPhasePairs pairs_within_dhat(const Surface& cloth, const Positions& rest, d
            .find({rest, rest, dhat, none, none}, 0, limits, counts, found))
     throw std::runtime_error(
         "contact \"ipc\": more than 50 million pairs of the resting cloth's vertices, edges and triangles "
-        "are "
-        "within \"dhat\" of each other; lower it to half the length of an edge");
+        "are within \"dhat\" of each other; lower it to half the length of an edge");
   return found;
 }
 

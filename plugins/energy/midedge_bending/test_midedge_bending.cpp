@@ -96,6 +96,18 @@ std::vector<Eigen::Matrix2d> shapes() {
   return all;
 }
 
+constexpr double small_curvature = 1e-4;  // [1/m]
+
+/// A flat mesh with `small_curvature` times this matrix as the curvatures of its surface.
+Positions bent(const TriangleMesh& mesh, const Eigen::Matrix2d& shape) {
+  Positions x = mesh.vertices;
+  for (auto vertex : x.rowwise()) {
+    const Eigen::Vector2d p = vertex.head<2>().transpose();
+    vertex[2] = small_curvature / 2 * p.dot(shape * p);
+  }
+  return x;
+}
+
 }  // namespace
 
 TEST_CASE(
@@ -103,14 +115,9 @@ TEST_CASE(
   for (const auto& [name, mesh] : triangulations(12)) {
     const Level level = Level::of(0, mesh);
     for (const Eigen::Matrix2d& shape : shapes()) {
-      const double curvature = 1e-4;
-      Positions x = mesh.vertices;
-      for (int i = 0; i < level.vertex_count(); ++i) {
-        const Eigen::Vector2d p = x.row(i).head<2>().transpose();
-        x(i, 2) = curvature / 2 * p.dot(shape * p);
-      }
+      const Positions x = bent(mesh, shape);
       INFO(name << ", shape\n" << shape);
-      const double expected = curvature * curvature * plate_density(shape);
+      const double expected = small_curvature * small_curvature * plate_density(shape);
       CHECK(largest_miss(inner_densities(level, x, 0), expected) < 1e-6);
       const std::vector<double> as_made = inner_densities(level, x, default_tolerance);
       double mean = 0;
@@ -133,14 +140,9 @@ TEST_CASE("midedge_bending: the rigidity by direction is the plate's on every tr
     mesh.grain = {Grain::Axis::x, grain};
     const Level level = Level::of(0, mesh);
     for (const Eigen::Matrix2d& shape : shapes()) {
-      const double curvature = 1e-4;
-      Positions x = mesh.vertices;
-      for (int i = 0; i < level.vertex_count(); ++i) {
-        const Eigen::Vector2d p = x.row(i).head<2>().transpose();
-        x(i, 2) = curvature / 2 * p.dot(shape * p);
-      }
+      const Positions x = bent(mesh, shape);
       const Eigen::Matrix2d own = to_warp.toRotationMatrix() * shape * to_warp.toRotationMatrix().transpose();
-      const double expected = curvature * curvature *
+      const double expected = small_curvature * small_curvature *
                               (0.5 * (c.c11 * own(0, 0) * own(0, 0) + c.c22 * own(1, 1) * own(1, 1)) +
                                c.c12 * own(0, 0) * own(1, 1) + 2 * c.c66 * own(0, 1) * own(0, 1));
       INFO(name << ", shape\n" << shape);

@@ -34,8 +34,7 @@ std::shared_ptr<ContactModel> an_open_floor(double height) {
 std::shared_ptr<ContactModel> a_plate(double x) {
   return make_plugin_from<ContactModel>(
       "{type: shapes, stiffness: 100, friction: 0.3, obstacles: [{name: plate, shape: box, size: [1, 1, "
-      "0.2], "
-      "translate: [" +
+      "0.2], translate: [" +
       std::to_string(x) + ", 0, -0.1]}]}");
 }
 

@@ -44,6 +44,14 @@ AdjacencyList pairs_of(const BroadPhase& phase) {
   return pairs;
 }
 
+void check_pairs(const BroadPhase& phase, const AdjacencyList& own, const BroadPhase& other,
+                 const AdjacencyList& with_other) {
+  check_same(pairs_of(phase), own);
+  AdjacencyList found;
+  REQUIRE(phase.overlaps(other, unlimited, found));
+  check_same(found, with_other);
+}
+
 }  // namespace
 
 TEST_CASE("broad phase: a box bounds its points despite rounding") {
@@ -92,10 +100,7 @@ TEST_CASE("broad phase: every kind finds the pairs of a brute-force search") {
         const auto phase = make_broad_phase(kind), other = make_broad_phase(kind);
         phase->update(boxes);
         other->update(others);
-        check_same(pairs_of(*phase), own_pairs);
-        AdjacencyList found;
-        REQUIRE(phase->overlaps(*other, unlimited, found));
-        check_same(found, pairs);
+        check_pairs(*phase, own_pairs, *other, pairs);
       }
     }
 }
@@ -133,10 +138,7 @@ TEST_CASE("broad phase: boxes of primitives that share a vertex are no pair") {
       const auto phase = make_broad_phase(kind, vertices), other = make_broad_phase(kind, others);
       phase->update(boxes);
       other->update(points);
-      check_same(pairs_of(*phase), own);
-      AdjacencyList found;
-      REQUIRE(phase->overlaps(*other, unlimited, found));
-      check_same(found, against);
+      check_pairs(*phase, own, *other, against);
     }
   }
 }
