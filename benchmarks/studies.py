@@ -63,6 +63,10 @@ STUDIES = {
         "run": [["{drape}", "sweep", f"configs/hard/sweeps/{name}.yaml", "-o", "{out}/" + name, "-q"] for name in HARD],
         "gather": [["configs/hard/write_tables", "{drape}", "{out}", "{results}"]],
         "records": ["hard.json", "hard.md", "hard_remedies.json", "hard_remedies.md"]},
+    "cusick": {
+        "what": "drape coefficients of fabrics", "timed": False, "starts": 5, "run": [sweep("cusick")],
+        "gather": [[">{results}/cusick.csv", "{drape}", "table", "{out}", "--format", "csv", "--columns",
+                    "run,seed,status,drape_coefficient,folds,intersections"]], "records": ["cusick.csv"]},
     "table1": {
         "what": "the supplement's Table 1", "timed": False, "starts": 1, "meshes": MESHES, "partial": True, "run": [sweep("table1")],
         "gather": [["benchmarks/table1", "{out}", "{results}/table1"]], "records": ["table1.json", "table1.md"]},

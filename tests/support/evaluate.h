@@ -1,6 +1,7 @@
 #pragma once
 
 #include "core/kernel/interfaces/energy.h"
+#include "core/numerics/mesh/grain.h"
 #include "core/numerics/model/hessian_assembler.h"
 #include "core/numerics/model/objective.h"
 #include "tests/support/dense_matrix.h"
@@ -14,6 +15,12 @@ inline drape::Positions gradient_of(const drape::BoundEnergy& energy, const drap
 inline double value_of(drape::Objective& objective, const drape::Positions& x) {
   drape::Positions g;
   return objective.gradient(x, g);
+}
+
+/// The cloth's warp at this angle from x everywhere [degree].
+inline drape::Positions warp_at(const drape::TriangleMesh& mesh, double angle) {
+  return drape::cut_directions(mesh, drape::GrainAxis::x,
+                               Eigen::VectorXd::Constant(mesh.triangles.rows(), angle));
 }
 
 /// ∂f/∂x by central differences of fourth order with step h [m]; f is a number or an Eigen vector or matrix,

@@ -46,6 +46,9 @@ void print_sheet(const Material& material) {
   print_row("flexural rigidity G", bending, standard_gravity * 1e-8, "mg cm");
   print_row("bending rigidity B", bending, 1e-6, "µN m (FAST-2)");
   print_row("", bending, standard_gravity * 1e-5, "gf cm²/cm (KES-FB2)");
+  if (material.bending_hysteresis > 0)
+    std::cout << padded("hysteresis 2HB", 22) << 1e3 * material.bending_hysteresis << " mN, "
+              << material.bending_hysteresis / (standard_gravity * 1e-3) << " gf cm/cm (KES-FB2)\n";
   print_row("tensile stiffness", strips(membrane_stiffness(material)), 1, "N/m");
 }
 

@@ -28,9 +28,34 @@ TriangleMesh make_grid(const ClothParameters& c, const Eigen::Vector2d& size) {
 TriangleMesh read_cloth(const ClothParameters& c) {
   TriangleMesh mesh = read_mesh(c.file);
   c.convert(mesh.vertices);
+  c.convert(mesh.warp);
   mesh.vertices *= c.scale;
-  if (!c.rotate.isZero(0)) mesh.vertices *= rotation_matrix(c.rotate).transpose();
+  if (!c.rotate.isZero(0))
+    for (Positions* rows : {&mesh.vertices, &mesh.warp}) *rows *= rotation_matrix(c.rotate).transpose();
+  if (c.scale < 0) mesh.warp *= -1;
   return mesh;
+}
+
+/// Gives the cloth its warp; returns the faults of its grain.
+std::vector<std::string> cut(TriangleMesh& cloth, const ClothParameters& c) {
+  if (cloth.warp.rows() > 0) cloth.warp = projected_warp(cloth.warp, cloth);
+  if (!c.grain && c.grain_regions.empty()) return {};
+  Eigen::VectorXd angles = Eigen::VectorXd::Constant(cloth.triangles.rows(), c.grain.value_or(0));
+  for (std::size_t i = 0; i < c.grain_regions.size(); ++i) {
+    const GrainRegionParameters& region = c.grain_regions[i];
+    bool any = false;
+    for (Eigen::Index t = 0; t < angles.size(); ++t) {
+      const Eigen::Vector3d centroid = cloth.vertices(cloth.triangles.row(t), Eigen::all).colwise().mean();
+      if ((centroid.array() < region.lower.array()).any() || (centroid.array() > region.upper.array()).any())
+        continue;
+      angles[t] = region.grain, any = true;
+    }
+    if (!any)
+      return {"\"grain_regions\": entry " + std::to_string(i) + " has no triangle's centroid; widen its box"};
+  }
+  std::vector<std::string> faults = grain_faults(cloth, c.grain_along);
+  if (faults.empty()) cloth.warp = cut_directions(cloth, c.grain_along, angles);
+  return faults;
 }
 
 TriangleMesh make_cloth(const Experiment& e) {
@@ -88,9 +113,8 @@ std::optional<TriangleMesh> checked_cloth(const Experiment& e, ConfigErrors& err
   const ClothParameters& c = e.parameters.cloth;
   try {
     TriangleMesh cloth = make_cloth(e);
-    if (c.grain) cloth.grain = {c.grain_along, *c.grain};
     std::vector<std::string> faults = check_mesh(cloth);
-    if (faults.empty()) faults = grain_faults(cloth);
+    if (faults.empty()) faults = cut(cloth, c);
     for (const std::string& fault : faults)
       errors.push_back({e.location_of("cloth"), (c.shape == "file" ? c.file + ": " : "") + fault});
     if (faults.empty()) return cloth;

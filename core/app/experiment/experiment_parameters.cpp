@@ -91,12 +91,36 @@ void ClothParameters::declare(Declaration<ClothParameters>& d) {
       .at_most(bounds::largest_angle)
       .description(
           "direction of warp on the rest shape, from `grain_along` counter-clockwise seen from the cloth's "
-          "front; null: along x, and neither exported nor drawn");
-  d.add_choice("grain_along", &ClothParameters::grain_along, {{"x", Grain::Axis::x}, {"u", Grain::Axis::u}})
+          "front; null: that of the file's faces, or along x, neither exported nor drawn");
+  d.add_choice("grain_along", &ClothParameters::grain_along,
+               {{"x", GrainAxis::x}, {"u", GrainAxis::u}, {"file", GrainAxis::file}})
       .only_with("shape", {"file"})
       .description(
-          "what `grain` counts from: the x axis, projected into each triangle, or the texture coordinate u "
-          "of the file, where that is the pattern");
+          "what `grain` counts from: the x axis, projected into each triangle, the texture coordinate u of "
+          "the file, where that is the pattern, or the faces' `warp_x`, `warp_y`, `warp_z` of a PLY file");
+  d.add_sections("grain_regions", &ClothParameters::grain_regions)
+      .description("parts of the cloth that were cut at another angle; later ones take precedence");
+}
+
+void GrainRegionParameters::declare(Declaration<GrainRegionParameters>& d) {
+  d.add("lower", &GrainRegionParameters::lower)
+      .unit("m")
+      .at_least(-bounds::largest_coordinate)
+      .at_most(bounds::largest_coordinate)
+      .required()
+      .description("lower corner of a box of the rest shape; triangles belong to it by their centroids");
+  d.add("upper", &GrainRegionParameters::upper)
+      .unit("m")
+      .at_least(-bounds::largest_coordinate)
+      .at_most(bounds::largest_coordinate)
+      .required()
+      .description("upper corner of the box");
+  d.add("grain", &GrainRegionParameters::grain)
+      .unit("degree")
+      .at_least(-bounds::largest_angle)
+      .at_most(bounds::largest_angle)
+      .required()
+      .description("direction of warp there, as `cloth.grain`");
 }
 
 void StartParameters::declare(Declaration<StartParameters>& d) {

@@ -6,8 +6,9 @@
 #include <vector>
 
 #include "core/kernel/interfaces/material.h"
-#include "core/kernel/interfaces/triangle_mesh.h"
 #include "core/kernel/plugin/declared_numbers.h"
+#include "core/numerics/mesh/grain.h"
+#include "core/numerics/mesh/grain.h"
 #include "core/numerics/mesh_files/file_coordinates.h"
 #include "core/numerics/step/newton_parameters.h"
 
@@ -23,6 +24,13 @@ struct LoopParameters {
 struct MaterialParameters : Material {
   ConfigNode fabric;  ///< NAME, or {file, row}
   static void declare(Declaration<MaterialParameters>& d);
+};
+
+/// A box of the rest shape whose triangles, by their centroids, have a grain of their own.
+struct GrainRegionParameters {
+  Eigen::Vector3d lower{0, 0, 0}, upper{0, 0, 0};
+  double grain = 0;
+  static void declare(Declaration<GrainRegionParameters>& d);
 };
 
 /// The coarsest level: a flat pattern, or a mesh file that is read by its FileCoordinates, scaled, then
@@ -41,7 +49,8 @@ struct ClothParameters : FileCoordinates {
   int columns = 0, rows = 0;
   int seed = 1;
   std::optional<double> grain;
-  Grain::Axis grain_along = Grain::Axis::x;
+  GrainAxis grain_along = GrainAxis::x;
+  std::vector<GrainRegionParameters> grain_regions;
   static void declare(Declaration<ClothParameters>& d);
 };
 

@@ -33,6 +33,7 @@ constexpr Column columns[] = {
     {"warp_bending", "warp_bending"},
     {"weft_bending", "weft_bending"},
     {"bias_bending", "bias_bending"},
+    {"bending_hysteresis", "bending_hysteresis"},
     // ClothDrapeTester's dataset.csv (Feng et al. 2022)
     {"density[kg.m-2]", "mass"},
     {"linear warp[SI*1e9]", "warp_bending", 1e-9},

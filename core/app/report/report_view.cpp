@@ -59,16 +59,6 @@ void add_declared(const RunData& run, const MethodRecord& method, int level, Sta
     }
 }
 
-/// The grain of the run's cloth, if it has one.
-std::optional<Grain> grain_of(const RunData& run) {
-  const ConfigNode* cloth = run.config.find("cloth");
-  const ConfigNode *angle = cloth ? cloth->find("grain") : nullptr,
-                   *along = cloth ? cloth->find("grain_along") : nullptr;
-  const std::optional<double> degrees = angle ? parse_number(angle->scalar) : std::nullopt;
-  if (!degrees) return std::nullopt;
-  return Grain{along && along->scalar == "u" ? Grain::Axis::u : Grain::Axis::x, *degrees};
-}
-
 States read_states(const RunData& run, const std::vector<Level>& levels, const ViewDocument& document) {
   States states;
   for (const MethodRecord& method : run.methods)
@@ -117,12 +107,7 @@ Json states_json(const RunData& run, const LevelRecord& level, const State& last
 ReportView view_of(const RunData& run) {
   ReportView view;
   std::vector<Level> levels;
-  const std::optional<Grain> grain = grain_of(run);
-  for (int l = 0; l <= run.finest_level(); ++l) {
-    TriangleMesh rest = run.mesh(rest_file(l));
-    rest.grain = grain;
-    levels.push_back(Level::of(l, std::move(rest)));
-  }
+  for (int l = 0; l <= run.finest_level(); ++l) levels.push_back(Level::of(l, run.mesh(rest_file(l))));
   std::vector<TriangleMesh> obstacles;
   for (const std::string& name : run.obstacles) obstacles.push_back(run.mesh(name));
   ViewDocument document(

@@ -46,7 +46,7 @@ ViewDocument::ViewDocument(const std::vector<Level>& levels, const Obstacles& ob
     keep_(name, encode_triangles(level.rest.triangles));
     level_entries_.push_back(
         {{"vertices", level.vertex_count()}, {"triangles", level.triangle_count()}, {"block", name}});
-    if (level.rest.grain) level_entries_.back()["warp"] = warp_arrows(level);
+    if (level.rest.warp.rows() > 0) level_entries_.back()["warp"] = warp_arrows(level);
   }
   for (std::size_t k = 0; k < obstacles_.size(); ++k) {
     const std::string name = "obstacle" + std::to_string(k);

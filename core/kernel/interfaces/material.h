@@ -23,6 +23,7 @@ struct Material {
   std::optional<double> shear_stiffness;                 ///< [N/m]
   std::optional<double> warp_bending, weft_bending;      ///< rigidity of a strip along warp or weft [N·m]
   std::optional<double> bias_bending;                    ///< of a strip at 45° [N·m]
+  double bending_hysteresis = 0;                         ///< 2HB of KES-FB2 [N]
 
   static void declare(Declaration<Material>& d);
   bool operator==(const Material&) const = default;
@@ -85,6 +86,14 @@ void declare_material(Declaration<Struct>& d) {
   measured("weft_bending", &Material::weft_bending, "N m", "the same along weft; null: as along warp");
   measured("bias_bending", &Material::bias_bending, "N m",
            "the same at 45°; null: as of an isotropic cloth with the mean of warp and weft");
+  d.add("bending_hysteresis", &Struct::bending_hysteresis)
+      .unit("N")
+      .at_least(0)
+      .at_most(bounds::largest_modulus)
+      .description(
+          "2HB, width of the loop of moment against curvature: friction between yarns, which "
+          "`midedge_bending` counts as on first loading and other energies leave out")
+      .source("KES-FB2");
 }
 
 }  // namespace drape

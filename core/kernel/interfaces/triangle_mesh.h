@@ -1,7 +1,6 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <optional>
 
 namespace drape {
 
@@ -20,19 +19,12 @@ using Triangles = Eigen::Matrix<int, Eigen::Dynamic, 3, Eigen::RowMajor>;
 /// differ make a seam.
 using CornerUv = Eigen::Matrix<double, Eigen::Dynamic, 6, Eigen::RowMajor>;
 
-/// How a cloth's pattern was cut: the direction of warp at rest.
-struct Grain {
-  enum class Axis { x, u };
-  Axis along = Axis::x;  ///< the x axis, projected into each triangle, or the texture coordinate u
-  double angle = 0;      ///< of warp from there, counter-clockwise seen from the triangle's front [degree]
-};
-
 /// Vertices and triangles; a plain value.
 struct TriangleMesh {
-  Positions vertices;               ///< n×3 [m]
-  Triangles triangles;              ///< m×3
-  CornerUv uv = {};                 ///< m×6, or without rows
-  std::optional<Grain> grain = {};  ///< of a cloth; without one, warp is along x
+  Positions vertices;   ///< n×3 [m]
+  Triangles triangles;  ///< m×3
+  CornerUv uv = {};     ///< m×6, or without rows
+  Positions warp = {};  ///< m×3 unit vectors along a cloth's warp in its triangles; without rows, along x
 };
 
 }  // namespace drape

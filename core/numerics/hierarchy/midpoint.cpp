@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "core/numerics/mesh/grain.h"
 #include "core/numerics/mesh/split_triangles.h"
 #include "core/numerics/mesh/texture_coordinates.h"
 
@@ -21,8 +22,10 @@ ProlongationMatrix midpoint_weights(const Level& coarse) {
 }
 
 TriangleMesh refined_rest(const Level& coarse, const ProlongationMatrix& weights) {
-  return {weights * coarse.rest.vertices, split_triangles(coarse.rest.triangles, coarse.topology),
-          split_uv(coarse.rest.uv), coarse.rest.grain};
+  TriangleMesh fine{weights * coarse.rest.vertices, split_triangles(coarse.rest.triangles, coarse.topology),
+                    split_uv(coarse.rest.uv)};
+  fine.warp = split_warp(coarse.rest.warp, fine);
+  return fine;
 }
 
 }  // namespace drape

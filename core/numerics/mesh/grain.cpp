@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <cmath>
 #include <numbers>
+#include <stdexcept>
 
 namespace drape {
 namespace {
@@ -34,21 +35,28 @@ Vector along_u(const TriangleMesh& mesh, Eigen::Index t, const Sides& sides) {
   return sides.projected((b.y() * sides.e1 - a.y() * sides.e2) / det);
 }
 
-Vector direction(const TriangleMesh& mesh, Eigen::Index t, const Sides& sides) {
-  const bool by_u = mesh.grain && mesh.grain->along == Grain::Axis::u;
-  return by_u ? along_u(mesh, t, sides) : sides.projected(Vector::UnitX());
+Vector direction(const TriangleMesh& mesh, Eigen::Index t, const Sides& sides, GrainAxis along) {
+  if (along == GrainAxis::u) return along_u(mesh, t, sides);
+  if (along == GrainAxis::x || mesh.warp.rows() == 0) return sides.projected(Vector::UnitX());
+  return mesh.warp.row(t).transpose();
 }
 
 }  // namespace
 
 Positions warp_directions(const TriangleMesh& rest) {
+  return rest.warp.rows() > 0
+             ? rest.warp
+             : cut_directions(rest, GrainAxis::x, Eigen::VectorXd::Zero(rest.triangles.rows()));
+}
+
+Positions cut_directions(const TriangleMesh& rest, GrainAxis along, const Eigen::VectorXd& angles) {
   Positions warp(rest.triangles.rows(), 3);
   for (Eigen::Index t = 0; t < warp.rows(); ++t) {
     const Sides sides(rest, t);
-    Vector first = direction(rest, t, sides);
+    Vector first = direction(rest, t, sides, along);
     for (int axis = 0; axis < 3 && first.isZero(0); ++axis) first = sides.projected(Vector::Unit(axis));
-    if (rest.grain && rest.grain->angle != 0) {
-      const double angle = rest.grain->angle * std::numbers::pi / 180;
+    if (angles[t] != 0) {
+      const double angle = angles[t] * std::numbers::pi / 180;
       first = std::cos(angle) * first + std::sin(angle) * sides.normal.cross(first);
     }
     warp.row(t) = first.transpose();
@@ -56,18 +64,41 @@ Positions warp_directions(const TriangleMesh& rest) {
   return warp;
 }
 
-std::vector<std::string> grain_faults(const TriangleMesh& rest) {
-  if (!rest.grain) return {};
-  const bool by_u = rest.grain->along == Grain::Axis::u;
-  if (by_u && rest.uv.rows() == 0)
+std::vector<std::string> grain_faults(const TriangleMesh& rest, GrainAxis along) {
+  if (along == GrainAxis::u && rest.uv.rows() == 0)
     return {"\"grain_along: u\" needs a mesh with texture coordinates; write \"grain_along: x\""};
+  if (along == GrainAxis::file && rest.warp.rows() == 0)
+    return {
+        "\"grain_along: file\" needs a PLY file whose faces have warp_x, warp_y and warp_z; write "
+        "\"grain_along: x\""};
   for (Eigen::Index t = 0; t < rest.triangles.rows(); ++t)
-    if (direction(rest, t, Sides(rest, t)).isZero(0))
+    if (direction(rest, t, Sides(rest, t), along).isZero(0))
       return {"\"grain\" has no direction in triangle " + std::to_string(t) +
-              (by_u ? ", whose texture coordinates have no area; unwrap it, or write \"grain_along: x\""
-                    : ", which is normal to x; turn the mesh with \"rotate\", or give it texture "
-                      "coordinates and write \"grain_along: u\"")};
+              (along == GrainAxis::u
+                   ? ", whose texture coordinates have no area; unwrap it, or write \"grain_along: x\""
+                   : ", which is normal to x; turn the mesh with \"rotate\", or give it texture "
+                     "coordinates and write \"grain_along: u\"")};
   return {};
+}
+
+Positions split_warp(const Positions& coarse, const TriangleMesh& fine) {
+  if (coarse.rows() == 0) return {};
+  Positions warp(4 * coarse.rows(), 3);
+  for (Eigen::Index t = 0; t < coarse.rows(); ++t)
+    warp.middleRows<4>(4 * t) = coarse.row(t).colwise().replicate<4>();
+  return projected_warp(warp, fine);
+}
+
+Positions projected_warp(const Positions& directions, const TriangleMesh& mesh) {
+  Positions warp(directions.rows(), 3);
+  for (Eigen::Index t = 0; t < warp.rows(); ++t) {
+    const Vector own = Sides(mesh, t).projected(directions.row(t).transpose());
+    if (!(own.norm() > 0))
+      throw std::runtime_error("the direction of warp in triangle " + std::to_string(t) +
+                               " has no part in the triangle's plane");
+    warp.row(t) = own.transpose();
+  }
+  return warp;
 }
 
 }  // namespace drape

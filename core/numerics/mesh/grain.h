@@ -7,12 +7,27 @@
 
 namespace drape {
 
-/// The direction of warp of each triangle at rest, m×3 unit vectors in the triangles' planes. Where the axis
-/// is a triangle's normal, the next axis of the frame stands for it; where texture coordinates have no area,
-/// the x axis.
+/// Where a cloth's grain is counted from: the x axis, projected into each triangle, the texture coordinate u,
+/// or the directions that the mesh has (TriangleMesh::warp), such as those of its file.
+enum class GrainAxis { x, u, file };
+
+/// The direction of warp of each triangle at rest, m×3 unit vectors in the triangles' planes: the mesh's own,
+/// or along x. Where x is a triangle's normal, the next axis stands for it.
 Positions warp_directions(const TriangleMesh& rest);
 
-/// The first triangle in which the mesh's grain has no direction, and why; empty without a grain.
-std::vector<std::string> grain_faults(const TriangleMesh& rest);
+/// The directions of a pattern that was cut at these angles from the axis, one a triangle, counter-clockwise
+/// seen from the triangle's front [degree]. Where texture coordinates have no area, the x axis stands for u.
+Positions cut_directions(const TriangleMesh& rest, GrainAxis along, const Eigen::VectorXd& angles);
+
+/// The first triangle in which the axis has no direction, and why.
+std::vector<std::string> grain_faults(const TriangleMesh& rest, GrainAxis along);
+
+/// Directions of the coarse mesh for the four parts of each triangle, within the fine mesh's planes. Without
+/// rows if there are none.
+Positions split_warp(const Positions& coarse, const TriangleMesh& fine);
+
+/// Unit vectors within the triangles' planes that are nearest to these. Throws std::runtime_error naming a
+/// triangle to which its vector is normal.
+Positions projected_warp(const Positions& directions, const TriangleMesh& mesh);
 
 }  // namespace drape

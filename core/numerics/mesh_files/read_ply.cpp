@@ -93,11 +93,16 @@ class PlyBody {
 struct PlyFace {
   std::vector<int> corners;
   std::vector<double> uv;  ///< u and v of each corner; empty for a face without
+  std::array<double, 3> warp{};
 };
+
+constexpr std::array<const char*, 3> warp_names{"warp_x", "warp_y", "warp_z"};
 
 struct PlyContent {
   MeshBuilder mesh;
   std::vector<PlyFace> faces;
+  bool has_warp = false;                     ///< of the faces
+  std::vector<double> warp;                  ///< 3m, or none
   std::vector<std::string> names;            ///< scalar vertex properties
   std::vector<std::vector<double>> columns;  ///< their values
 
@@ -147,6 +152,13 @@ bool holds_corners(const PlyProperty& p) {
   return p.count_type && (p.name == "vertex_indices" || p.name == "vertex_index");
 }
 
+bool has_warp(const PlyElement& faces) {
+  return std::all_of(warp_names.begin(), warp_names.end(), [&](const std::string& name) {
+    return std::any_of(faces.properties.begin(), faces.properties.end(),
+                       [&](const PlyProperty& p) { return !p.count_type && p.name == name; });
+  });
+}
+
 int corner(const PlyBody& body, double v, int vertex_count) {
   if (!(v >= 0 && v < vertex_count && v == std::floor(v)))
     body.fail("vertex " + exact_text(v) + " is not in 0 … " + std::to_string(vertex_count - 1));
@@ -161,7 +173,7 @@ void add_face(const PlyBody& body, const std::vector<double>& values, const std:
   const bool finite = std::all_of(uv.begin(), uv.end(), [](double number) { return std::isfinite(number); });
   if (!uv.empty() && (uv.size() != 2 * face.size() || !finite))
     body.fail("list 'texcoord' needs two finite numbers for each corner");
-  faces.push_back({std::move(face), uv});
+  faces.push_back({std::move(face), uv, {}});
 }
 
 /// Strips end with -1 or the list. Every second triangle of a strip is turned over, and one that repeats a
@@ -178,7 +190,7 @@ void add_strips(const PlyBody& body, const std::vector<double>& values, const st
     if (strip.size() < 3) continue;
     std::array<int, 3> t{strip.end()[-3], strip.end()[-2], strip.end()[-1]};
     if (strip.size() % 2 == 0) std::swap(t[0], t[1]);
-    if (t[0] != t[1] && t[1] != t[2] && t[2] != t[0]) faces.push_back({{t.begin(), t.end()}, {}});
+    if (t[0] != t[1] && t[1] != t[2] && t[2] != t[0]) faces.push_back({{t.begin(), t.end()}, {}, {}});
   }
 }
 
@@ -187,12 +199,19 @@ template <class Add>
 void read_faces(PlyBody& body, const PlyElement& element, int vertex_count, std::vector<PlyFace>& faces,
                 const Add& add) {
   std::vector<double> corners, uv;
+  std::array<double, 3> warp{};
+  const auto on_number = [&](const PlyProperty& p, double value) {
+    for (int k = 0; k < 3; ++k)
+      if (p.name == warp_names[k]) warp[k] = value;
+  };
   const auto on_list = [&](const PlyProperty& p, const std::vector<double>& values) {
     if (holds_corners(p)) corners = values;
     if (p.name == "texcoord") uv = values;
   };
-  read_element(body, element, ignore, on_list, [&] {
+  read_element(body, element, on_number, on_list, [&] {
+    const std::size_t before = faces.size();
     add(body, corners, uv, vertex_count, faces);
+    for (std::size_t i = before; i < faces.size(); ++i) faces[i].warp = warp;
     uv.clear();
   });
 }
@@ -227,7 +246,7 @@ PlyContent read_content(const std::filesystem::path& path, std::string_view byte
     if (element.name == "vertex")
       read_vertices(body, element, content);
     else if (element.name == "face")
-      read_faces(body, element, vertex_count, content.faces, add_face);
+      content.has_warp = has_warp(element), read_faces(body, element, vertex_count, content.faces, add_face);
     else if (element.name == "tristrips")
       read_faces(body, element, vertex_count, content.faces, add_strips);
     else
@@ -248,10 +267,13 @@ PlyContent read_content(const std::filesystem::path& path, std::string_view byte
       content.mesh.coordinates[3 * v + axis] = column[v];
     }
   }
-  for (const PlyFace& face : content.faces)
+  for (const PlyFace& face : content.faces) {
     content.mesh.add_face(face.corners, face.uv, [&](const std::string& why) {
       throw std::runtime_error(path.string() + ": " + why);
     });
+    while (content.has_warp && content.warp.size() < content.mesh.corners.size())
+      content.warp.insert(content.warp.end(), face.warp.begin(), face.warp.end());
+  }
   return content;
 }
 
@@ -274,6 +296,7 @@ void set_uv_of_vertices(const PlyContent& content, TriangleMesh& mesh) {
 TriangleMesh read_ply(const std::filesystem::path& path, std::string_view bytes) {
   const PlyContent content = read_content(path, bytes);
   TriangleMesh mesh = content.mesh.mesh();
+  mesh.warp = Eigen::Map<const Positions>(content.warp.data(), std::ssize(content.warp) / 3, 3);
   if (mesh.uv.rows() == 0) set_uv_of_vertices(content, mesh);
   return mesh;
 }

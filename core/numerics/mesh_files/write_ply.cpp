@@ -4,7 +4,6 @@
 #include <cstring>
 
 #include "core/kernel/files/file.h"
-#include "core/numerics/mesh/grain.h"
 #include "core/numerics/mesh_files/io.h"
 #include "core/numerics/mesh_files/io_formats.h"
 
@@ -31,8 +30,8 @@ std::string ply_bytes(const TriangleMesh& mesh, const VertexFields& fields) {
       "element face " + std::to_string(mesh.triangles.rows()) + "\nproperty list uchar int vertex_indices\n";
   const bool with_uv = mesh.uv.rows() > 0;
   if (with_uv) bytes += "property list uchar double texcoord\n";
-  const Positions warp = mesh.grain ? warp_directions(mesh) : Positions();
-  if (mesh.grain) bytes += "property double warp_x\nproperty double warp_y\nproperty double warp_z\n";
+  const bool with_warp = mesh.warp.rows() > 0;
+  if (with_warp) bytes += "property double warp_x\nproperty double warp_y\nproperty double warp_z\n";
   bytes += "end_header\n";
   for (int v = 0; v < mesh.vertices.rows(); ++v) {
     for (int k = 0; k < 3; ++k) append(bytes, mesh.vertices(v, k));
@@ -43,7 +42,7 @@ std::string ply_bytes(const TriangleMesh& mesh, const VertexFields& fields) {
     for (int k = 0; k < 3; ++k) append(bytes, std::int32_t{mesh.triangles(t, k)});
     if (with_uv) append(bytes, std::uint8_t{6});
     for (int k = 0; with_uv && k < 6; ++k) append(bytes, mesh.uv(t, k));
-    for (int k = 0; mesh.grain && k < 3; ++k) append(bytes, warp(t, k));
+    for (int k = 0; with_warp && k < 3; ++k) append(bytes, mesh.warp(t, k));
   }
   return bytes;
 }

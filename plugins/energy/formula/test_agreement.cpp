@@ -148,7 +148,7 @@ TEST_CASE("an isotropic formula buckles below the mesh as the compiled law does"
 TEST_CASE("warp is along the grain, wherever corners begin") {
   const auto energy = [&](double grain, const Eigen::Vector3d& stretch) {
     TriangleMesh mesh = grid({0.1, 0.1}, 5, 5, Diagonals::criss_cross);
-    mesh.grain = {Grain::Axis::x, grain};
+    mesh.warp = warp_at(mesh, grain);
     const Level level = Level::of(0, mesh);
     const auto bound = make_plugin_from<Energy>(
                            "{type: formula, constants: {m: {value: 30, unit: N/m}}, density: \"m*g11^2\"}")

@@ -32,7 +32,8 @@ std::vector<int> positions_in(const ElementOrder& order) {
 
 }  // namespace
 
-BoundMidedgeBending::BoundMidedgeBending(const Level& level, const ShapeOperators& operators)
+BoundMidedgeBending::BoundMidedgeBending(const Level& level, const ShapeOperators& operators,
+                                         const BendingFriction& friction)
     : angle_order_(level.hinge_order), angle_count_(static_cast<int>(level.hinges.rows())) {
   make_angles(level);
 
@@ -49,6 +50,14 @@ BoundMidedgeBending::BoundMidedgeBending(const Level& level, const ShapeOperator
   stencils_.topLeftCorner(angle_count_, 4) = in_order(level.hinges, angle_order_);
   stencils_.bottomLeftCorner(vertices.rows(), vertices.cols()) = in_order(vertices, triangle_order_);
   make_terms(operators, positions_in(angle_order_));
+  if (friction.f == 0) return;
+  for (const int t : triangle_order_.elements) {
+    const auto at = [&](int k) -> Eigen::Vector3d {
+      return level.rest.vertices.row(level.rest.triangles(t, k));
+    };
+    const double area = (at(1) - at(0)).cross(at(2) - at(0)).norm() / 2;
+    friction_.push_back({friction.f * std::sqrt(area), friction.q0 * area});
+  }
 }
 
 void BoundMidedgeBending::make_angles(const Level& level) {
@@ -150,13 +159,20 @@ Eigen::Vector3d BoundMidedgeBending::numbers_of(int triangle, const std::vector<
   return sum;
 }
 
+BoundMidedgeBending::Density BoundMidedgeBending::density(int triangle, double q) const {
+  if (friction_.empty()) return {q, 1, 0};
+  const auto [f, q0] = friction_[triangle];
+  const double root = std::sqrt(q + q0);
+  return {q + f * (q / (root + std::sqrt(q0))), 1 + f / (2 * root), -f / (4 * root * (q + q0))};
+}
+
 double BoundMidedgeBending::value(const Positions& x) const {
   const std::vector<double> bend = bends(x);
   const double sum = parallel_sum(static_cast<int>(triangle_order_.elements.size()), triangles_at_once,
                                   [&](int begin, int end) {
                                     double own = 0;
                                     for (int t = begin; t < end; ++t)
-                                      own += numbers_of(t, bend).squaredNorm();
+                                      own += density(t, numbers_of(t, bend).squaredNorm()).value;
                                     return own;
                                   });
   return std::isnan(sum) ? std::numeric_limits<double>::infinity() : sum;
@@ -168,7 +184,12 @@ double BoundMidedgeBending::add_gradient(const Positions& x, Positions& g) const
   const double sum =
       parallel_sum(static_cast<int>(numbers.size()), triangles_at_once, [&](int begin, int end) {
         double own = 0;
-        for (int t = begin; t < end; ++t) own += (numbers[t] = numbers_of(t, bend)).squaredNorm();
+        for (int t = begin; t < end; ++t) {
+          numbers[t] = numbers_of(t, bend);
+          const Density phi = density(t, numbers[t].squaredNorm());
+          own += phi.value;
+          numbers[t] *= phi.first;
+        }
         return own;
       });
   angle_order_.for_each_chunk([&](int c) {
@@ -198,9 +219,12 @@ Pack<BoundMidedgeBending::W> BoundMidedgeBending::moments(const Angles& pack, co
 void BoundMidedgeBending::add_hessian(const Positions& x, Projection projection, BlockSink& sink) const {
   std::vector<AngleGradient> gradients;
   const std::vector<double> bend = bends(x, &gradients);
-  Numbers numbers(triangle_order_.elements.size());
+  Numbers numbers(triangle_order_.elements.size()), scaled(numbers.size());
   parallel_for(static_cast<int>(numbers.size()), triangles_at_once, [&](int begin, int end) {
-    for (int t = begin; t < end; ++t) numbers[t] = numbers_of(t, bend);
+    for (int t = begin; t < end; ++t) {
+      numbers[t] = numbers_of(t, bend);
+      scaled[t] = density(t, numbers[t].squaredNorm()).first * numbers[t];
+    }
   });
   angle_order_.for_each_chunk([&](int c) {
     for_each_angle_pack(
@@ -208,7 +232,7 @@ void BoundMidedgeBending::add_hessian(const Positions& x, Projection projection,
           Angles::Vector d[3];
           SymmetricMatrix<9, Pack<W>> h;
           pack.gather(x, d);
-          const Pack<W> moment = moments(pack, numbers);
+          const Pack<W> moment = moments(pack, scaled);
           projected_hessian(MomentKernel(), d, &moment, projection, h);
           pack.scatter(h, sink);
         });
@@ -216,12 +240,12 @@ void BoundMidedgeBending::add_hessian(const Positions& x, Projection projection,
   BlockSink own = sink.from(angle_count_);
   triangle_order_.for_each_chunk([&](int c) {
     for (int t = triangle_order_.chunk_start[c]; t < triangle_order_.chunk_start[c + 1]; ++t)
-      add_triangle(t, gradients, own);
+      add_triangle(t, numbers[t], gradients, own);
   });
 }
 
-void BoundMidedgeBending::add_triangle(int t, const std::vector<AngleGradient>& gradients,
-                                       BlockSink& sink) const {
+void BoundMidedgeBending::add_triangle(int t, const Eigen::Vector3d& numbers,
+                                       const std::vector<AngleGradient>& gradients, BlockSink& sink) const {
   using Jacobian = Eigen::Matrix3d;  // row i: ∂s_i/∂x of one vertex
   Jacobian jacobians[most_vertices];
   const auto row = stencils_.row(angle_count_ + t);
@@ -232,11 +256,16 @@ void BoundMidedgeBending::add_triangle(int t, const std::vector<AngleGradient>& 
     const AngleGradient& g = gradients[term.item];
     for (int k = 0; k < 4; ++k) jacobians[local_[i][k]] += term.weight * g[k].transpose();
   }
-  for (int b = 0; b < count; ++b)
+  const Density phi = density(t, numbers.squaredNorm());
+  const Eigen::Matrix3d inner =
+      2 * phi.first * Eigen::Matrix3d::Identity() + 4 * phi.second * numbers * numbers.transpose();
+  for (int b = 0; b < count; ++b) {
+    const Jacobian right = inner * jacobians[b];
     for (int a = 0; a <= b; ++a) {
-      const Eigen::Matrix<double, 3, 3, Eigen::RowMajor> block = 2 * jacobians[a].transpose() * jacobians[b];
+      const Eigen::Matrix<double, 3, 3, Eigen::RowMajor> block = jacobians[a].transpose() * right;
       sink.add(t, a, b, block.data());
     }
+  }
 }
 
 }  // namespace drape

@@ -9,17 +9,18 @@
 
 namespace drape {
 
-/// Σ_t ‖s_t‖², s_t = Σ weight (θ - θ̄) over the triangle's terms (see ShapeOperators).
+/// Σ_t φ_t(‖s_t‖²), s_t = Σ weight (θ - θ̄) over the triangle's terms (see ShapeOperators), φ_t(q) = q or,
+/// with friction, q + f (√(q + q0) - √q0) (see BendingFriction).
 ///
 /// Dihedral angles are computed once, in packs, and triangles then sum them: an angle belongs to up to six
-/// triangles. The Hessian, by moments m = 2 Σ_t weight·s_t of the angles, is
+/// triangles. The Hessian, by moments m = 2 Σ_t φ_t' weight·s_t of the angles, is
 ///
-///     Σ_t 2 Σ_i ∇s_t,i ∇s_t,iᵀ + Σ m ∇²θ,
+///     Σ_t ∇s_tᵀ (2 φ_t' I + 4 φ_t'' s_t s_tᵀ) ∇s_t + Σ m ∇²θ,
 ///
 /// whose first part is positive semidefinite; the second is projected for each angle.
 class BoundMidedgeBending final : public BoundEnergy {
  public:
-  BoundMidedgeBending(const Level& level, const ShapeOperators& operators);
+  BoundMidedgeBending(const Level& level, const ShapeOperators& operators, const BendingFriction& friction);
 
   double value(const Positions& x) const override;
   double add_gradient(const Positions& x, Positions& g) const override;
@@ -52,15 +53,22 @@ class BoundMidedgeBending final : public BoundEnergy {
   /// θ - θ̄ of every angle, and optionally the gradients.
   std::vector<double> bends(const Positions& x, std::vector<AngleGradient>* gradients = nullptr) const;
   Eigen::Vector3d numbers_of(int triangle, const std::vector<double>& bends) const;
+  /// φ_t, φ_t' and φ_t''.
+  struct Density {
+    double value, first, second;
+  };
+  Density density(int triangle, double q) const;
   /// ∂E/∂θ of a pack's angles.
   Pack<W> moments(const Angles& pack, const Numbers& numbers) const;
-  void add_triangle(int t, const std::vector<AngleGradient>& gradients, BlockSink& sink) const;
+  void add_triangle(int t, const Eigen::Vector3d& numbers, const std::vector<AngleGradient>& gradients,
+                    BlockSink& sink) const;
 
   // Angles and triangles are numbered by their positions in these.
   ElementOrder angle_order_, triangle_order_;
   std::vector<Angles> packs_;
   std::vector<int> first_pack_;  // of each chunk of angles, and one more
   std::vector<double> rest_angles_;
+  std::vector<BendingFriction> friction_;  // f √Ā and q0 Ā of each triangle; empty without friction
   Terms of_triangle_, of_angle_;
   // For each term of of_triangle_: columns of its angle's vertices in the triangle's row of stencils_.
   std::vector<std::array<signed char, 4>> local_;

@@ -11,7 +11,7 @@ namespace drape {
 class MidedgeBending final : public Energy {
  public:
   struct Parameters {
-    double correction_tolerance = 0.02;
+    double correction_tolerance = 0.02, sliding_curvature = 5;
 
     static void declare(Declaration<Parameters>& d) {
       d.add("correction_tolerance", &Parameters::correction_tolerance)
@@ -21,6 +21,14 @@ class MidedgeBending final : public Energy {
               "smallest weight with which a neighbouring dihedral angle corrects an edge's normal, where "
               "the triangles about the edge differ; with 1 normals are plain averages of the triangles'")
           .source("this project");
+      d.add("sliding_curvature", &Parameters::sliding_curvature)
+          .unit("1/m")
+          .at_least(1e-3)
+          .at_most(1e3)
+          .description(
+              "κ0, curvature at which friction between yarns has 71 % of its moment; of cloth with "
+              "`bending_hysteresis`")
+          .source("this project");
     }
   };
 
@@ -29,7 +37,8 @@ class MidedgeBending final : public Energy {
   double plate_stiffness(const Material& material) const override { return 2 * bending_stiffness(material); }
   std::unique_ptr<BoundEnergy> bind(const Level& level, const Material& material) const override {
     return std::make_unique<BoundMidedgeBending>(
-        level, ShapeOperators::of(level, material, parameters_.correction_tolerance));
+        level, ShapeOperators::of(level, material, parameters_.correction_tolerance),
+        BendingFriction::of(material, parameters_.sliding_curvature));
   }
 
  private:

@@ -197,6 +197,15 @@ std::array<Eigen::Vector3d, 3> edge_directions(const Eigen::Vector3d* x, const E
 
 }  // namespace
 
+BendingFriction BendingFriction::of(const Material& material, double sliding_curvature) {
+  if (material.bending_hysteresis == 0) return {};
+  const double rigidity = material.mean_bending_modulus() * std::pow(material.thickness, 3) / 12;
+  if (rigidity == 0)
+    throw std::runtime_error("midedge_bending: \"bending_hysteresis\" needs a bending rigidity above 0");
+  return {material.bending_hysteresis / 2 * std::sqrt(2 / rigidity),
+          rigidity * sliding_curvature * sliding_curvature / 2};
+}
+
 ShapeOperators ShapeOperators::of(const Level& level, const Material& material, double tolerance) {
   const PlateNorm plate(material);
   const Positions warp = plate.isotropic ? Positions() : warp_directions(level.rest);

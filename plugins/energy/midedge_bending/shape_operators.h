@@ -30,4 +30,17 @@ struct ShapeOperators {
   static ShapeOperators of(const Level& level, const Material& material, double tolerance);
 };
 
+/// Friction between the yarns of a bent cloth, as on first loading: a strip of rigidity B has the moment B κ
+/// + HB κ / √(κ² + κ0²), half the width of its hysteresis loop above the elastic one (Grosberg 1966, with the
+/// jump at κ = 0 spread over κ0). In other bends the friction is that of the strip with the same elastic
+/// energy q: together they have the energy q + f (√(q + q0) - √q0). Not of that model: a cloth that bends
+/// back loses none.
+struct BendingFriction {
+  double f = 0;   ///< HB √(2/B), for each √ of area [√J/m]
+  double q0 = 0;  ///< B κ0²/2 [J/m²]
+
+  /// κ0 in 1/m.
+  static BendingFriction of(const Material& material, double sliding_curvature);
+};
+
 }  // namespace drape

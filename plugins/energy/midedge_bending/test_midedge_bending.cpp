@@ -1,3 +1,4 @@
+#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -137,7 +138,7 @@ TEST_CASE("midedge_bending: the rigidity by direction is the plate's on every tr
   const double grain = 25;
   const Eigen::Rotation2Dd to_warp(-grain * M_PI / 180);
   for (auto& [name, mesh] : triangulations(12)) {
-    mesh.grain = {Grain::Axis::x, grain};
+    mesh.warp = warp_at(mesh, grain);
     const Level level = Level::of(0, mesh);
     for (const Eigen::Matrix2d& shape : shapes()) {
       const Positions x = bent(mesh, shape);
@@ -169,12 +170,57 @@ TEST_CASE("midedge_bending: equal rigidities are the isotropic plate, and a quar
     turn << 0, -1, 0, 1, 0, 0, 0, 0, 1;
     TriangleMesh turned = mesh;
     turned.vertices = mesh.vertices * turn.transpose();
-    turned.grain = {Grain::Axis::x, 90};
+    turned.warp = warp_at(turned, 90);
     const double own = MidedgeBending({}).bind(level, woven)->value(x),
                  after = MidedgeBending({}).bind(Level::of(0, turned), woven)->value(x * turn.transpose());
     CHECK(std::abs(own / plain - 1) > 0.1);
     CHECK(std::abs(after / own - 1) < 1e-12);
   }
+}
+
+TEST_CASE("midedge_bending: friction adds its moment to a bent strip's, and derivatives follow") {
+  Material rubbing = material;
+  const double rigidity = 2 * k * (1 - nu * nu), moment = 0.4,
+               sliding = MidedgeBending::Parameters().sliding_curvature;
+  rubbing.bending_hysteresis = 2 * moment;
+  for (auto& [name, mesh] : triangulations(5)) {
+    INFO(name);
+    const Level level = Level::of(0, mesh);
+    const auto own = MidedgeBending({}).bind(level, rubbing);
+    CHECK(own->value(mesh.vertices) == 0);
+    for (const double height : {1e-4, 0.01, 0.1}) {  // sticking to sliding
+      Positions x = mesh.vertices;
+      for (int i = 0; i < level.vertex_count(); ++i)
+        x(i, 2) = height * std::sin(7 * x(i, 0)) * std::cos(5 * x(i, 1) + 1);
+      const ShapeOperators operators = ShapeOperators::of(level, rubbing, default_tolerance);
+      double expected = 0;
+      for (int t = 0; t < level.triangle_count(); ++t) {
+        Eigen::Vector3d s = Eigen::Vector3d::Zero();
+        for (int i = operators.start[t]; i < operators.start[t + 1]; ++i)
+          s += operators.terms[i].weight * angle_at(level, x, operators.terms[i].hinge);
+        const auto at = [&](int i) -> Eigen::Vector3d { return mesh.vertices.row(mesh.triangles(t, i)); };
+        const double area = (at(1) - at(0)).cross(at(2) - at(0)).norm() / 2,
+                     curvature = std::sqrt(2 * s.squaredNorm() / (rigidity * area));  // of the strip
+        expected += s.squaredNorm() + area * moment * (std::hypot(curvature, sliding) - sliding);
+      }
+      CHECK(own->value(x) == Approx(expected));
+      CHECK(own->value(x) > bind(level)->value(x));
+      const Positions g = gradient_of(*own, x);
+      const double step = 1e-5;
+      const auto value = [&](const Positions& y) { return own->value(y); };
+      CHECK((differences(value, x, step).transpose() - flat(g)).norm() <= 1e-6 * g.norm());
+      const Eigen::MatrixXd h = dense(hessian_of(*own, x, Projection::none));
+      const auto gradient = [&](const Positions& y) { return gradient_of(*own, y); };
+      CHECK((differences(gradient, x, step) - h).norm() <= 1e-5 * h.norm());
+      const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(
+          dense(hessian_of(*own, x, Projection::clamp)));
+      CHECK(eigen.eigenvalues().minCoeff() > -1e-10 * eigen.eigenvalues().maxCoeff());
+    }
+  }
+  Material limp = rubbing;
+  limp.bending_modulus = 0;
+  CHECK_THROWS_WITH(MidedgeBending({}).bind(Level::of(0, triangulations(5)[0].mesh), limp),
+                    Catch::Contains("\"bending_hysteresis\" needs a bending rigidity"));
 }
 
 TEST_CASE("midedge_bending: a bias rigidity that no plate has is refused with its eigenvalue") {

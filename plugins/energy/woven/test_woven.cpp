@@ -20,7 +20,7 @@ const Material fabric = [] {
 
 Level sheet(double grain = 0) {
   TriangleMesh mesh = random_triangulation({0.6, 0.5}, 120, 8);
-  mesh.grain = {Grain::Axis::x, grain};
+  mesh.warp = warp_at(mesh, grain);
   return Level::of(0, mesh);
 }
 
@@ -69,11 +69,11 @@ TEST_CASE("woven: a quarter turn of grain and cloth changes no energy") {
   turn << 0, -1, 0, 1, 0, 0, 0, 0, 1;
   TriangleMesh turned = level.rest;
   turned.vertices = level.rest.vertices * turn.transpose();
-  turned.grain->angle += 90;
+  turned.warp = level.rest.warp * turn.transpose();
   Material swapped = fabric;
   std::swap(swapped.warp_stiffness, swapped.weft_stiffness);
   TriangleMesh other = level.rest;
-  other.grain->angle += 90;
+  other.warp = warp_at(other, 115);
   const auto energy = make_plugin_from<Energy>("woven");
   const Positions x = wrinkled(level, 0.004);
   for (const double s : {-1., 1e-3}) {  // plain, and buckling
@@ -100,4 +100,70 @@ TEST_CASE("woven: the isotropic cloth buckles below the mesh as stvk does, and w
   const Positions pressed = 0.95 * level.rest.vertices;
   CHECK(energy->bind_buckling(level, fabric, 1e-5)->value(pressed) <
         0.05 * energy->bind(level, fabric)->value(pressed));
+}
+
+TEST_CASE("woven: a strip whose sides are free has the tension curve that was measured") {
+  const std::vector<std::pair<double, double>> points = {{0.02, 3}, {0.05, 40}, {0.08, 200}};
+  const std::string list = "[0.02, 3, 0.05, 40, 0.08, 200]";
+  for (const std::string direction : {"warp", "weft"}) {
+    INFO(direction);
+    const auto energy = make_plugin_from<Energy>("{type: woven, " + direction + "_tension: " + list + "}");
+    TriangleMesh mesh = grid({0.1, 0.1}, 2, 2, Diagonals::one_way);
+    mesh.warp = warp_at(mesh, direction == "warp" ? 0. : 90.);
+    const auto bound = energy->bind(Level::of(0, mesh), fabric);
+    const auto at = [&](double strain, double across) {
+      Positions x = mesh.vertices;
+      x.col(0) *= 1 + strain, x.col(1) *= across;
+      return x;
+    };
+    const auto across_force = [&](double strain, double across) {
+      const Positions g = gradient_of(*bound, at(strain, across));
+      double sum = 0;
+      for (int i = 0; i < 4; ++i) sum += mesh.vertices(i, 1) > mesh.vertices.col(1).mean() ? g(i, 1) : 0;
+      return sum;
+    };
+    for (const auto& [strain, tension] : points) {
+      double low = 0.5, high = 1;  // across, until no force acts there
+      for (int i = 0; i < 60; ++i) {
+        const double middle = (low + high) / 2;
+        (across_force(strain, middle) > 0 ? high : low) = middle;
+      }
+      CHECK(low < 1);
+      const Positions g = gradient_of(*bound, at(strain, low));
+      double force = 0;
+      for (int i = 0; i < 4; ++i) force += mesh.vertices(i, 0) > mesh.vertices.col(0).mean() ? g(i, 0) : 0;
+      CHECK(force / 0.1 == Approx(tension).epsilon(1e-9));
+    }
+  }
+}
+
+TEST_CASE("woven: derivatives follow the tension curve, which may be straight") {
+  const Level level = sheet(25);
+  const auto curved = make_plugin_from<Energy>(
+                 "{type: woven, warp_tension: [0.01, 5, 0.03, 50], weft_tension: [0.05, 20, 0.1, 30]}"),
+             straight = make_plugin_from<Energy>(
+                 "{type: woven, warp_tension: [1e-6, 2000e-6], weft_tension: [1e-6, 700e-6]}");
+  const Positions x = wrinkled(level, 0.004);
+  const auto own = curved->bind(level, fabric),
+             plain = make_plugin_from<Energy>("woven")->bind(level, fabric);
+  CHECK(straight->bind(level, fabric)->value(x) == Approx(plain->value(x)).epsilon(1e-5));
+  CHECK(own->value(x) > 0);
+  const Positions g = gradient_of(*own, x);
+  const auto value = [&](const Positions& y) { return own->value(y); };
+  CHECK((differences(value, x, 1e-6).transpose() - flat(g)).norm() <= 1e-6 * g.norm());
+  const Eigen::MatrixXd h = dense(hessian_of(*own, x, Projection::none));
+  const auto gradient = [&](const Positions& y) { return gradient_of(*own, y); };
+  CHECK((differences(gradient, x, 1e-7) - h).norm() <= 1e-5 * h.norm());
+  CHECK(curved->bind_buckling(level, fabric, 1e-5)->value(x) <= own->value(x) * (1 + 1e-12));
+}
+
+TEST_CASE("woven: a tension curve out of order is refused at its point") {
+  const auto refused = [](const std::string& list, const std::string& message) {
+    CHECK_THROWS_WITH(make_plugin_from<Energy>("{type: woven, warp_tension: " + list + "}"),
+                      Catch::Contains(message));
+  };
+  refused("[0.01, 5, 0.03]", "\"warp_tension\" has an odd number of values");
+  refused("[0.01, 5, 0.01, 7]", "\"warp_tension\": point 2: strain does not rise from the point before");
+  refused("[0.01, 5, 0.03, 4]", "point 2: force over stretch does not rise from the point before");
+  refused("[0, 5]", "point 1: strain does not rise");
 }

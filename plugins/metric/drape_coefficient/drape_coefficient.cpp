@@ -53,7 +53,11 @@ MetricDeclaration DrapeCoefficient::declaration() const {
             .unit = "%",
             .better = Better::neither,
             .shown = Shown::summary},
-           {.name = "folds", .label = "folds", .unit = "1", .better = Better::neither},
+           {.name = "folds",
+            .label = "folds",
+            .unit = "1",
+            .better = Better::neither,
+            .shown = Shown::summary},
            {.name = "fold_amplitude", .label = "fold amplitude", .unit = "m", .better = Better::neither}},
       .text =
           "The drape coefficient is the part of the overhanging ring that the cloth's shadow covers "

@@ -124,6 +124,8 @@ TEST_CASE("drape fabric prints what a laboratory measures, and lists the table")
   CHECK(sheet.out.find("187 g/m²") != std::string::npos);
   // c = (23.19e-6 / (0.187 · 9.81))^⅓, in mm
   CHECK(sheet.out.find("bending length c             23.3") != std::string::npos);
+  const Ended cotton = drape_with("fabric cotton-broad", folder.path);
+  CHECK(cotton.out.find("hysteresis 2HB        1.216 mN, 0.12") != std::string::npos);
   const Ended wrong = drape_with("fabric denim", folder.path);
   CHECK(wrong.exit_code == 2);
   CHECK(wrong.err.find("unknown fabric \"denim\"") != std::string::npos);

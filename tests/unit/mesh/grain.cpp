@@ -30,20 +30,20 @@ constexpr const char* standing =
 TEST_CASE("grain: warp turns counter-clockwise from x, in every triangle") {
   TriangleMesh mesh = grid({1, 1}, 4, 4, Diagonals::criss_cross);
   for (const double angle : {0., 30., 90., -135.}) {
-    mesh.grain = {Grain::Axis::x, angle};
+    mesh.warp = warp_at(mesh, angle);
     const Positions warp = warp_directions(mesh);
     REQUIRE(warp.rows() == mesh.triangles.rows());
     const Eigen::RowVector3d expected(std::cos(angle * M_PI / 180), std::sin(angle * M_PI / 180), 0);
     CHECK((warp.rowwise() - expected).cwiseAbs().maxCoeff() < 1e-15);
   }
-  mesh.grain.reset();
+  mesh.warp.resize(0, 3);
   CHECK(warp_directions(mesh).col(0).isConstant(1));
-  CHECK(grain_faults(mesh).empty());
+  CHECK(grain_faults(mesh, GrainAxis::x).empty());
 }
 
 TEST_CASE("grain: strains of a material's frame follow the grain") {
   TriangleMesh mesh = random_triangulation({1, 1}, 30, 3);
-  mesh.grain = {Grain::Axis::x, 30};
+  mesh.warp = warp_at(mesh, 30);
   const Level level = Level::of(0, mesh);
   Eigen::Matrix2d f;
   f << 1.1, 0.2, -0.1, 0.9;
@@ -75,7 +75,7 @@ TEST_CASE("grain: every level of an experiment has it, and its files and the sav
   CHECK(read_file(folder / "out/config.yaml").find("grain: 30") != std::string::npos);
   const Solved s = scene_from(experiment("{shape: disc, radius: 0.2, vertices: 50, grain: 20}"));
   for (const Level& level : s.scene->hierarchy.levels) {
-    REQUIRE(level.rest.grain);
+    REQUIRE(level.rest.warp.rows() == level.triangle_count());
     CHECK(warp_directions(level.rest)(3, 1) == Approx(std::sin(20 * M_PI / 180)));
   }
 }
@@ -101,4 +101,54 @@ TEST_CASE("grain: a mesh's pattern may be its texture coordinates") {
                     Catch::Contains("needs a mesh with texture coordinates"));
   CHECK_THROWS_WITH(scene_from(experiment("{shape: square, grain: 10, grain_along: u}")),
                     Catch::Contains("grain_along"));
+}
+
+TEST_CASE("grain: parts of a cloth may be cut at another angle, on every level") {
+  const auto scene = [](const std::string& regions) {
+    return scene_from(experiment(
+        "{shape: rectangle, size: [0.4, 0.2], columns: 9, rows: 5, grain: 10, grain_regions: " + regions +
+        "}"));
+  };
+  const Solved s = scene("[{lower: [0.2, 0, -1], upper: [0.4, 0.2, 1], grain: 55}]");
+  for (const Level& level : s.scene->hierarchy.levels)
+    for (int t = 0; t < level.triangle_count(); ++t) {
+      const double x = level.rest.vertices(level.rest.triangles.row(t), 0).mean();
+      if (std::abs(x - 0.2) < 0.01) continue;  // Loop's rules move vertices at the border
+      CHECK(level.rest.warp(t, 0) == Approx(std::cos((x > 0.2 ? 55 : 10) * M_PI / 180)));
+    }
+  CHECK_THROWS_WITH(scene("[{lower: [1, 1, 1], upper: [2, 2, 2], grain: 55}]"),
+                    Catch::Contains("\"grain_regions\": entry 0 has no triangle's centroid"));
+  CHECK_THROWS_WITH(scene("[{lower: [0, 0, 0], upper: [2, 2, 2]}]"), Catch::Contains("\"grain\""));
+}
+
+TEST_CASE("grain: a PLY file's faces may have directions of their own, which turn with the file") {
+  const Scratch folder;
+  TriangleMesh mesh = random_triangulation({1, 1}, 20, 3);
+  Eigen::VectorXd angles(mesh.triangles.rows());
+  for (Eigen::Index t = 0; t < angles.size(); ++t) angles[t] = 7. * static_cast<double>(t);
+  mesh.warp = cut_directions(mesh, GrainAxis::x, angles);
+  write_ply(folder / "cut.ply", mesh);
+  const auto rest_of = [&](const std::string& more) {
+    return scene_from(experiment("{shape: file, file: " + (folder / "cut.ply").string() + more + "}"))
+        .scene->hierarchy.levels[0]
+        .rest;
+  };
+  CHECK(rest_of("").warp.isApprox(mesh.warp));
+  CHECK(rest_of(", grain: 0").warp.col(0).isConstant(1));
+  CHECK(rest_of(", grain: 20, grain_along: file")
+            .warp.isApprox(cut_directions(mesh, GrainAxis::x, angles.array() + 20)));
+  const TriangleMesh turned = rest_of(", rotate: [0, 0, 90]");
+  CHECK((turned.warp.col(0) + mesh.warp.col(1)).cwiseAbs().maxCoeff() < 1e-12);
+  folder.write(
+      "plain.ply",
+      "ply\nformat ascii 1.0\nelement vertex 3\nproperty double x\nproperty double y\nproperty double z\n"
+      "element face 1\nproperty list uchar int vertex_indices\nproperty double warp_x\n"
+      "property double warp_y\nproperty double warp_z\nend_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2 0 0 1\n");
+  CHECK_THROWS_WITH(
+      scene_from(experiment("{shape: file, file: " + (folder / "plain.ply").string() + "}")),
+      Catch::Contains("the direction of warp in triangle 0 has no part in the triangle's plane"));
+  folder.write("standing.obj", standing);
+  CHECK_THROWS_WITH(scene_from(experiment("{shape: file, grain: 0, grain_along: file, file: " +
+                                          (folder / "standing.obj").string() + "}")),
+                    Catch::Contains("\"grain_along: file\" needs a PLY file"));
 }
