@@ -83,10 +83,12 @@ int print_fabric(const FabricOptions& options) {
   if (const ConfigNode* source = values.find("source")) std::cout << ": " << source->scalar;
   std::cout << "\n";
   print_sheet(own);
-  std::cout << "Where a figure is not known, the material's default stands for it: material: {fabric: "
-            << (options.file.empty() ? options.name
-                                     : "{file: " + options.file + ", row: " + options.name + "}")
-            << "}\n";
+  const std::string value =
+      options.file.empty() ? options.name : "{file: " + options.file + ", row: " + options.name + "}";
+  std::cout
+      << "Where a figure is not known, the material's default stands for it: material: {fabric: " << value
+      << "}\nDrape coefficient, by simulation: drape run configs/tests/cusick.yaml --set 'material.fabric="
+      << value << "'\n";
   return exit_done;
 }
 

@@ -126,6 +126,8 @@ TEST_CASE("drape fabric prints what a laboratory measures, and lists the table")
   CHECK(sheet.out.find("bending length c             23.3") != std::string::npos);
   const Ended cotton = drape_with("fabric cotton-broad", folder.path);
   CHECK(cotton.out.find("hysteresis 2HB        1.216 mN, 0.12") != std::string::npos);
+  CHECK(cotton.out.find("drape run configs/tests/cusick.yaml --set 'material.fabric=cotton-broad'") !=
+        std::string::npos);
   const Ended wrong = drape_with("fabric denim", folder.path);
   CHECK(wrong.exit_code == 2);
   CHECK(wrong.err.find("unknown fabric \"denim\"") != std::string::npos);
