@@ -9,7 +9,8 @@
 # make scenes   the study of every scene of the supplement's Table 2 by PCS, many hours (`make data`); LEVELS=2 goes to at most
 #               so many, and writes no record
 # make python   build the Python module: PYTHONPATH=build/python python3 -c "import drape"; `make test` then tests it too
-# make wheel    pack the Python module with its libraries, command and plugins: build-wheel/drape-*.whl, for pip of /usr/bin/python3
+# make deb      pack the command, its plugins, the C++ package and the Python module: build-package/drape_*.deb, for Debian 12
+# make wheel    pack the Python module with its libraries, command and plugins: build-package/drape-*.whl, for pip of /usr/bin/python3
 # make test     build and run every test
 # make fuzz     fuzz the readers of configs, --set, meshes and checkpoints for FUZZ_SECONDS each (20), or FUZZ_RUNS inputs each;
 #               FUZZ_TARGETS="mesh config" chooses some; what ends one is kept in build-fuzz/artifacts
@@ -36,7 +37,7 @@ LINTED := $(if $(LINT),/unity_$(notdir $(LINT:/=))_cxx\.,(core|plugins)/)
 BUILD := $(if $(filter release ci,$(PRESET)),build,build-$(PRESET))
 SOURCES = $(shell find core plugins examples tests benchmarks -name '*.cpp' -o -name '*.h')
 
-.PHONY: all setup configure build build-tests benchmarks python wheel demo table1 scenes test fuzz extremes data bench hard results figures \
+.PHONY: all setup configure build build-tests benchmarks python deb wheel demo table1 scenes test fuzz extremes data bench hard results figures \
         pictures api format fix-format lint clean
 all: build
 
@@ -68,10 +69,17 @@ python: configure
 	@$(CONFIGURE) -D DRAPE_PYTHON=ON >/dev/null
 	@cmake --build $(BUILD) -j $(JOBS) --target drape_cli drape_plugins drape_python
 
+# Both pack one build, for any processor with AVX2 (the preset `package`).
+deb:
+	@third_party/setup run use-python
+	@cmake --preset package --log-level=WARNING >/dev/null
+	@cmake --build build-package -j $(JOBS)
+	@cd build-package && cpack >/dev/null && ls $$PWD/drape_*.deb
+
 wheel:
 	@third_party/setup run use-python
-	@/usr/bin/python3 -m pip wheel -q --no-build-isolation --no-deps --no-index -w build-wheel .
-	@ls build-wheel/drape-*.whl
+	@/usr/bin/python3 -m pip wheel -q --no-build-isolation --no-deps --no-index -w build-package .
+	@ls build-package/drape-*.whl
 
 demo: build
 	@configs/demo $(BUILD)/bin/drape
@@ -118,17 +126,21 @@ figures:
 FROM ?= $(patsubst %sphere,%,$(shell ls -td results/studies/*/sphere 2>/dev/null | head -1))
 # The start whose PCS preview has the median distance from its final state.
 SPHERE = $(FROM)sphere/runs/base/seed_1
-DRAW = configs/sphere.yaml --levels 3 --method pcs,pcs_loop,unrelaxed,cascadic --set 'methods.unrelaxed={type: pcs, relaxation: none}'
+LOCKING = configs/sphere.yaml --levels 3 --method pcs,pcs_loop,unrelaxed,cascadic --set 'methods.unrelaxed={type: pcs, relaxation: none}'
+SCENES = tablecloth bunny_shawl armadillo cube materials_6 pinned_square tests/cusick
+draw = $(BUILD)/bin/drape run $(1) -o results/pictures/$(2) --overwrite --no-report
 pictures: benchmarks data
 	@[ -e $(SPHERE)/results.json ] || { echo "pictures: no run of the study sphere; make results STUDIES=sphere" >&2; exit 1; }
 	$(BUILD)/bin/drape report $(SPHERE)
+	rm -rf results/pictures && mkdir -p results/pictures
+	set -e; $(foreach s,$(SCENES),$(call draw,configs/$(s).yaml --levels 3 --method pcs --threads 1,$(notdir $(s)));)
+	set -e; $(foreach s,ribbon handkerchief,$(call draw,configs/$(s).yaml --method pcs,$(s));)
+	sed -n '/^```yaml my_curtain/,/^```$$/{/^```/!p}' README.md >results/my_curtain.yaml
+	$(call draw,results/my_curtain.yaml,curtain)
+	$(call draw,configs/hard/folded.yaml --method newton,folded)
+	$(call draw,$(LOCKING),locking)
 	@tests/browser/install $(BUILD)/tests/browser
-	DRAPE_BIN=$(abspath $(BUILD))/bin DRAPE_NODE_MODULES=$(abspath $(BUILD))/tests/browser node docs/pictures/make.mjs $(SPHERE)
-	$(foreach m,pcs cascadic newton,$(foreach l,0 3,cp $(SPHERE)/pictures/$(m)_l$(l).png docs/pictures/sphere_$(m)_l$(l).png;))
-	$(BUILD)/bin/drape run $(DRAW) -o results/pictures/locking --overwrite
-	$(foreach m,pcs pcs_loop unrelaxed cascadic,$(foreach l,0 1 2,cp results/pictures/locking/pictures/$(m)_l$(l).png docs/pictures/locking_$(m)_l$(l).png;))
-	$(BUILD)/bin/drape run configs/bunny_shawl.yaml --method pcs -o results/pictures/shawl --overwrite
-	$(foreach l,0 2,$(BUILD)/bin/drape export results/pictures/shawl --to docs/pictures/shawl_l$(l).png --level $(l) --view=-0.5,-1,0.6 --width 900 --overwrite;)
+	DRAPE_BIN=$(abspath $(BUILD))/bin DRAPE_NODE_MODULES=$(abspath $(BUILD))/tests/browser node docs/pictures/make.mjs $(SPHERE) results/pictures
 
 api: setup
 	@doxygen docs/Doxyfile
@@ -150,4 +162,4 @@ lint: setup
 	  -extra-arg=-Wno-unused-command-line-argument '$(LINTED)'
 
 clean:
-	rm -rf build build-wheel build-debug build-clang build-asan build-tsan build-lint build-fuzz build-single-files
+	rm -rf build build-package build-debug build-clang build-asan build-tsan build-lint build-fuzz build-single-files
