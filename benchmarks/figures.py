@@ -4,7 +4,7 @@ A function of a record that is not stored raises FileNotFoundError; fill_figures
 
 import re
 
-from records import RESULTS, WITHOUT_CONTACT, conditions, figure, median, read, seconds_text, with_range
+from records import RESULTS, WITHOUT_CONTACT, conditions, figure, median, read, seconds_text, stamps, with_range
 
 METHODS = ["pcs", "cascadic", "newton"]
 
@@ -287,13 +287,13 @@ STUDIES = [
     ("[beside Codim-IPC](speed.md#beside-codim-ipc)", "codim_ipc.json"),
     ("[scale](speed.md#scale)", "scale.json"),
     ("[six scenes to 5.9K](previews.md#six-scenes)", "previews.md"),
-    ("[interpolation](previews.md#the-choice-of-interpolation)", "interpolation.md"),
+    ("[interpolation](ablations.md#interpolation)", "interpolation.md"),
     ("[four levels](previews.md#four-levels)", "four_levels.md"),
-    ("[ablations](ablations.md)", "ablations.md"),
+    ("[ablations](ablations.md#one-choice-at-a-time)", "ablations.md"),
     ("[hard cases](hard-cases.md)", "hard.md"),
-    ("[remedies](hard-cases.md#remedies)", "hard_remedies.md"),
+    ("[remedies](ablations.md#newton)", "hard_remedies.md"),
     ("[Table 1](table1.md)", "table1.md"),
-    ("[scenes](scenes.md)", "scenes.md"),
+    ("[scenes](speed.md#every-scene)", "scenes.md"),
     ("[the dragon, by decrements, four levels](speed.md#levels-that-end-at-a-decrement)", "dragon_decrements_levels_4.md"),
     ("the dragon, by decrements", "dragon_decrements.md"),
 ]
@@ -333,12 +333,9 @@ TOP = ["preview, RMS: pcs / cascadic", "overlap", "finest level, iterations: pcs
        "total flops, relative to direct: pcs / cascadic", "final energy, pcs minus cascadic, start by start [J]"]
 
 BLOCKS = {
-    "sphere": lambda: sphere(["iterations", "preview [s]", "total [s]", "flops, relative to direct", "final energy [J]",
-                              "preview: RMS distance from the final state [diagonals]", "silhouette overlap"]),
     "sphere in full": lambda: sphere(["iterations", "preview [s]", "total [s]", "flops, relative to direct", "final energy [J]",
                                       "preview: RMS distance from the final state [diagonals]", "silhouette overlap",
                                       "preview: energy above the final state [J]", "level 1: RMS distance"]),
-    "six scenes": lambda: scenes("previews", [TOP[0], "preview's flops, relative to cascadic", *TOP[2:]]),
     "six scenes in full": lambda: scenes("previews", TOP),
     "four levels": lambda: scenes("four_levels", [
         TOP[0], "overlap", "finest level, iterations: pcs / cascadic", "total flops, relative to cascadic", TOP[-1]]),
@@ -364,7 +361,21 @@ def flops_in_table1(method):
     return lowest_to_highest([of_scene[method]["tflop"] / of_scene["newton"]["tflop"] for of_scene in methods])
 
 
+def median_seconds(method, key):
+    return seconds_text([of(runs("sphere", method), key)])
+
+
+def build_of(name):
+    stamp, newest = stamps()["records"][name], stamps()["build"]
+    return f"commit {stamp['commit']}" + ("" if stamp["commit"] == newest else ", an older build")
+
+
 VALUES = {
+    "vertices of the sphere": lambda: f"{runs('sphere', 'pcs')[0]['vertices'] / 1000:.0f}K",
+    "seen on the sphere [s]": lambda: median_seconds("pcs", "seconds_of_preview"),
+    "finished on the sphere [s]": lambda: median_seconds("pcs", "seconds"),
+    "direct on the sphere [s]": lambda: median_seconds("newton", "seconds"),
+    "build of the sphere": lambda: build_of("sphere.json"),
     **{f"conditions of {name}": lambda name=name: conditions(name) for _, name in STUDIES},
     **{f"{method}'s preview of the sphere [s]": lambda method=method: seconds_text(
         [r["seconds_of_preview"] for r in runs("sphere", method)]) for method in METHODS},

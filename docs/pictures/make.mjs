@@ -1,18 +1,18 @@
-// Makes pictures of README and docs from a run of pcs and newton, with its report: node docs/pictures/make.mjs RUN (see
-// `make pictures`).
+// Pictures of README and docs: node docs/pictures/make.mjs SPHERE RUNS, with a run of the study sphere that has a report, and the
+// folder of the runs that `make pictures` makes.
 import {execFileSync} from 'node:child_process';
 import fs from 'node:fs';
 import path from 'node:path';
 import {browser, newPage, openPage, run, scratch} from '../../tests/browser/support.mjs';
 
 const here = path.dirname(new URL(import.meta.url).pathname);
-const results = path.resolve(process.argv[2]);
-const methods = JSON.parse(fs.readFileSync(path.join(results, 'results.json'), 'utf8')).methods;
+const sphere = path.resolve(process.argv[2]);
+const runs = path.resolve(process.argv[3]);
 const folder = scratch();
 
 /// Parts of the report as they look on the page.
 async function reportPictures() {
-  const {page} = await openPage('file://' + path.join(results, 'report.html'),
+  const {page} = await openPage('file://' + path.join(sphere, 'report.html'),
     {viewport: {width: 1100, height: 900}, deviceScaleFactor: 1.5});
   const picture = async (selector, name, margin = 12) => {
     await page.locator(selector).scrollIntoViewIfNeeded();
@@ -26,67 +26,64 @@ async function reportPictures() {
   await picture('#in-3d', 'viewer.png');
 }
 
-/// A figure of the hero: a state as `drape export` draws it.
-async function figure(name, caption, ...options) {
-  await run(folder, 'export', results, '--to', name, ...options);
-  return `<figure><img src="${name}" alt=""><figcaption>${caption}</figcaption></figure>`;
+/// A state as `drape export` draws it, half as wide, so that edges are smooth.
+async function still(results, name, width, ...options) {
+  const file = path.join(folder, `${name}.png`);
+  await run(folder, 'export', results, '--to', file, '--width', String(2 * width), '--overwrite', ...options);
+  execFileSync('cwebp', ['-quiet', '-q', '92', '-resize', String(width), '0', file, '-o', path.join(here, `${name}.webp`)]);
 }
 
-async function levelsOf(method) {
-  let all = '';
-  for (const {level, vertices} of methods[method].levels)
-    all += await figure(`${method}_l${level}.png`, `${vertices.toLocaleString('en-US')} vertices`, '--method', method, '--level',
-      String(level), '--width', '900');
-  return all;
+/// The finest states of the gallery, some from a side that shows more than the report's.
+async function gallery() {
+  const views = {bunny_shawl: '--view=-0.5,-1,0.6', ribbon: '--view=0.3,-1,0.5'};
+  for (const name of fs.readdirSync(runs).filter(name => !['tablecloth', 'locking'].includes(name)))
+    await still(path.join(runs, name), name, name === 'bunny_shawl' ? 640 : 480, ...(views[name] ? [views[name]] : []));
+  await still(path.join(runs, 'bunny_shawl'), 'bunny_shawl_l0', 640, views.bunny_shawl, '--level', '0');
 }
 
-function outlineOf(method, caption) {
-  return figure(`${method}_outline.png`, caption, '--method', method, '--outline', '--width', '1200');
+/// Levels beside each other in pages: the coarsest and the finest of the sphere, all of the locking's.
+async function levels() {
+  for (const method of ['pcs', 'cascadic', 'newton'])
+    for (const level of ['0', '3']) await still(sphere, `sphere_${method}_l${level}`, 480, '--method', method, '--level', level);
+  for (const method of ['pcs', 'pcs_loop', 'unrelaxed', 'cascadic'])
+    for (const level of ['0', '1', '2'])
+      await still(path.join(runs, 'locking'), `locking_${method}_l${level}`, 480, '--method', method, '--level', level);
 }
 
-/// The levels of PCS above those of the direct method, and each preview's outline on its own fine result: 2400 pixels wide,
-/// on the colour that is behind the cloth in every picture, which reads on light and dark pages.
-async function hero() {
-  const html = `<!DOCTYPE html><meta charset="utf-8"><style>
-    body { margin: 0; background: #fbfbfb; color: #1b2027; font: 17px/1.3 "Noto Sans", "DejaVu Sans", sans-serif; }
-    main { box-sizing: border-box; width: 1200px; padding: 12px 20px; background: #fbfbfb; }
-    h2 { margin: 10px 0 4px; font-size: 20px; font-weight: 600; }
-    div { display: grid; grid-template-columns: repeat(${methods.pcs.levels.length}, 1fr); gap: 12px; }
-    div.outlines { grid-template-columns: 460px 460px; justify-content: space-evenly; }
-    figure { margin: 0; text-align: center; color: #5a6472; }
-    img { display: block; width: 100%; }
-    </style><main>
-    <h2>Progressive (PCS), coarse to fine</h2><div>${await levelsOf('pcs')}</div>
-    <h2>Direct Newton, each level on its own</h2><div>${await levelsOf('newton')}</div>
-    <h2>Outline of the coarsest level, in blue, on the finest</h2>
-    <div class="outlines">${await outlineOf('pcs', 'progressive')}${await outlineOf('newton', 'direct')}</div></main>`;
-  fs.writeFileSync(path.join(folder, 'hero.html'), html);
-  const page = await newPage({viewport: {width: 1200, height: 900}, deviceScaleFactor: 2});
-  await page.goto('file://' + path.join(folder, 'hero.html'));
-  await page.locator('main').screenshot({path: path.join(here, 'hero.png')});
-}
+const seconds = s => s < 9.95 ? s.toFixed(1) : s.toFixed(0);
+const thousands = n => (n / 1000).toFixed(n < 9950 ? 1 : 0);
 
-/// The snapshots of PCS, coarse to fine, as an animation that rests at the end of every level.
+/// The snapshots of the tablecloth as an animation that rests at the end of every level. Each frame has its clock and its number of
+/// vertices, and the last one those of all levels.
 async function progression() {
-  const most = 3e6;  // [bytes]
-  await run(folder, 'export', results, '--to', 'frame.png', '--method', 'pcs', '--frames', '--width', '640');
-  const frames = fs.readdirSync(folder).filter(name => name.startsWith('frame_')).sort();
-  const ends = new Set();
-  methods.pcs.levels.reduce((count, level) => {
-    ends.add(count + level.snapshots.iterations.length - 1);
-    return count + level.snapshots.iterations.length;
-  }, 0);
-  const milliseconds = k => k === frames.length - 1 ? 2500 : ends.has(k) ? 900 : 200;
-  const file = path.join(here, 'progression.webp');
-  for (const quality of [80, 60, 40]) {
-    execFileSync('img2webp', ['-loop', '0', '-lossy', '-q', String(quality), '-m', '6',
-      ...frames.flatMap((name, k) => ['-d', String(milliseconds(k)), name]), '-o', file], {cwd: folder, stdio: 'pipe'});
-    if (fs.statSync(file).size < most) return;
+  const results = path.join(runs, 'tablecloth');
+  const all = JSON.parse(fs.readFileSync(path.join(results, 'results.json'), 'utf8')).methods.pcs.levels;
+  await run(folder, 'export', results, '--to', 'frame.png', '--frames', '--width', '960', '--view=0.5,-1,0.5');
+  const names = fs.readdirSync(folder).filter(name => /^frame_.*png$/.test(name)).sort();
+  const page = await newPage({viewport: {width: 640, height: 700}});
+  const frames = [], ends = [];
+  for (const level of all) {
+    for (const at of level.snapshots.seconds) {
+      const end = at === level.snapshots.seconds.at(-1);
+      const clock = `${seconds(at)} s`, count = `${thousands(level.vertices)}K`;
+      if (end) ends.push(`${clock}, ${count}`);
+      const name = names.shift();
+      const label = end && ends.length === all.length ? ends.join(' … ') + ' vertices' : `${clock}, ${count} vertices`;
+      fs.writeFileSync(path.join(folder, 'frame.html'), `<!DOCTYPE html><meta charset="utf-8"><style>
+        body { margin: 0; background: #fbfbfb; }
+        main { position: relative; width: 640px; height: 410px; overflow: hidden; }
+        img { display: block; width: 840px; margin: -110px 0 0 -100px; }
+        p { position: absolute; left: 14px; top: 8px; margin: 0; color: #1b2027; font: 600 22px "Noto Sans", "DejaVu Sans", sans-serif; }
+        </style><main><img src="${name}"><p>${label}</p></main>`);
+      await page.goto('file://' + path.join(folder, 'frame.html'));
+      await page.locator('main').screenshot({path: path.join(folder, `drawn_${name}`)});
+      frames.push('-d', String(end ? (ends.length === all.length ? 4000 : 1500) : 200), `drawn_${name}`);
+    }
   }
-  throw new Error(`${file} is larger than ${most} bytes`);
+  execFileSync('img2webp', ['-loop', '0', '-lossy', '-q', '82', '-m', '6', ...frames, '-o', path.join(here, 'tablecloth.webp')],
+    {cwd: folder, stdio: 'pipe'});
 }
 
-await reportPictures();
-await hero();
-await progression();
+const parts = {reportPictures, levels, gallery, progression};
+for (const name of process.argv[4] ? process.argv[4].split(',') : Object.keys(parts)) await parts[name]();
 await (await browser()).close();
