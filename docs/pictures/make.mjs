@@ -71,8 +71,8 @@ async function progression() {
       const label = end && ends.length === all.length ? ends.join(' … ') + ' vertices' : `${clock}, ${count} vertices`;
       fs.writeFileSync(path.join(folder, 'frame.html'), `<!DOCTYPE html><meta charset="utf-8"><style>
         body { margin: 0; background: #fbfbfb; }
-        main { position: relative; width: 640px; height: 410px; overflow: hidden; }
-        img { display: block; width: 840px; margin: -110px 0 0 -100px; }
+        main { position: relative; width: 640px; height: 498px; overflow: hidden; }
+        img { display: block; width: 840px; margin: -66px 0 0 -100px; }
         p { position: absolute; left: 14px; top: 8px; margin: 0; color: #1b2027; font: 600 22px "Noto Sans", "DejaVu Sans", sans-serif; }
         </style><main><img src="${name}"><p>${label}</p></main>`);
       await page.goto('file://' + path.join(folder, 'frame.html'));

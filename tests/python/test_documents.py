@@ -46,7 +46,7 @@ def blocks_of(page):
     return re.findall(r"```python\n(.*?)```", text, re.S)
 
 
-@pytest.mark.parametrize("page", ["docs/guide/python.md", "docs/extend/from-python.md"])
+@pytest.mark.parametrize("page", ["README.md", "docs/guide/python.md", "docs/extend/from-python.md"])
 def test_the_code_of_a_page_runs(page, monkeypatch, tmp_path):
     matplotlib = pytest.importorskip("matplotlib")
     matplotlib.use("Agg")
