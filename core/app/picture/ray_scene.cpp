@@ -1,6 +1,10 @@
 #include "core/app/picture/ray_scene.h"
 
+#if __has_include(<embree4/rtcore.h>)
+#include <embree4/rtcore.h>
+#else
 #include <embree3/rtcore.h>
+#endif
 
 #include <algorithm>
 #include <limits>
@@ -12,6 +16,22 @@
 namespace drape {
 
 namespace {
+
+#if RTC_VERSION_MAJOR < 4
+void intersect(RTCScene scene, RTCRayHit* hit) {
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  rtcIntersect1(scene, &context, hit);
+}
+void occlude(RTCScene scene, RTCRay* ray) {
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  rtcOccluded1(scene, &context, ray);
+}
+#else
+void intersect(RTCScene scene, RTCRayHit* hit) { rtcIntersect1(scene, hit); }
+void occlude(RTCScene scene, RTCRay* ray) { rtcOccluded1(scene, ray); }
+#endif
 
 // Shares of the scene's radius.
 constexpr float offset = 2e-5f;        // of rays to lights from the surface
@@ -78,10 +98,8 @@ struct RayScene::Embree {
   }
 
   std::optional<SurfacePoint> nearest(RTCScene scene, const Ray& ray) const {
-    RTCIntersectContext context;
-    rtcInitIntersectContext(&context);
     RTCRayHit query = embree_ray(ray);
-    rtcIntersect1(scene, &context, &query);
+    intersect(scene, &query);
     if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return {};
     SurfacePoint point =
         surfaces[query.hit.geomID].point(static_cast<int>(query.hit.primID), query.hit.u, query.hit.v, ray);
@@ -91,10 +109,8 @@ struct RayScene::Embree {
   }
 
   bool blocked(const Ray& ray, float length = std::numeric_limits<float>::infinity()) const {
-    RTCIntersectContext context;
-    rtcInitIntersectContext(&context);
     RTCRayHit query = embree_ray(ray, length);
-    rtcOccluded1(all, &context, &query.ray);
+    occlude(all, &query.ray);
     return query.ray.tfar < 0;
   }
 };
