@@ -39,15 +39,16 @@ export function scalars(buffer) {
   return {low: ends[0], high: ends[1], steps: new Uint8Array(buffer, 8)};
 }
 
-/// Colour maps: sRGB at equal distances; RdBu and viridis.
+/// Colour maps: sRGB at equal distances; RdBu, viridis and one of lightness for forces.
 const rgb = text => text.split(' ').map(c => [1, 3, 5].map(k => parseInt(c.slice(k, k + 2), 16)));
 const viridis = '#440154 #472d7b #3b528b #2c728e #21918c #28ae80 #5ec962 #addc30 #fde725';
 const maps = {
   diverging: rgb('#053061 #2166ab #4393c3 #92c5de #f7f7f7 #f4a582 #d64d4d #b2182b #67001f'),
   sequential: rgb(viridis),
   near: rgb(viridis).reverse(),  // small gaps are brightest
+  force: rgb('#ccc2b2 #e3b07f #ea9150 #dd6a3a #c24531 #9c2733 #731336 #470a30'),  // from the cloth's colour
 };
-const none = {diverging: [140, 140, 140], sequential: [140, 140, 140], near: [204, 194, 178]};
+const cloth = [204, 194, 178], none = {diverging: [140, 140, 140], sequential: [140, 140, 140], near: cloth, force: cloth};
 
 function colourAt(map, place) {
   const table = maps[map], p = Math.min(Math.max(place, 0), 1) * (table.length - 1);

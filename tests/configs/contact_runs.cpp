@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/kernel/files/string_utils.h"
+#include "core/kernel/interfaces/level.h"
 #include "core/numerics/mesh_files/io.h"
 #include "core/numerics/patterns/generate.h"
 #include "tests/support/command.h"
@@ -120,6 +121,29 @@ TEST_CASE("a run with contact has contacts, gaps and intersections in its result
   }
   CHECK(near > 10);
   CHECK(far > 0);  // the first steps, in the air
+}
+
+TEST_CASE("a state has its contact forces, which carry the weight of a cloth that lies on a floor") {
+  const Scratch folder(contact_experiment());
+  drape_ends(
+      "run e.yaml --out out --method pcs --set 'obstacles=[{name: floor, shape: half_space}]' --set "
+      "start.translate=[0,0,0.001] --set start.perturbation=0 --set material.density=1000 --set "
+      "material.thickness=1e-3 --set newton.force_tolerance=1e-4" +
+          quiet,
+      folder);
+  for (const char* level : {"l0", "l1"}) {
+    INFO(level);
+    const fs::path state = folder / ("out/levels/pcs_" + std::string(level) + ".ply");
+    const drape::VertexFields fields = drape::read_ply_fields(state);
+    REQUIRE(fields.size() == 1);
+    CHECK(fields[0].name == "contact_pressure");
+    const auto rest =
+        drape::Level::of(0, drape::read_mesh(folder / ("out/rest/" + std::string(level) + ".ply")));
+    CHECK(fields[0].values.dot(rest.vertex_area) == Approx(9.81 * 0.4 * 0.4).epsilon(1e-4));
+    CHECK_THAT(text_of(fs::path(state).replace_extension(".vtp")), Contains("Name=\"contact_pressure\""));
+  }
+  drape_ends("export out --to out.vtp", folder);
+  CHECK(text_of(folder / "out.vtp") == text_of(folder / "out/levels/pcs_l1.vtp"));
 }
 
 TEST_CASE("intersections are counted at the end of each level, or after every step on request") {

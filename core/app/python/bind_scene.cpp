@@ -72,10 +72,12 @@ py::dict evaluate_metric(const SceneHandle& s, const std::string& name, int leve
   return values;
 }
 
-std::string page(const SceneHandle& s, const State& x, int level) {
+std::string page(const SceneHandle& s, const State& state, int level) {
   const int l = s.checked(level);
-  return viewer_page(s.experiment->parameters.name, s.level(l), x.of(s.level(l).vertex_count()),
-                     obstacles_of(s.scene->models[l]->contacts()));
+  const Positions& x = state.of(s.level(l).vertex_count());
+  const LevelModel& model = *s.scene->models[l];
+  return viewer_page(s.experiment->parameters.name, s.level(l), x, obstacles_of(model.contacts()),
+                     x.allFinite() ? model.contact_pressure(x) : Eigen::VectorXd());
 }
 
 }  // namespace

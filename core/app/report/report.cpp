@@ -192,14 +192,15 @@ std::string viewer_page(const RunData& run) {
 }
 
 std::string viewer_page(const std::string& title, const Level& level, const Positions& x,
-                        const std::vector<TriangleMesh>& obstacles) {
+                        const std::vector<TriangleMesh>& obstacles, const Eigen::VectorXd& pressure) {
   std::vector<Level> levels = {level};
   levels.front().index = 0;  // the only one of its document
   std::string blocks;
-  ViewDocument document(levels, obstacles, false, [&](const std::string& name, const std::string& bytes) {
-    blocks += block_element(name, bytes);
-  });
-  const SurfaceFields fields = document.fields(0, x);
+  ViewDocument document(
+      levels, obstacles, pressure.size() > 0,
+      [&](const std::string& name, const std::string& bytes) { blocks += block_element(name, bytes); });
+  SurfaceFields fields = document.fields(0, x);
+  add_contact_pressure(fields, pressure);
   document.set_ranges({&fields});
   const Json state = document.state("state", x, fields);
   const Json entry = {{"level", 0}, {"status", ""}, {"states", Json::array({state})}};

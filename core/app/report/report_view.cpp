@@ -68,6 +68,8 @@ States read_states(const RunData& run, const std::vector<Level>& levels, const V
         State state{run.mesh(level.mesh).vertices, {}};
         if (state.x.rows() != levels[level.level].vertex_count()) continue;
         state.fields = document.fields(level.level, state.x);
+        for (const VertexField& field : read_ply_fields(run.folder / level.mesh))
+          if (field.name == "contact_pressure") add_contact_pressure(state.fields, field.values);
         add_declared(run, method, level.level, state);
         states.emplace(&level, std::move(state));
       } catch (const std::exception&) {

@@ -158,7 +158,12 @@ class Check {
                                  entries[s.method]["levels"].size() == c_.state.finished.size()),
             "results.json as it was, of the method under way");
     if (!s.last_load.values.empty()) load_stepping(s.last_load);
-    for (const RecordedState& state : s.states) positions(state.x, state.level, "a level's result");
+    for (const RecordedState& state : s.states) {
+      positions(state.x, state.level, "a level's result");
+      const bool has_contact = !scene_.models[state.level]->contacts().empty();
+      require(state.contact_pressure.size() == (has_contact ? state.x.rows() : 0),
+              "a level's contact forces");
+    }
     require(s.snapshots.spacing > 0 && s.snapshots.seen >= 0, "the snapshots");
     if (is_level(c_.state.level))
       for (const Snapshot& snapshot : s.snapshots.snapshots)

@@ -220,7 +220,8 @@ void Recorder::increment_finished(const IncrementRow& r, const Positions& x) {
 
 void Recorder::level_finished(const LevelResult& r) {
   const Stopwatch watch;
-  const RecordedState state{s_.method, r.level, r.x};
+  const LevelModel model = scene_.model(r.level)->with_stiffness(r.contact_stiffness);
+  const RecordedState state{s_.method, r.level, r.x, model.contact_pressure(r.x)};
   const std::string ply = ply_of(state);
   write_state(state, ply);
   Json& entry = method_entry();

@@ -18,6 +18,7 @@ struct RecordedState {
   std::string method;
   int level = 0;
   Positions x;
+  Eigen::VectorXd contact_pressure = {};  ///< LevelModel::contact_pressure; empty without contact
 };
 
 /// Why a method that threw has failed.

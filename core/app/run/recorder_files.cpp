@@ -27,6 +27,11 @@ void cut(const std::filesystem::path& file, std::uint64_t bytes) {
   if (error) throw WriteError("cannot write " + file.string() + ": " + error.message());
 }
 
+VertexFields fields_of(const RecordedState& state) {
+  if (state.contact_pressure.size() == 0) return {};
+  return {{"contact_pressure", state.contact_pressure}};
+}
+
 }  // namespace
 
 nlohmann::ordered_json finite_or_null(double value) {
@@ -122,7 +127,7 @@ void Recorder::follow_schedule() {
 }
 
 std::string Recorder::ply_of(const RecordedState& state) const {
-  return ply_bytes({state.x, scene_.hierarchy.levels[state.level].rest.triangles});
+  return ply_bytes({state.x, scene_.hierarchy.levels[state.level].rest.triangles}, fields_of(state));
 }
 
 Recorder::Names Recorder::write_state(const RecordedState& state, const std::string& ply) const {
@@ -133,7 +138,7 @@ Recorder::Names Recorder::write_state(const RecordedState& state, const std::str
     sync_to_disk(folder_.file(name));  // later checkpoints rely on it
   };
   write(".ply", ply);
-  write(".vtp", vtp_text({state.x, scene_.hierarchy.levels[state.level].rest.triangles}));
+  write(".vtp", vtp_text({state.x, scene_.hierarchy.levels[state.level].rest.triangles}, fields_of(state)));
   return written;
 }
 

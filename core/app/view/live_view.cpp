@@ -68,7 +68,7 @@ void LiveView::iteration(const IterationRow& row, const Positions& x) {
 
 /// The schedule makes the finest level's model of a new load only now, if it is not the level that is being
 /// solved.
-void LiveView::show(LevelView& view, int level, const Positions& x) {
+void LiveView::show(LevelView& view, int level, const Positions& x, const Eigen::VectorXd& pressure) {
   const Stopwatch watch;
   if (scene_.load_stepping && scene_.load_stepping->state().values != load_) {
     load_ = scene_.load_stepping->state().values;
@@ -76,7 +76,8 @@ void LiveView::show(LevelView& view, int level, const Positions& x) {
   }
   if (view.name != view.sent) forget_blocks(view.name);
   view.name = "m" + std::to_string(method_) + "l" + std::to_string(level) + "v" + std::to_string(++encoded_);
-  const SurfaceFields fields = document_.fields(level, x, &obstacles_);
+  SurfaceFields fields = document_.fields(level, x, &obstacles_);
+  add_contact_pressure(fields, pressure);
   document_.set_ranges({&fields});
   view.state = document_.state(view.name, x, fields, &obstacles_);
   view.state["iteration"] = view.iteration;
@@ -91,7 +92,8 @@ void LiveView::level_finished(const LevelResult& result) {
   LevelView& view = levels_[{method_, result.level}];
   view.status = to_string(result.outcome);
   view.iteration = result.iterations;
-  show(view, result.level, result.x);
+  const LevelModel model = scene_.model(result.level)->with_stiffness(result.contact_stiffness);
+  show(view, result.level, result.x, model.contact_pressure(result.x));
 }
 
 void LiveView::run_finished(const std::string& outcome) {

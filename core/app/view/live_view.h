@@ -45,7 +45,7 @@ class LiveView : public Observer {
     std::string sent, sent_before;  // of those that pages know, and may still request
   };
 
-  void show(LevelView& view, int level, const Positions& x);
+  void show(LevelView& view, int level, const Positions& x, const Eigen::VectorXd& pressure = {});
   std::string page() const;
   std::string news(long version, std::size_t rows);
   std::string refine();

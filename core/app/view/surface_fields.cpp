@@ -45,14 +45,17 @@ void lower_to_distance(Eigen::VectorXd& gap, const BoxTree& points, const Positi
 
 }  // namespace
 
-const std::vector<FieldKind>& derived_fields() {
+const std::vector<FieldKind>& surface_fields() {
   static const std::vector<FieldKind> kinds = {
       {"mean_curvature", "mean curvature", "1/m", "diverging",
        "mean curvature; beyond the ends the end colours"},
       {"stretch", "largest stretch", "1", "sequential",
        "largest principal stretch of the triangles around; 1 is unstretched"},
       {"gap", "contact gap", "m", "near",
-       "distance to an obstacle or another part of the cloth; farther away in cloth colour"}};
+       "distance to an obstacle or another part of the cloth; farther away in cloth colour"},
+      {"contact_pressure", "contact force", "Pa", "force",
+       "force of contact on a vertex over its area; without one in cloth colour; known for the ends of "
+       "levels"}};
   return kinds;
 }
 
@@ -79,6 +82,11 @@ Eigen::VectorXd contact_gap(const Level& level, const Positions& x,
   return gap;
 }
 
+void add_contact_pressure(SurfaceFields& fields, const Eigen::VectorXd& pressure) {
+  if (pressure.size() > 0)
+    fields.emplace_back("contact_pressure", (pressure.array() > 0).select(pressure, nan));
+}
+
 double shown_gap(const Level& level) {
   return shown_part_of_diagonal * bounding_box_diagonal(level.rest.vertices);
 }
@@ -91,6 +99,7 @@ std::pair<double, double> field_range(const FieldKind& kind,
     const double end = magnitude_quantile(values, quantile);
     return {-std::max(end, 1e-6), std::max(end, 1e-6)};
   }
+  if (map == "force") return {0, magnitude_quantile(values, quantile)};
   // Stretch begins at 1; the largest matters, so none is cut off.
   return {1, std::max(1.001, magnitude_quantile(values, 1))};
 }

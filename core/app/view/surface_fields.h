@@ -12,11 +12,11 @@ namespace drape {
 /// A scalar field that the viewer can show.
 struct FieldKind {
   std::string name, label, unit;
-  std::string map;   ///< "diverging" about 0, "sequential" upwards, "near" for what is close to 0
+  std::string map;   ///< "diverging" about 0, "sequential" from 1, "force" from 0, "near" close to 0
   std::string note;  ///< below the legend
 };
-/// The fields that the viewer computes from positions.
-const std::vector<FieldKind>& derived_fields();
+/// The fields that the viewer computes from positions, and the contact forces that runs record.
+const std::vector<FieldKind>& surface_fields();
 
 /// Values by the name of their kind.
 using SurfaceFields = std::vector<std::pair<std::string, Eigen::VectorXd>>;
@@ -26,6 +26,9 @@ using SurfaceFields = std::vector<std::pair<std::string, Eigen::VectorXd>>;
 /// mesh.
 Eigen::VectorXd contact_gap(const Level& level, const Positions& x,
                             const std::vector<TriangleMesh>& obstacles, double range);
+
+/// Adds LevelModel::contact_pressure, unless it is empty. NaN where there is no force.
+void add_contact_pressure(SurfaceFields& fields, const Eigen::VectorXd& pressure);
 
 /// The range of displayed gaps: a fraction of the rest shape's diagonal [m].
 double shown_gap(const Level& level);

@@ -38,7 +38,7 @@ ViewDocument::ViewDocument(const std::vector<Level>& levels, const Obstacles& ob
       with_gaps_(with_gaps),
       obstacles_(obstacles),
       keep_(std::move(keep)),
-      kinds_(derived_fields()) {
+      kinds_(surface_fields()) {
   kinds_.insert(kinds_.end(), further.begin(), further.end());
   ranges_.resize(kinds_.size(), {0, 0});
   for (const Level& level : levels_) {
@@ -100,7 +100,7 @@ ViewDocument::Json ViewDocument::state(const std::string& name, const Positions&
 }
 
 std::size_t ViewDocument::state_bytes(int level) const {
-  return levels_[level].vertex_count() * (6 + derived_fields().size());
+  return levels_[level].vertex_count() * (6 + surface_fields().size());
 }
 
 ViewDocument::Json ViewDocument::document(const std::string& title, Json methods) const {

@@ -86,6 +86,9 @@ class LevelModel {
   double energy(const Positions& x) const;
   /// Overwrites g (n×3) with the gradient of energy(x) [N], fixed vertices included, and returns energy(x).
   double energy_gradient(const Positions& x, Positions& g) const;
+  /// Norm of the contacts' forces on each vertex at x, without friction, over its area at rest (n) [Pa];
+  /// empty for a model without contact.
+  Eigen::VectorXd contact_pressure(const Positions& x) const;
   /// The Hessian of energy(x) [N/m], projected per element. Its pattern has the contacts at x, so every call
   /// builds it anew: solvers take an Objective.
   BlockMatrix energy_hessian(const Positions& x, Projection projection) const;
@@ -126,6 +129,7 @@ class LevelModel {
   void adapt_stiffness_to_load();
   double external_force_norm(const Positions& x) const;
   double barrier(const Positions& x) const;  // of the contacts [J]
+  double add_barrier_gradient(const Positions& x, Positions& g) const;
   void add_up_linear_energies();
   void require_constant_forces(const std::string& name, const BoundEnergy& energy) const;
   /// The value of the linear energies of these roles [J]. Overwrites g, unless it is null, with their

@@ -67,10 +67,21 @@ void LevelModel::add_hessian(const Positions& x, Projection projection, BlockMat
 double LevelModel::energy_gradient(const Positions& x, Positions& g) const {
   double sum = gradient(x, g);
   for (const BoundEnergy* limit : limits_) sum += limit->add_gradient(x, g);
-  double barriers = 0;
+  return sum + add_barrier_gradient(x, g);
+}
+
+double LevelModel::add_barrier_gradient(const Positions& x, Positions& g) const {
+  double sum = 0;
   for (const auto& contact : contacts_)
-    barriers += contact->build_candidates(x, x)->build_collisions(x)->add_gradient(x, g);
-  return sum + barriers;
+    sum += contact->build_candidates(x, x)->build_collisions(x)->add_gradient(x, g);
+  return sum;
+}
+
+Eigen::VectorXd LevelModel::contact_pressure(const Positions& x) const {
+  if (contacts_.empty()) return {};
+  Positions g = Positions::Zero(x.rows(), 3);
+  add_barrier_gradient(x, g);
+  return g.rowwise().norm().cwiseQuotient(level_->vertex_area);
 }
 
 BlockMatrix LevelModel::energy_hessian(const Positions& x, Projection projection) const {

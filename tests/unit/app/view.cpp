@@ -135,13 +135,30 @@ TEST_CASE("the document names what can be coloured, and blocks of every state") 
   view.set_ranges({&fields});
   const auto state = view.state("s", x, fields);
   const auto document = view.document("a title", {});
-  REQUIRE(document["fields"].size() == 2);  // no gap, no difference from a finest level
+  REQUIRE(document["fields"].size() == 2);  // no contact, no difference from a finest level
   CHECK(document["fields"][0]["low"].get<double>() == -document["fields"][0]["high"].get<double>());
   CHECK(document["fields"][1]["low"] == 1.0);
   CHECK(document["rounding"].get<double>() == position_rounding(x));
   CHECK(blocks.at(state["x"]).size() == 24 + 6 * 25);
   CHECK(blocks.at(state["fields"]["stretch"]).size() == 8 + 25);
   CHECK(blocks.at(document["levels"][0]["block"]).size() == 12 * 32);
+}
+
+TEST_CASE("contact forces are coloured from zero, and not where there are none") {
+  const std::vector<Level> levels = {sheet(1)};
+  std::map<std::string, std::string> blocks;
+  ViewDocument view(levels, {}, true,
+                    [&](const std::string& name, std::string bytes) { blocks[name] = std::move(bytes); });
+  SurfaceFields fields = view.fields(0, levels[0].rest.vertices);
+  add_contact_pressure(fields, Eigen::Vector4d(0, 2, 4, 4));
+  view.set_ranges({&fields});
+  const auto state = view.state("s", levels[0].rest.vertices, fields);
+  const auto document = view.document("a title", {});
+  REQUIRE(document["fields"].back()["name"] == "contact_pressure");
+  CHECK(document["fields"].back()["low"] == 0.0);
+  CHECK(document["fields"].back()["high"] == 4.0);
+  const std::string bytes = blocks.at(state["fields"]["contact_pressure"]).substr(8);
+  CHECK(bytes == "\xff\x7f\xfe\xfe");
 }
 
 TEST_CASE("a page of one state holds its blocks and names no other file") {
