@@ -22,10 +22,10 @@ function arrows(x, warp, length) {
 export class Scene {
   /// Throws without WebGL.
   constructor(canvas, labels) {
-    const context = ['webgl2', 'webgl'].reduce((gl, kind) => gl || canvas.getContext(kind, {antialias: true}), null);
+    const context = ['webgl2', 'webgl'].reduce((gl, kind) => gl || canvas.getContext(kind, {antialias: false}), null);
     if (!context) throw new Error('no WebGL');
     Object.assign(this, {canvas, labels, views: [], solids: new Map(), renders: 0, waiting: false});
-    this.renderer = new THREE.WebGLRenderer({canvas, context, antialias: true});
+    this.renderer = new THREE.WebGLRenderer({canvas, context});
     this.renderer.setScissorTest(true);
     this.camera = new THREE.PerspectiveCamera(28, 1, .01, 100);
     this.camera.up.set(0, 0, 1);
@@ -83,9 +83,8 @@ export class Scene {
           #ifdef PAINTED
           light = mix(light, vec3(0.95), 0.5);
           #endif
-          float sheen = pow(1.0 - max(dot(n, normalize(-eyePosition)), 0.0), 4.0);
-          vec3 lit = pow(base, vec3(2.2)) * light + vec3(0.07) * sheen;
-          gl_FragColor = vec4(pow(min(lit, vec3(1.0)), vec3(1.0 / 2.2)), opacity);
+          float edge = 1.0 - max(dot(n, normalize(-eyePosition)), 0.0), sheen = edge * edge * edge * edge;
+          gl_FragColor = vec4(sqrt(min(base * base * light + vec3(0.07) * sheen, vec3(1.0))), opacity);  // with a gamma of 2
         }`,
     });
   }
@@ -196,7 +195,6 @@ export class Scene {
     this.rows = Math.ceil(count / this.columns);
     this.panel = {width: width / this.columns};
     this.panel.height = Math.round(Math.min(this.panel.width * (this.columns > 1 ? 1.25 : .72), (this.rows > 1 ? .4 : .66) * innerHeight));
-    this.renderer.setPixelRatio(Math.min(devicePixelRatio || 1, 2));
     this.renderer.setSize(width, this.panel.height * this.rows, false);
     this.canvas.style.height = this.panel.height * this.rows + 'px';
     this.labels.style.gridTemplate = `repeat(${this.rows}, ${this.panel.height}px) / repeat(${this.columns}, 1fr)`;
@@ -206,20 +204,26 @@ export class Scene {
 
   /// The picture as a PNG file.
   async picture() {
-    this.render();
+    this.render(2);
     return new Promise(resolve => this.canvas.toBlob(resolve));
   }
 
-  /// Once per frame, however often it is requested.
+  /// Once per frame, however often it is requested; what rests, with smooth edges. Multisampling would smooth them too, but costs
+  /// more, and where the processor draws it leaves dots along folds.
   draw() {
     if (this.waiting) return;
     this.waiting = true;
+    clearTimeout(this.resting);
     requestAnimationFrame(() => {
       this.waiting = false;
-      if (this.panel) this.render();
+      if (!this.panel) return;
+      this.render(Math.min(devicePixelRatio || 1, 2));
+      this.resting = setTimeout(() => this.render(2), 150);
     });
   }
-  render() {
+  /// In `ratio`² pixels for each of the page's.
+  render(ratio) {
+    if (ratio !== this.renderer.getPixelRatio()) this.renderer.setPixelRatio(ratio);
     const {target, azimuth, elevation} = this.view, camera = this.camera, r = this.home.radius;
     const distance = this.view.distance * Math.max(1, this.panel.height / this.panel.width);  // the whole fits a narrow panel too
     camera.position.set(target[0] + distance * Math.cos(elevation) * Math.cos(azimuth),

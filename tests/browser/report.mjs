@@ -57,7 +57,7 @@ test('the level slider changes the mesh, the colours and the legend follow the c
   await until('level 0', async () => (await state()).panels.every(p => p.level === 0 && p.vertices === 81));
   assert.match(await page.locator('#viewer-level-text').textContent(), /^0, 81 vertices/);
   const fields = await page.locator('#viewer-field option').evaluateAll(all => all.map(o => o.value));
-  assert.deepEqual(fields, ['', 'mean_curvature', 'stretch', 'gap', 'H_difference', 'principal_curvature']);
+  assert.deepEqual(fields, ['', 'mean_curvature', 'stretch', 'gap', 'contact_pressure', 'H_difference', 'principal_curvature']);
   const seen = new Set();
   for (const field of fields.slice(1)) {
     await page.locator('#viewer-field').selectOption(field);
@@ -152,6 +152,13 @@ test('keys and pointer turn all views together', async () => {
   assert.notEqual((await state()).camera.azimuth, home.azimuth);
   await page.mouse.wheel(0, 100);
   assert.ok((await state()).camera.distance > home.distance);
+  const finer = () => page.evaluate(() => { const {width, clientWidth} = document.getElementById('viewer-canvas'); return width / clientWidth > 1.9; });
+  await until('smooth edges at rest', finer);
+  assert.equal(await page.evaluate(async () => {
+    window.drapeViewer.scene.turn(.1, 0);
+    await new Promise(requestAnimationFrame);
+    return document.getElementById('viewer-canvas').width / document.getElementById('viewer-canvas').clientWidth > 1.9;
+  }), false);
   assert.deepEqual(heard.errors, []);
 });
 
@@ -212,6 +219,38 @@ test('a table begins with few columns, sorts by every one and is saved', async (
   const names = await page.locator('#levels th[data-column]').evaluateAll(all => all.map(th => th.dataset.column));
   assert.ok(names.includes('energy_parts_released.gravity'));
   for (const name of ['energy', 'energy_on_finest', 'energy_parts.gravity']) assert.ok(!names.includes(name), name);
+  assert.deepEqual(heard.errors, []);
+});
+
+test('along the outline of sharp folds nothing is seen of the side that faces away', async () => {
+  const {page, heard} = await openPage(report);
+  await page.locator('#viewer-obstacles').uncheck();
+  const counts = await page.evaluate(async () => {
+    const {scene} = window.drapeViewer, n = 100, r = .004, x = new Float32Array(3 * n * n), index = [];
+    // A bent ridge across the mesh's lines, with walls that lead down from it.
+    for (let i = 0; i < n * n; ++i) {
+      const u = (i % n) / n - .5, v = Math.floor(i / n) / n - .5, along = .8 * u + .6 * v, across = .8 * v - .6 * u;
+      const turn = Math.max(-1.4, Math.min(1.4, across / r)), wall = across - r * turn;
+      x.set([along, r * Math.sin(turn) + wall * Math.cos(turn) + .2 * along * along,
+        r * Math.cos(turn) - Math.abs(wall) * Math.sin(1.4) - .5 * along - .3 * along * along], 3 * i);
+      if (i % n < n - 1 && i < n * n - n) index.push(i, i + 1, i + n, i + 1, i + n + 1, i + n);
+    }
+    scene.setViews(1);
+    scene.setCloth(0, {x, index: new THREE.BufferAttribute(new Uint32Array(index), 1)});
+    scene.cloth.uniforms.front.value.set(0, 1, 0);
+    scene.cloth.uniforms.back.value.set(1, 0, 0);
+    const canvas = document.createElement('canvas'), pen = canvas.getContext('2d', {willReadFrequently: true}), red = [];
+    for (const elevation of [0, .3, .6]) {
+      Object.assign(scene.view, {azimuth: 1.3, elevation, distance: 1.5, target: [0, 0, 0]});
+      const bitmap = await createImageBitmap(await scene.picture());
+      Object.assign(canvas, {width: bitmap.width, height: bitmap.height});
+      pen.drawImage(bitmap, 0, 0);
+      const pixels = pen.getImageData(canvas.width / 4, 0, canvas.width / 2, canvas.height).data;
+      red.push(pixels.filter((value, i) => i % 4 === 0 && value > pixels[i + 1] + 20).length);
+    }
+    return red;
+  });
+  assert.ok(counts.every(count => count < 3), counts.join());
   assert.deepEqual(heard.errors, []);
 });
 
