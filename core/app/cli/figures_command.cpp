@@ -33,7 +33,6 @@ int make_figures(const std::string& folder, const std::string& out) {
     const char* path = std::getenv("PYTHONPATH");
     setenv("PYTHONPATH", (built.string() + (path && *path ? std::string(":") + path : "")).c_str(), 1);
   }
-  setenv("DRAPE_COMMAND", command.c_str(), 1);
   const char* python = std::getenv("DRAPE_PYTHON");
   python = python && *python ? python : "/usr/bin/python3";  // for which `make python` builds the module
   execl(python, python, "-c", program, folder.c_str(), "--out", out.c_str(), nullptr);

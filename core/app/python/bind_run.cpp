@@ -8,6 +8,7 @@
 #include "core/app/python/python_call.h"
 #include "core/app/python/values.h"
 #include "core/app/report/report.h"
+#include "core/app/report/run_export.h"
 #include "core/app/report/run_table.h"
 #include "core/app/run/runner.h"
 #include "core/app/view/colours.h"
@@ -122,6 +123,14 @@ void bind_results(py::module_& m) {
       py::arg("folder"), "The rows of `drape table FOLDER --format json`.");
   m.def(
       "_run_page", [](const fs::path& folder) { return viewer_page(read_run(folder)); }, py::arg("folder"));
+  m.def(
+      "_draw",
+      [](const fs::path& folder, const fs::path& file, const std::string& method, std::optional<int> level,
+         bool outline, std::optional<int> width) {
+        export_run(folder, file, {method, level, false, {width, std::nullopt, outline}, true});
+      },
+      py::arg("folder"), py::arg("file"), py::arg("method"), py::arg("level") = std::nullopt,
+      py::arg("outline") = false, py::arg("width") = std::nullopt, "As `drape export` of a .png.");
   m.def(
       "_read_mesh",
       [](const fs::path& file) {

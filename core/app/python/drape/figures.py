@@ -6,13 +6,12 @@ The plots are Result's, in matplotlib's current style: a matplotlibrc in the wor
 from __future__ import annotations
 
 import argparse
-import os
 import pathlib
-import subprocess
 import sys
 
 import pandas
 
+from . import _core
 from .plots import measures_of
 from .result import read_run, read_sweep
 
@@ -76,7 +75,7 @@ def _save(axes, file: pathlib.Path) -> list[pathlib.Path]:
     return files
 
 
-def _run_figures(folder: pathlib.Path, out: pathlib.Path, drape: str) -> list[pathlib.Path]:
+def _run_figures(folder: pathlib.Path, out: pathlib.Path) -> list[pathlib.Path]:
     result = read_run(folder)
     files = _save(result.plot_convergence(), out / "convergence")
     for target in ("own", "reference"):
@@ -87,13 +86,12 @@ def _run_figures(folder: pathlib.Path, out: pathlib.Path, drape: str) -> list[pa
         files.append(out / "errors.csv")
     for method in result.methods:
         levels = [entry.level for entry in result[method].levels]
-        pictures: dict[str, list[str]] = {"end": []}
+        pictures: dict[str, dict] = {"end": {}}
         if len(levels) > 1:
-            pictures |= {"preview": ["--level", str(levels[0])], "outline": ["--outline"]}
+            pictures |= {"preview": {"level": levels[0]}, "outline": {"outline": True}}
         for name, options in pictures.items() if levels else ():
             files.append(out / f"{method}_{name}.png")
-            subprocess.run([drape, "export", folder, "--to", files[-1], "--method", method, "--overwrite", *options],
-                           check=True, stdout=subprocess.DEVNULL)
+            _core._draw(folder, files[-1], method, **options)
     return files
 
 
@@ -121,7 +119,7 @@ def _sweep_figures(rows: pandas.DataFrame, out: pathlib.Path) -> list[pathlib.Pa
     return files
 
 
-def figures(results, out, drape: str = "drape") -> list[pathlib.Path]:
+def figures(results, out) -> list[pathlib.Path]:
     """Writes the figures of a run or a sweep to a folder, which is made, and returns the files. Raises RuntimeError for a
     folder without results."""
     import matplotlib
@@ -137,7 +135,7 @@ def figures(results, out, drape: str = "drape") -> list[pathlib.Path]:
     rows.to_csv(out / "table.csv", index=False)
     (out / "table.tex").write_text(latex_table(rows), encoding="utf-8")
     files = [out / "table.csv", out / "table.tex"]
-    return files + (_run_figures(folder, out, drape) if (folder / "results.json").exists() else _sweep_figures(rows, out))
+    return files + (_run_figures(folder, out) if (folder / "results.json").exists() else _sweep_figures(rows, out))
 
 
 def main() -> int:
@@ -146,9 +144,9 @@ def main() -> int:
     parser.add_argument("-o", "--out", required=True, help="folder of the figures")
     arguments = parser.parse_args()
     try:
-        for file in figures(arguments.results, arguments.out, os.environ.get("DRAPE_COMMAND", "drape")):
+        for file in figures(arguments.results, arguments.out):
             print(file)
-    except (RuntimeError, OSError, subprocess.CalledProcessError) as error:
+    except (RuntimeError, OSError) as error:
         print(f"error: {error}", file=sys.stderr)
         return 2
     return 0

@@ -177,6 +177,13 @@ class Result:
     def _repr_html_(self) -> str:
         return self.page._repr_html_()
 
+    def _repr_png_(self) -> bytes:
+        # For pages that show no frames.
+        with tempfile.TemporaryDirectory() as folder:
+            file = pathlib.Path(folder, "end.png")
+            _core._draw(self.folder, file, self.methods[0], width=480)
+            return file.read_bytes()
+
     def __repr__(self) -> str:
         return f"<drape.Result of {self.experiment}: {', '.join(self.methods)}>"
 
