@@ -11,6 +11,7 @@
 # make python   build the Python module: PYTHONPATH=build/python python3 -c "import drape"; `make test` then tests it too
 # make deb      pack the command, its plugins, the C++ package and the Python module: build-package/drape_*.deb, for Debian 12
 # make wheel    pack the Python module with its libraries, command and plugins: build-package/drape-*.whl, for pip of /usr/bin/python3
+# make notebooks run the notebooks of docs/guide/notebooks and store their outputs in them
 # make test     build and run every test
 # make fuzz     fuzz the readers of configs, --set, meshes and checkpoints for FUZZ_SECONDS each (20), or FUZZ_RUNS inputs each;
 #               FUZZ_TARGETS="mesh config" chooses some; what ends one is kept in build-fuzz/artifacts
@@ -37,7 +38,7 @@ LINTED := $(if $(LINT),/unity_$(notdir $(LINT:/=))_cxx\.,(core|plugins)/)
 BUILD := $(if $(filter release ci,$(PRESET)),build,build-$(PRESET))
 SOURCES = $(shell find core plugins examples tests benchmarks -name '*.cpp' -o -name '*.h')
 
-.PHONY: all setup configure build build-tests benchmarks python deb wheel demo table1 scenes test fuzz extremes data bench hard results figures \
+.PHONY: all setup configure build build-tests benchmarks python deb wheel notebooks demo table1 scenes test fuzz extremes data bench hard results figures \
         pictures api format fix-format lint clean
 all: build
 
@@ -80,6 +81,9 @@ wheel:
 	@third_party/setup run use-python
 	@/usr/bin/python3 -m pip wheel -q --no-build-isolation --no-deps --no-index -w build-package .
 	@ls build-package/drape-*.whl
+
+notebooks: python setup
+	@PYTHONPATH=$(BUILD)/python /usr/bin/python3 tests/python/notebooks.py
 
 demo: build
 	@configs/demo $(BUILD)/bin/drape

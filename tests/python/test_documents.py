@@ -12,6 +12,7 @@ import pytest
 
 import drape
 from conftest import SOURCE
+from notebooks import NOTEBOOKS
 
 PACKAGE = pathlib.Path(drape.__file__).parent
 
@@ -58,15 +59,25 @@ def test_the_code_of_a_page_runs(page, monkeypatch, tmp_path):
     exec(compile("\n".join(code), page, "exec"), {"__name__": "page"})
 
 
-@pytest.mark.parametrize("notebook", sorted((SOURCE / "docs/guide/notebooks").glob("*.ipynb")),
-                         ids=lambda path: path.stem)
-def test_a_notebook_runs(notebook, monkeypatch):
+@pytest.mark.parametrize("notebook", NOTEBOOKS, ids=lambda path: path.stem)
+def test_a_notebook_runs_and_has_its_outputs(notebook, monkeypatch, capsys):
     matplotlib = pytest.importorskip("matplotlib")
     matplotlib.use("Agg")
     monkeypatch.chdir(SOURCE)
-    cells = json.loads(notebook.read_text())["cells"]
-    code = ["".join(cell["source"]) for cell in cells if cell["cell_type"] == "code"]
+    text = notebook.read_text()
+    assert len(text) < 300_000
+    for place in (str(SOURCE), str(pathlib.Path.home()), "/tmp/", "site-packages", "text/html"):
+        assert place not in text
+    code = [cell for cell in json.loads(text)["cells"] if cell["cell_type"] == "code"]
     assert len(code) >= 3
+    assert any("image/png" in output.get("data", {}) for cell in code for output in cell["outputs"])
     names = {"__name__": "notebook"}
-    for number, cell in enumerate(code):
-        exec(compile(cell, f"{notebook.name}, code cell {number + 1}", "exec"), names)
+    for number, cell in enumerate(code, 1):
+        assert cell["execution_count"] == number, "`make notebooks` stores the outputs"
+        exec(compile("".join(cell["source"]), f"{notebook.name}, code cell {number}", "exec"), names)
+        stored = "".join("".join(output["text"]) for output in cell["outputs"] if output["output_type"] == "stream")
+        assert words(stored) == words(capsys.readouterr().out), f"code cell {number}: `make notebooks` stores the outputs"
+
+
+def words(text):
+    return re.findall(r"[^\W\d]{2,}", text)
