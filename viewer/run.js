@@ -92,7 +92,7 @@ function methodTable(run) {
   return h('section', {id: 'summary'}, h('h2', {}, 'Methods'), explained('A row per method: the cost and quality of its end, and of its preview, the state of its coarsest level. Time ' +
     'counts the levels that the end builds on: of a direct method only the finest. Energy released: how far the finest level’s energy, without contact and strain limits, has fallen ' +
     'since the scene’s start. The best of the methods that converged is bold. ', Object.values(run.results.metrics || {}).filter(m => m.scope === 'state' && m.text).map(m => m.text + ' ').join('')),
-  dataTable('methods', 'of methods', columnsOf([...run.table.columns.filter(name => !['sweep', 'run', 'seed', 'pass'].includes(name)), 'peak_memory_bytes'], few, run.of), rows, {filter: false}),
+  dataTable('methods', 'of methods', columnsOf([...run.table.columns.filter(name => !['sweep', 'run', 'seed', 'pass'].includes(name)), 'peak_memory_bytes'], few, run.of), rows),
   fold('Every level', levelTable(run)), consistency(run));
 }
 
@@ -105,7 +105,7 @@ function levelTable(run) {
   const skipped = ['energy', 'energy_parts', 'energy_on_finest', 'mesh', 'mesh_checksum', 'snapshots', 'not_measured'];
   const rows = run.order.flatMap(method => (run.results.methods[method].levels || []).map(level => ({method, ...flat(level, skipped)})));
   const few = ['method', 'level', 'status', 'vertices', 'iterations', 'seconds', 'energy_released', 'force_residual'];
-  return dataTable('levels', 'of levels', columnsOf(unique(rows.flatMap(Object.keys)), few, run.of).map(column => ({...column, better: undefined})), rows, {filter: false});
+  return dataTable('levels', 'of levels', columnsOf(unique(rows.flatMap(Object.keys)), few, run.of).map(column => ({...column, better: undefined})), rows);
 }
 
 /// How well coarse levels foretell finer ones, with the scene's start in place of the coarse level as a rival.
@@ -121,7 +121,7 @@ function consistency(run) {
   const texts = Object.values(run.results.metrics).filter(m => m.scope === 'pair' && m.text && m.columns.some(c => c.shown !== 'stored')).map(m => formula(m.text + ' '));
   return fold('How well coarse levels foretell finer ones', h('p', {}, 'The method’s own interpolation prolongs the coarse state to the fine mesh, where it is compared with the fine one. ', ...texts.flat(),
     'The flat start is the scene’s start in place of the coarse state: where it is best, the measure does not compare the methods.'),
-  dataTable('consistency', 'of pairs of levels', columnsOf(shown, shown, run.of), [...pairs, ...starts].sort((a, b) => a.levels.localeCompare(b.levels)), {rivals: row => row.levels, filter: false}));
+  dataTable('consistency', 'of pairs of levels', columnsOf(shown, shown, run.of), [...pairs, ...starts].sort((a, b) => a.levels.localeCompare(b.levels)), row => row.levels));
 }
 
 /// Residuals, steps and energies on the way, and the increments of a schedule.

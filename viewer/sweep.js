@@ -1,7 +1,7 @@
 /// The page of a sweep, or of several runs.
 import {Chart, methodLook, otherLook} from './charts.js';
 import {columnsOf, costs, describe, ranking, targets} from './columns.js';
-import {dataTable} from './tables.js';
+import {dataTable, matcher} from './tables.js';
 import {choice, converged, count, counted, explained, fold, h, known, rowsOf, spread, unique, words} from './text.js';
 
 /// Median and extremes over repeats of a curve of error over cost, a step function, at costs in geometric progression from that
@@ -30,11 +30,12 @@ function matrix(all) {
     return h(run.report ? 'a' : 'span', {class: 'tile', href: run.report || null, title: `${text}: ${row ? row.status : run.status}`}, content);
   };
   const draw = () => {
-    const columns = all.values(chosen.across).flatMap(value => all.seeds.map(seed => ({value, seed})));
-    const lines = [...new Map(all.runs.map(run => [JSON.stringify(others().map(key => run.settings[key])), run])).values()];
+    const columns = all.values(chosen.across).flatMap(value => all.seeds.map(seed => ({value, seed}))).filter(({value, seed}) =>
+      all.shown.some(run => run.settings[chosen.across] === value && (run.seed ?? null) === seed));
+    const lines = [...new Map(all.shown.map(run => [JSON.stringify(others().map(key => run.settings[key])), run])).values()];
     const line = first => [others().length ? h('p', {class: 'line'}, others().map(key => keyText(key, first.settings[key])).join(', ')) : null,
       ...columns.map(({value, seed}) => {
-        const runs = all.runs.filter(run => run.settings[chosen.across] === value && (run.seed ?? null) === seed && others().every(key => run.settings[key] === first.settings[key]));
+        const runs = all.shown.filter(run => run.settings[chosen.across] === value && (run.seed ?? null) === seed && others().every(key => run.settings[key] === first.settings[key]));
         return h('div', {class: 'cell'}, runs.map(run => tile(run, run.rows.find(row => row.method === chosen.method))));
       })];
     const grid = h('div', {class: 'matrix'}, columns.map(({value, seed}) => h('p', {class: 'head'}, keyText(chosen.across, value), all.seeds.length > 1 ? h('span', {}, ` · ${seed ?? '–'}`) : '')), lines.map(line).flat());
@@ -55,7 +56,7 @@ function against(all) {
   const draw = () => {
     const values = all.values(chosen.key), numeric = values.every(known), rest = all.keys.filter(key => key !== chosen.key);
     const lines = new Map();
-    for (const row of all.rows) {
+    for (const row of all.shownRows) {
       const label = [row.method, ...rest.map(key => keyText(key, row[key]))].join(', ');
       if (!lines.has(label)) lines.set(label, []);
       lines.get(label).push(row);
@@ -84,24 +85,24 @@ function errors(all) {
     const y = `${chosen.target}_${chosen.measure}`, lines = [];
     for (const variation of unique(recorded.map(run => run.variation)))
       for (const method of all.methods) {
-        const repeats = recorded.filter(run => run.variation === variation).map(run => run.errors.filter(row => row.method === method && row.level >= (run.first_levels[method] ?? 0))
+        const repeats = recorded.filter(run => run.variation === variation && run.shown.some(row => row.method === method)).map(run => run.errors.filter(row => row.method === method && row.level >= (run.first_levels[method] ?? 0))
           .map(row => ({x: row[chosen.cost], y: row[y]})));
         lines.push({label: several ? `${variation}, ${method}` : method, ...(several ? otherLook(lines.length) : methodLook(all.styles, method)), mark: null, band: true, points: medianCurve(repeats)});
       }
     chart.draw({x: {title: costs[chosen.cost], name: chosen.cost, log: true}, y: {title: all.measures.find(m => m.name === chosen.measure)?.label, name: y, log: true}, series: lines});
   };
   const pick = (label, name, options) => choice(label, options, chosen[name], value => { chosen[name] = value; draw(); }, 'error-' + name);
-  draw();
+  all.redraw.push(draw);
   return fold('Distance against time', h('p', {class: 'controls'}, pick('of', 'measure', Object.fromEntries(all.measures.map(m => [m.name, m.label]))),
     pick('from', 'target', targets), pick('over', 'cost', costs)), chart.element);
 }
 
 function table(all) {
-  const measure = ranking(all.measures), keys = all.keys.filter(key => key !== 'run'), state = {medians: all.seeds.length > 1};
+  const measure = ranking(all.measures), keys = all.keys.filter(key => key !== 'run'), state = {medians: all.seeds.length > 1, table: {}};
   const names = all.columns.filter(name => !['sweep', 'pass'].includes(name)), frame = h('div');
   const few = ['run', ...keys, 'seed', 'method', 'status', 'converged', 'preview_seconds', 'seconds', 'preview_' + measure, 'error_' + measure, 'energy_released', 'intersections'];
   if (keys.length) few.shift();  // the keys tell the runs apart
-  const medians = () => [...all.rows.reduce((groups, row) => {
+  const medians = () => [...all.shownRows.reduce((groups, row) => {
     const key = JSON.stringify([row.variation, row.method]);
     return groups.set(key, [...(groups.get(key) || []), row]);
   }, new Map()).values()].map(rows => {
@@ -110,18 +111,18 @@ function table(all) {
       [name, common(name) ? rows[0][name] : rows.some(row => typeof row[name] === 'number') ? spread(good.map(row => row[name])) : null]))};
   });
   const draw = () => {
-    const rows = state.medians ? medians() : all.rows.map(row => ({...row, comparable: converged(row.status)}));
+    const rows = state.medians ? medians() : all.shownRows.map(row => ({...row, comparable: converged(row.status)}));
     const columns = columnsOf(state.medians ? [...names.slice(0, names.indexOf('method') + 1), 'converged', ...names.slice(names.indexOf('method') + 1)] : names, few, all.of);
-    columns.filter(column => keys.includes(column.name)).forEach(column => Object.assign(column, {title: column.name.split('.').at(-1), show: cell => String(cell ?? '–')}));
-    frame.replaceChildren(dataTable('table', 'of runs', columns, rows, {rivals: row => row.physics}));
+    columns.filter(column => keys.includes(column.name)).forEach(column => Object.assign(column, {title: column.name.split('.').at(-1), text: column.name.split('.').at(-1), show: cell => String(cell ?? '–')}));
+    frame.replaceChildren(dataTable('table', 'of runs', columns, rows, row => row.physics, state.table));
   };
-  draw();
+  all.redraw.push(draw);
   const own = unique(all.runs.filter(run => run.rows.length).map(run => run.reference).filter(name => name)).map(name =>
     `${name} in ${all.runs.filter(run => run.reference === name).length} of ${all.runs.filter(run => run.rows.some(row => row.method === name)).length}`);
   return h('section', {id: 'summary'}, h('h2', {}, 'All runs'), explained('A row per method and variation: the median over the starts that converged, with the range; or a row per method and run. ' +
     'Time counts the levels that the end builds on. The best value is bold among rows of the same physics (cloth, levels, material, pins, schedule, energies, refiner, contact, obstacles): ' +
     'times and energies of different physics do not compare.', own.length ? ` Ends that were the reference themselves are not compared with it: ${own.join(', ')}.` : ''),
-  all.seeds.length > 1 ? h('p', {class: 'controls'}, h('label', {}, h('input', {type: 'checkbox', id: 'medians', checked: true, change: event => { state.medians = event.target.checked; draw(); }}), ' medians over starts')) : null, frame);
+  all.seeds.length > 1 ? h('p', {class: 'controls'}, h('label', {}, h('input', {type: 'checkbox', id: 'medians', checked: true, change: event => { Object.assign(state, {medians: event.target.checked, table: {}}); draw(); }}), ' medians over starts')) : null, frame);
 }
 
 function failures(all) {
@@ -148,11 +149,21 @@ export function sweepPage(data) {
     all.quantity = value;
     all.redraw.forEach(draw => draw());
   }, 'quantity');
+  const matching = h('output', {id: 'matching'}), filter = text => {
+    const fits = matcher(text, columns);
+    runs.forEach(run => { run.shown = run.rows.filter(fits); });
+    all.shown = runs.filter(run => run.shown.length || !run.rows.length && fits({...run.settings, status: run.status}));
+    all.shownRows = runs.flatMap(run => run.shown);
+    matching.textContent = all.shown.length < runs.length ? `${all.shown.length} of ${counted(runs.length, 'run')}` : '';
+    all.redraw.forEach(draw => draw());
+  };
   const statuses = unique(runs.map(run => run.status)), machines = unique(runs.map(run => run.machine).filter(text => text));
   const summary = (data.complete ? '' : 'Not all runs are done; these are the figures so far. ') + `${counted(runs.length, 'run')} of ${counted(unique(runs.map(run => run.variation)).length, 'variation')}: ` +
     statuses.map(status => `${count(runs.filter(run => run.status === status).length)} ${status.replace(/_/g, ' ') || 'unknown'}`).join(', ') + '.';
   const parts = all.rows.length ? [matrix(all), against(all), table(all), errors(all)] : [h('p', {class: 'absent'}, 'No run has written results yet.')];
-  all.redraw.forEach(draw => draw());
-  return [h('header', {}, h('h1', {}, data.name || 'Several runs'), h('p', {class: 'lead', id: 'counts'}, summary)), ...parts, failures(all),
+  filter('');
+  return [h('header', {}, h('h1', {}, data.name || 'Several runs'), h('p', {class: 'lead', id: 'counts'}, summary)),
+    h('p', {class: 'controls filter'}, h('label', {}, 'Filter ', h('input', {type: 'search', id: 'filter', size: 22, placeholder: 'words, or as in seconds<2', input: event => filter(event.target.value)})), matching),
+    ...parts, failures(all),
     h('footer', {}, machines.map(text => h('p', {}, text)), machines.length > 1 ? h('p', {class: 'poor'}, 'More than one machine or setting: their times do not compare.') : null)];
 }

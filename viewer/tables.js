@@ -1,5 +1,5 @@
-/// Tables that sort and filter, with few columns at first.
-import {badge, h, number, saving, words} from './text.js';
+/// Tables that sort, with few columns at first, and filters.
+import {badge, fold, h, number, saving, words} from './text.js';
 
 /// The value of a cell: a number, a word, or a spread over repeats.
 const value = cell => cell !== null && typeof cell === 'object' ? cell.median : cell;
@@ -12,6 +12,20 @@ function content(column, cell) {
   return words(cell);
 }
 
+/// Whether a row satisfies every word of a filter: "seconds<2" and the like of a column, by its name or the last part of it; other
+/// words are regular expressions, one of which some cell matches.
+export function matcher(filter, names) {
+  const operators = {'<': (a, b) => a < b, '<=': (a, b) => a <= b, '>': (a, b) => a > b, '>=': (a, b) => a >= b, '=': (a, b) => a === b, '!=': (a, b) => a !== b};
+  const tests = filter.split(/\s+/).filter(word => word).map(word => {
+    const [, key, operator, text] = /^([\w.]+)(<=|>=|!=|<|>|=)(.+)$/.exec(word) || [], name = names.find(each => each === key || each.split('.').at(-1) === key);
+    if (name) return row => operators[operator](row[name] ?? '', typeof row[name] === 'number' ? Number(text) : text);
+    let pattern;
+    try { pattern = new RegExp(word, 'i'); } catch { pattern = {test: cell => cell.includes(word)}; }  // not finished yet
+    return row => names.some(each => pattern.test(String(row[each] ?? '')));
+  });
+  return row => tests.every(test => test(row));
+}
+
 /// A row's values for a file; a spread has three.
 const plain = (row, columns) => Object.fromEntries(columns.flatMap(({name}) => {
   const cell = row[name];
@@ -20,8 +34,9 @@ const plain = (row, columns) => Object.fromEntries(columns.flatMap(({name}) => {
 }));
 
 /// A column is {name, title (text or nodes), few: whether it is among the first ones, better: 'lower' or 'higher', show};
-/// `rivals` gives the key of the rows among which the best value is bold. The name is the column's in files.
-export function dataTable(name, what, columns, rows, {rivals = () => '', filter = rows.length > 8} = {}) {
+/// `rivals` gives the key of the rows among which the best value is bold. The name is the column's in files;
+/// `state` keeps order and columns for another table of these columns.
+export function dataTable(name, what, columns, rows, rivals = () => '', state = {}) {
   const filled = columns.filter(column => rows.some(row => row[column.name] !== null && row[column.name] !== undefined && row[column.name] !== ''));
   const best = new Map();
   for (const column of filled) {
@@ -36,18 +51,16 @@ export function dataTable(name, what, columns, rows, {rivals = () => '', filter 
       known.filter(row => text(row) === text(first)).forEach(row => best.set(row, (best.get(row) || new Set()).add(column.name)));
     }
   }
-  const state = {sort: null, down: false, filter: '', all: false};
+  const chosen = state.chosen ??= new Set(filled.filter(column => column.few).map(column => column.name));
   const table = h('table'), frame = h('div', {class: 'scroll', tabindex: 0, role: 'region', 'aria-label': 'table: ' + what}, table);
   const shownRows = () => {
-    const parts = state.filter.toLowerCase().split(/\s+/);
-    const found = rows.filter(row => parts.every(part => filled.some(({name: n}) => words(value(row[n])).toLowerCase().includes(part))));
-    if (!state.sort) return found;
+    if (!state.sort) return rows;
     const key = row => value(row[state.sort]) ?? '', order = (a, b) => typeof a === 'number' && typeof b === 'number' ? a - b
       : typeof a === 'number' ? -1 : typeof b === 'number' ? 1 : String(a).localeCompare(String(b), 'en', {numeric: true});
-    return [...found].sort((a, b) => (state.down ? -1 : 1) * order(key(a), key(b)));
+    return [...rows].sort((a, b) => (state.down ? -1 : 1) * order(key(a), key(b)));
   };
   const draw = () => {
-    const shown = filled.filter(column => state.all || column.few), number = column => rows.some(row => typeof value(row[column.name]) === 'number');
+    const shown = filled.filter(column => chosen.has(column.name)), number = column => rows.some(row => typeof value(row[column.name]) === 'number');
     table.replaceChildren(h('thead', {}, h('tr', {}, shown.map(column => h('th', {scope: 'col', class: number(column) ? '' : 'text', 'data-column': column.name,
       'aria-sort': state.sort !== column.name ? 'none' : state.down ? 'descending' : 'ascending'},
     h('button', {type: 'button', click: () => {
@@ -60,9 +73,11 @@ export function dataTable(name, what, columns, rows, {rivals = () => '', filter 
       'data-name': column.text ?? column.name}, best.get(row)?.has(column.name) ? h('strong', {}, content(column, row[column.name])) : content(column, row[column.name])))))));
   };
   draw();
-  const more = filled.some(column => !column.few);
-  return h('div', {class: 'table', id: name}, h('p', {class: 'controls'},
-    filter ? h('label', {}, 'Filter ', h('input', {type: 'search', size: 14, input: event => { state.filter = event.target.value; draw(); }})) : '',
-    more ? h('label', {}, h('input', {type: 'checkbox', change: event => { state.all = event.target.checked; draw(); }}), ' all columns') : ''),
-  frame, saving(name, 'the table ' + what, () => shownRows().map(row => plain(row, filled))));
+  const ticks = filled.map(column => h('label', {}, h('input', {type: 'checkbox', checked: chosen.has(column.name), change: event => {
+    chosen[event.target.checked ? 'add' : 'delete'](column.name);
+    draw();
+  }}), ' ' + (column.text ?? column.name)));
+  const all = h('button', {type: 'button', click: () => ticks.forEach(tick => { if (!tick.firstChild.checked) tick.firstChild.click(); })}, 'All');
+  return h('div', {class: 'table', id: name}, filled.length > chosen.size ? fold('Columns', h('p', {class: 'controls'}, all, ticks)) : '', frame,
+    saving(name, 'the table ' + what, () => shownRows().map(row => plain(row, filled))));
 }

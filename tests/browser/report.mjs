@@ -207,15 +207,18 @@ test('a table begins with few columns, sorts by every one and is saved', async (
   await page.keyboard.press('Enter');
   assert.equal(await first(), 'pcs');
   assert.equal(await page.locator('#methods [data-column="method"]').getAttribute('aria-sort'), 'descending');
-  await page.locator('#methods input[type="checkbox"]').check();
+  await page.locator('#methods summary').click();
+  await page.locator('#methods details button').click();
   assert.ok(await page.locator('#methods thead th').count() > 12);
+  await page.locator('#methods label:has-text("method")').first().click();
+  assert.equal(await page.locator('#methods [data-column="method"]').count(), 0);
   const rows = JSON.parse((await downloaded(page, '#methods button:text-is("JSON")')).bytes);
   assert.deepEqual(rows.map(row => row.method), ['pcs', 'newton', 'cascadic']);
   const results = JSON.parse(fs.readFileSync(path.join(folder, 'out/results.json'))).methods.pcs.levels;
   assert.equal(rows[0].energy_released, results[1].energy_released);
   // Energies that count from the potentials' origin are nowhere.
   await page.evaluate(() => document.querySelectorAll('details').forEach(part => { part.open = true; }));
-  await page.locator('#levels input[type="checkbox"]').check();
+  await page.locator('#levels details button').click();
   const names = await page.locator('#levels th[data-column]').evaluateAll(all => all.map(th => th.dataset.column));
   assert.ok(names.includes('energy_parts_released.gravity'));
   for (const name of ['energy', 'energy_on_finest', 'energy_parts.gravity']) assert.ok(!names.includes(name), name);

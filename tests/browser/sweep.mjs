@@ -82,8 +82,16 @@ test('the table sorts and filters, by medians or by run, and compares within one
   assert.equal(await page.locator('#table tbody tr').count(), 16);
   await page.locator('#medians').uncheck();
   assert.equal(await page.locator('#table tbody tr').count(), 48);
-  await page.locator('#table input[type="search"]').fill('midpoint newton');
-  assert.equal(await page.locator('#table tbody tr').count(), 12);
+  const shown = async () => [await page.locator('.tile').count(), await page.locator('#table tbody tr').count(), await page.locator('#matching').textContent()];
+  await page.locator('#filter').fill('levels>=2 seed!=3 method=pcs');
+  assert.deepEqual(await shown(), [8, 8, '8 of 24 runs']);
+  assert.match(await page.locator('#parameter svg').getAttribute('aria-label'), /: pcs, levels 2, step_growth 1.5, pcs, levels 2, step_growth 3$/);
+  await page.locator('#filter').fill('^lo+p$ step_growth=3 levels=1');
+  assert.deepEqual(await shown(), [3, 6, '3 of 24 runs']);
+  await page.locator('#filter').fill('(unfinished');
+  assert.deepEqual(await shown(), [0, 0, '0 of 24 runs']);
+  await page.locator('#filter').fill('midpoint newton');
+  assert.deepEqual(await shown(), [12, 12, '12 of 24 runs']);
   const seconds = async () => (await page.locator('#table td[data-name="time [s]"]').allTextContents()).map(Number);
   await page.locator('#table [data-column="seconds"] button').click();
   const sorted = await seconds();
