@@ -24,7 +24,8 @@ def written(tmp_path, command):
 
     def write(results) -> dict:
         out = tmp_path / "figures"
-        subprocess.run([command, "figures", results, "-o", out], check=True)
+        ended = subprocess.run([command, "figures", results, "-o", out], check=True, capture_output=True, text=True)
+        assert "Warning" not in ended.stderr
         return {file.name: file for file in out.iterdir()}
 
     return write

@@ -16,7 +16,7 @@ from .plots import measures_of
 from .result import read_run, read_sweep
 
 # Columns of the LaTeX table beside what tells its rows apart, in order, as far as the runs have them.
-COLUMNS = {"preview_seconds": "preview [s]", "seconds": "end [s]", "preview_rms": "preview error", "error_rms": "error",
+COLUMNS = {"preview_seconds": "preview [s]", "seconds": "end [s]", "iterations": "Newton iterations", "preview_rms": "preview error", "error_rms": "error",
            "energy_released": "energy released [J]", "intersections": "intersections"}
 ESCAPES = str.maketrans({c: "\\" + c for c in "&%$#_{}"} | {"\\": r"\textbackslash{}", "~": r"\textasciitilde{}", "^": r"\textasciicircum{}"})
 
@@ -49,8 +49,8 @@ def _varied(rows: pandas.DataFrame) -> list[str]:
 
 def _groups(rows: pandas.DataFrame, keys: list[str]):
     """Pairs of the keys' values and the rows with them, in the order of their first rows."""
-    for values, group in rows.groupby(keys, sort=False, dropna=False):
-        yield values if isinstance(values, tuple) else (values,), group
+    for values, group in rows.groupby(keys if len(keys) > 1 else keys[0], sort=False, dropna=False):
+        yield values if len(keys) > 1 else (values,), group
 
 
 def latex_table(rows: pandas.DataFrame) -> str:
