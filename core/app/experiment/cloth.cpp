@@ -76,7 +76,9 @@ TriangleMesh make_cloth(const Experiment& e) {
       for (std::size_t i = 0; i + 1 < p.size(); i += 2) loop.emplace_back(p[i], p[i + 1]);
     }
     if (loops.empty()) throw std::runtime_error("\"shape: polygon\" needs \"loops\", its outline and holes");
-    return delaunay_polygon(loops, c.vertices, c.seed);
+    TriangleMesh mesh = delaunay_polygon(loops, c.vertices, c.seed);
+    c.convert(mesh.vertices);
+    return mesh;
   }
   const Eigen::Vector2d size = c.shape == "square" ? Eigen::Vector2d(c.side, c.side) : c.size;
   if (c.triangulation == "random") return random_triangulation(size, c.vertices, c.seed);

@@ -60,7 +60,10 @@ void ClothParameters::declare(Declaration<ClothParameters>& d) {
       .only_with("shape", {"file"})
       .description("mesh of the rest shape (OBJ, OFF, PLY or STL), relative to this file");
   declare_file_coordinates(d);
-  for (const char* key : {"unit", "up"}) d.declared(key).only_with("shape", {"file"});
+  d.declared("unit")
+      .only_with("shape", {"file", "polygon"})
+      .description("unit of the file's coordinates, or of a polygon's points");
+  d.declared("up").only_with("shape", {"file"});
   declare_scale(d)
       .only_with("shape", {"file"})
       .description("scale factor on the file's mesh, and so on the rest shape, applied before `rotate`");

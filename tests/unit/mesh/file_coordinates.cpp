@@ -136,6 +136,14 @@ TEST_CASE("An obstacle's files are read in its unit and by its axis") {
                       1e-14));
 }
 
+TEST_CASE("A polygon's points are read in its unit") {
+  const auto rest = [](const std::string& keys) {
+    return scene_from(experiment("{shape: polygon, vertices: 30, " + keys + "}", "{}")).rest();
+  };
+  const Positions metres = rest("loops: [{points: [0, 0, 0.25, 0, 0.25, 0.3, 0, 0.2]}]");
+  CHECK(rest("unit: mm, loops: [{points: [0, 0, 250, 0, 250, 300, 0, 200]}]").isApprox(metres, 1e-12));
+}
+
 TEST_CASE("Units and axes without a file are refused") {
   const auto refusal = [](const std::string& cloth, const std::string& start, const std::string& more = "") {
     return refusal_of([&] { scene_from(experiment(cloth, start, more)); });
