@@ -40,7 +40,8 @@ TEST_CASE("the bare command shows its usage; a misspelt command names the neares
   CHECK(refusal_of("rnu e.yaml") == "error: there is no command \"rnu\"; did you mean \"run\"?\n");
   CHECK(refusal_of("simulate") ==
         "error: there is no command \"simulate\"; the commands are new, check, check-energy, run, view, "
-        "export, figures, fabric, report, compare, table, sweep, list, describe, schema, help, reference\n");
+        "export, figures, fabric, fit, report, compare, table, sweep, list, describe, schema, help, "
+        "reference\n");
   CHECK(refusal_of("run") == "error: experiment is required; see `drape run --help`\n");
   CHECK(refusal_of("--fast") == "error: A subcommand is required; see `drape --help`\n");
   CHECK_THAT(shown_by("--version"), Matches("drape [0-9]+\\.[0-9]+\\.[0-9]+ \\(.+\\)\n"));

@@ -43,6 +43,7 @@ void add_view_command(Commands& commands);
 void add_export_command(Commands& commands);
 void add_figures_command(Commands& commands);
 void add_fabric_command(Commands& commands);
+void add_fit_command(Commands& commands);
 void add_report_commands(Commands& commands);  ///< report, compare, table
 void add_sweep_commands(Commands& commands);   ///< sweep, and sweep-job, which its jobs on a cluster execute
 void add_plugin_commands(Commands& commands);  ///< list, describe, schema

@@ -60,7 +60,7 @@ void warn_of(const std::vector<std::string>& lines) {
   for (const std::string& line : lines) std::cerr << "warning: " << printable(line) << "\n";
 }
 
-CLI::Option* ConfigArguments::add_to(CLI::App& command) {
+CLI::Option* ConfigArguments::add_overrides_to(CLI::App& command) {
   CLI::Option* file = command.add_option("experiment", config, "experiment file (YAML)")->required();
   command.add_option("--set", sets, "override one value, as in newton.step_size=0.1; may be repeated")
       ->type_name("KEY=VALUE")
@@ -68,10 +68,15 @@ CLI::Option* ConfigArguments::add_to(CLI::App& command) {
   command.add_option("--levels", levels, "number of levels, in place of the experiment's")
       ->type_name("N")
       ->check(positive_integer());
-  command.add_flag("--allow-start-repair", allow_start_repair,
-                   "translate an intersecting start up or sideways until it is free");
   command.add_flag("--allow-memory", allow_memory,
                    "allow a run that may need more memory than this machine has");
+  return file;
+}
+
+CLI::Option* ConfigArguments::add_to(CLI::App& command) {
+  CLI::Option* file = add_overrides_to(command);
+  command.add_flag("--allow-start-repair", allow_start_repair,
+                   "translate an intersecting start up or sideways until it is free");
   return file;
 }
 

@@ -22,8 +22,8 @@ using namespace drape;
 int run(int argc, char** argv) {
   Commands commands;
   for (const auto add : {add_new_command, add_check_commands, add_run_command, add_view_command,
-                         add_export_command, add_figures_command, add_fabric_command, add_report_commands,
-                         add_sweep_commands, add_plugin_commands})
+                         add_export_command, add_figures_command, add_fabric_command, add_fit_command,
+                         add_report_commands, add_sweep_commands, add_plugin_commands})
     add(commands);
   std::string asked;  // main reads it as `COMMAND --help`
   commands

@@ -22,8 +22,8 @@ constexpr ExitCode exit_codes[] = {
     {exit_done,
      "success; of a run: every level of every method converged, or ended as its experiment requests"},
     {exit_not_converged,
-     "completed, but a method failed or did not converge, a row of a table does not pass, or a "
-     "--bound is broken"},
+     "completed, but a method failed or did not converge, a row of a table does not pass, a --bound is "
+     "broken, or a fit misses its target"},
     {exit_bad_input, "refused: nothing was run and nothing was written"},
     {exit_aborted,
      "aborted after it had begun, as on a full disk; once the cause is removed, `drape run --resume` resumes "

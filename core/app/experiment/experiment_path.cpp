@@ -76,6 +76,16 @@ std::vector<std::string> words_of_path(const ConfigNode& experiment, const std::
   return words;
 }
 
+const ConfigNode* value_at(const ConfigNode& experiment, const std::string& path) {
+  const ConfigNode* node = &experiment;
+  for (const std::string& word : words_of_path(experiment, path)) {
+    const auto index = node->kind == NodeKind::list ? node->index_of(word) : std::nullopt;
+    node = index ? &node->items[*index] : node->find(word);
+    if (!node) return nullptr;
+  }
+  return node;
+}
+
 bool set_parameter(ConfigNode& experiment, const std::string& path, ConfigNode value, const Location& where,
                    ConfigErrors& errors) {
   const std::string key = path.substr(0, path.find('.'));

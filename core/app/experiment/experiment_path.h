@@ -12,6 +12,9 @@ namespace drape {
 /// found by its name: "energies.cloth.warp" is "energies.cloth.constants.warp.value" where it has a unit.
 std::vector<std::string> words_of_path(const ConfigNode& experiment, const std::string& path);
 
+/// The value at a parameter's path in a resolved experiment; null if there is none.
+const ConfigNode* value_at(const ConfigNode& experiment, const std::string& path);
+
 /// As set_path, for the parameters of an experiment: the type of a plugin may stand in the path whether it is
 /// in a list or alone, the default refiner need not be written, and what is missing is named.
 bool set_parameter(ConfigNode& experiment, const std::string& path, ConfigNode value, const Location& where,

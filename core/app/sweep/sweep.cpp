@@ -41,13 +41,9 @@ void keep_methods(ConfigNode& resolved, const std::vector<std::string>& chosen) 
 }
 
 /// The value at a path of a resolved experiment: of a plugin its type; null if the experiment has none.
-nlohmann::ordered_json value_at(const ConfigNode& resolved, const std::string& path) {
-  const ConfigNode* node = &resolved;
-  for (const std::string& word : words_of_path(resolved, path)) {
-    const auto index = node->kind == NodeKind::list ? node->index_of(word) : std::nullopt;
-    node = index ? &node->items[*index] : node->find(word);
-    if (!node) return nullptr;
-  }
+nlohmann::ordered_json setting_at(const ConfigNode& resolved, const std::string& path) {
+  const ConfigNode* node = value_at(resolved, path);
+  if (!node) return nullptr;
   const ConfigNode* type = node->find("type");
   return json_value(type ? *type : *node);
 }
@@ -57,10 +53,9 @@ class Reader {
   Reader(const Registry& registry, ConfigErrors& errors, std::optional<int> most_levels)
       : registry_(registry), errors_(errors), most_levels_(most_levels) {}
 
-  Sweep read(const std::filesystem::path& file) {
-    sweep_.file = file;
-    source_ = read_yaml(file, errors_);
-    if (!errors_.empty()) return sweep_;
+  Sweep read(ConfigNode source) {
+    sweep_.file = source.where.file;
+    source_ = std::move(source);
     SweepParameters& p = sweep_.parameters;
     schema_of<SweepParameters>().read(&p, source_, errors_);
     if (source_.find("name")) check_name("name", p.name, location_of("name"), errors_);
@@ -187,7 +182,7 @@ class Reader {
         if (run.settings.contains(key))
           all[key] = run.settings[key];
         else if (key != "methods")
-          all[key] = value_at(resolved_[k], key);
+          all[key] = setting_at(resolved_[k], key);
       run.settings = all;
     }
   }
@@ -231,7 +226,14 @@ class Reader {
 
 std::optional<Sweep> read_sweep(const std::filesystem::path& file, const Registry& registry,
                                 ConfigErrors& errors, std::optional<int> most_levels) {
-  Sweep sweep = Reader(registry, errors, most_levels).read(file);
+  ConfigNode source = read_yaml(file, errors);
+  if (!errors.empty()) return std::nullopt;
+  return read_sweep(std::move(source), registry, errors, most_levels);
+}
+
+std::optional<Sweep> read_sweep(ConfigNode source, const Registry& registry, ConfigErrors& errors,
+                                std::optional<int> most_levels) {
+  Sweep sweep = Reader(registry, errors, most_levels).read(std::move(source));
   if (!errors.empty()) return std::nullopt;
   return sweep;
 }

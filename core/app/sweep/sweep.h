@@ -67,6 +67,10 @@ struct SweepOptions {
 std::optional<Sweep> read_sweep(const std::filesystem::path& file, const Registry& registry,
                                 ConfigErrors& errors, std::optional<int> most_levels = std::nullopt);
 
+/// The same from a map that has been read already.
+std::optional<Sweep> read_sweep(ConfigNode source, const Registry& registry, ConfigErrors& errors,
+                                std::optional<int> most_levels = std::nullopt);
+
 /// The schema of sweeps, `ablation` included, for `drape describe` and as JSON Schema for editors.
 std::string describe_sweep();
 std::string describe_sweep_markdown();

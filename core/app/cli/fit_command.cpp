@@ -1,0 +1,244 @@
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <iostream>
+#include <memory>
+
+#include "core/app/cli/commands.h"
+#include "core/app/cli/config_arguments.h"
+#include "core/app/experiment/declared_metrics.h"
+#include "core/app/experiment/exit_codes.h"
+#include "core/app/files/json_file.h"
+#include "core/app/files/machine.h"
+#include "core/app/files/yaml_file.h"
+#include "core/app/sweep/fit_runs.h"
+#include "core/app/sweep/fit_search.h"
+#include "core/app/sweep/memory.h"
+#include "core/kernel/files/file.h"
+#include "core/kernel/files/message_text.h"
+#include "core/kernel/files/string_utils.h"
+#include "core/kernel/plugin/parameters.h"
+#include "core/kernel/threads/parallel.h"
+
+namespace drape {
+namespace {
+
+constexpr int most_evaluations = 24;
+
+struct FitRequest : ConfigArguments, SweepOptions {
+  double target = 0, tolerance = 1;  ///< tolerance in percent of the target
+  std::vector<std::string> by;
+  std::string metric = "drape_coefficient", method, folder;
+  int starts = 3;
+};
+
+std::string digits(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.4g", value);
+  return text;
+}
+
+/// Appends an error unless a metric of the experiment has this column.
+void check_metric(const Experiment& experiment, const std::string& metric, ConfigErrors& errors) {
+  std::vector<std::string> names;
+  for (const MetricColumn& column :
+       columns_of(declared_metrics(experiment.metrics), MetricScope::state, Shown::stored))
+    names.push_back(column.name);
+  if (std::find(names.begin(), names.end(), metric) != names.end()) return;
+  const std::string near = nearest_word(metric, names);
+  errors.push_back({{"--metric", 0, 0},
+                    "the experiment's metrics have no \"" + excerpt(metric) + "\"" +
+                        (!near.empty()   ? "; did you mean \"" + near + "\"?"
+                         : names.empty() ? "; name one of `drape list metric` in its \"metrics\""
+                                         : ", only " + joined(names))});
+}
+
+/// The fit's runs, after everything in the request is checked; completes the request's folder.
+FitSetup setup_of(FitRequest& request, const Registry& registry) {
+  ConfigErrors errors;
+  const auto experiment = read_experiment(request.config, request.overrides(), registry, errors);
+  require_none(errors);
+  FitSetup setup;
+  setup.config = request.config, setup.metric = request.metric, setup.starts = request.starts;
+  setup.name = experiment->parameters.name + "_fit";
+  setup.keys = scaled_keys(*experiment, request.by, "--by", errors);
+  check_metric(*experiment, request.metric, errors);
+  if (request.method == all_methods) throw std::runtime_error("--method: a fit takes one method");
+  setup.method = chosen_methods(
+      *experiment, request.method.empty() ? std::vector<std::string>() : std::vector{request.method})[0];
+  for (const Override& o : request.overrides())
+    if (const auto value = value_of_option(o.value, o.option, errors)) {
+      setup.set.add(o.key, *value);
+      setup.set.key_locations.back().file = o.option;
+    }
+  require_none(errors);
+  const std::optional<Sweep> sweep = setup.sweep({1}, registry, errors);
+  require_none(errors);
+  if (request.folder.empty()) request.folder = "results/" + setup.name;
+  const SweepFolder folder(request.folder);
+  if (!request.allow_memory) MemoryEstimate(*sweep, folder).require(*sweep, folder, machine_memory());
+  return setup;
+}
+
+void tell(const FitSetup& setup, const FitSample& sample) {
+  std::string line = "factor " + digits(sample.factor) + "  " + setup.keys[0].path + " " +
+                     digits(setup.keys[0].value * sample.factor) + "  ";
+  if (!sample.values.empty())
+    line += setup.metric + " " + digits(sample.median()) + " (" + digits(sample.values.front()) + " to " +
+            digits(sample.values.back()) + ")";
+  for (const std::string& why : sample.left_out)
+    line += (sample.values.empty() && why == sample.left_out[0] ? "" : "\n  ") + why;
+  std::fprintf(stderr, "%s\n", printable_lines(line).c_str());
+}
+
+/// The sample that is nearest to the target; null without any.
+const FitSample* nearest_sample(const std::vector<FitSample>& samples, double target) {
+  const FitSample* best = nullptr;
+  for (const FitSample& sample : samples)
+    if (!sample.values.empty() &&
+        (!best || std::abs(sample.median() - target) < std::abs(best->median() - target)))
+      best = &sample;
+  return best;
+}
+
+/// Why a fit ended without its target.
+std::string shortfall(FitEnd end, const FitRequest& request, const std::vector<FitSample>& samples) {
+  const std::string target = request.metric + " " + digits(request.target);
+  if (end == FitEnd::jumps) return target + " lies in a jump between two factors that are almost equal";
+  if (end == FitEnd::exhausted)
+    return target + " was not met by " + std::to_string(most_evaluations) + " factors";
+  if (end == FitEnd::interrupted) return target + " was not met: the last factor gave no value";
+  double low = HUGE_VAL, high = -HUGE_VAL, least = HUGE_VAL, most = 0;
+  for (const FitSample& sample : samples) {
+    if (sample.values.empty()) continue;
+    low = std::min(low, sample.median()), high = std::max(high, sample.median());
+    least = std::min(least, sample.factor), most = std::max(most, sample.factor);
+  }
+  return target + " is out of reach: factors from " + digits(least) + " to " + digits(most) + " gave " +
+         digits(low) + " to " + digits(high);
+}
+
+nlohmann::ordered_json json_of(const FitSample& sample) {
+  nlohmann::ordered_json json = {{"factor", sample.factor}};
+  if (!sample.values.empty())
+    json.update(
+        {{"median", sample.median()}, {"low", sample.values.front()}, {"high", sample.values.back()}});
+  json["values"] = sample.values;
+  json["left_out"] = sample.left_out;
+  return json;
+}
+
+/// Writes fit.json and fitted.yaml.
+void write_fit(const SweepFolder& folder, const FitRequest& request, const FitSetup& setup,
+               const std::vector<FitSample>& samples, const FitSample& best, bool reached) {
+  nlohmann::ordered_json json = {
+      {"experiment", setup.config}, {"method", setup.method},         {"metric", setup.metric},
+      {"target", request.target},   {"tolerance", request.tolerance}, {"starts", setup.starts},
+      {"reached", reached}};
+  json.update(json_of(best));
+  for (const ScaledKey& key : setup.keys) json["fitted"][key.path] = best.scaled(key);
+  json["samples"] = nlohmann::ordered_json::array();
+  for (const FitSample& sample : samples) json["samples"].push_back(json_of(sample));
+  write_file(folder.path() / "fit.json", json_text(json, 1) + "\n");
+  write_file(folder.path() / "fitted.yaml", best.config);
+}
+
+int show_result(const SweepFolder& folder, const FitRequest& request, const FitSetup& setup,
+                const FitRuns& runs, FitEnd end) {
+  const FitSample* best = nearest_sample(runs.samples(), request.target);
+  if (!best) {
+    std::cerr << "error: no start gave a value\n";
+    return exit_not_converged;
+  }
+  const bool reached = end == FitEnd::reached;
+  write_fit(folder, request, setup, runs.samples(), *best, reached);
+  std::cout << request.metric << " " << digits(best->median()) << " (" << digits(best->values.front())
+            << " to " << digits(best->values.back()) << " in " << best->values.size() << " of "
+            << setup.starts << " starts) with\n ";
+  for (const ScaledKey& key : setup.keys)
+    std::cout << " --set " << key.path << "=" << ConfigNode::of(best->scaled(key)).scalar;
+  std::cout << "\nexperiment: " << (folder.path() / "fitted.yaml").string() << "\n";
+  if (!reached) std::cerr << "error: " << shortfall(end, request, runs.samples()) << "\n";
+  return reached && best->left_out.empty() ? exit_done : exit_not_converged;
+}
+
+int run_fit(FitRequest r, const Registry& registry) {
+  const FitSetup setup = setup_of(r, registry);
+  const SweepFolder folder(r.folder);
+  const FolderLock lock(folder.path());
+  r.stop = [] { return stop_signal() != 0; };
+  r.workers = std::max<int>(1, core_count() / r.threads);
+  FitRuns runs(setup, folder, r, registry);
+  stop_on_signals();  // nothing to save before this point
+  try {
+    const FitEnd end = find_factor(
+        [&](double factor) -> std::optional<double> {
+          const bool is_new = !runs.has(factor);
+          const FitSample& sample = runs.at(factor);
+          if (is_new) tell(setup, sample);
+          if (sample.values.empty()) return std::nullopt;
+          const double residual = sample.median() - r.target;
+          return std::abs(residual) <= r.tolerance / 100 * std::abs(r.target) ? 0 : residual;
+        },
+        most_evaluations);
+    return show_result(folder, r, setup, runs, end);
+  } catch (const FitStopped&) {
+    std::cerr << "stopped on request; the same command goes on\n";
+    return exit_by_signal + stop_signal();
+  } catch (const std::exception& error) {
+    if (runs.samples().empty()) throw;  // nothing was run
+    std::cerr << "error: " << printable(reason_of(error)) << "; the same command goes on\n";
+    return exit_aborted;
+  }
+}
+
+}  // namespace
+
+void add_fit_command(Commands& commands) {
+  const auto request = std::make_shared<FitRequest>();
+  FitRequest& r = *request;  // lives as long as the commands
+  r.threads = 1, r.quiet = true;
+  CLI::App& command = commands.add_with_plugins(
+      "fit", "find the numbers of an experiment with which a metric has a measured value",
+      "drape fit configs/tests/cusick.yaml --to 68.4 --by material.bending -o results/fit",
+      [request](const Registry& registry) { return run_fit(*request, registry); });
+  r.add_overrides_to(command);
+  command.add_option("--to", r.target, "the value to be met")
+      ->type_name("NUMBER")
+      ->required()
+      ->check([](const std::string& text) {
+        const std::optional<double> number = parse_number(text);
+        return number && std::isfinite(*number) && *number != 0
+                   ? ""
+                   : "must be a number other than 0, not " + excerpt(text);
+      });
+  command
+      .add_option("--by", r.by,
+                  "a number to be scaled, as material.warp_bending; material.bending is every number of the "
+                  "material with bending in its name. May be repeated: one factor scales all")
+      ->type_name("KEY")
+      ->allow_extra_args(false)
+      ->required();
+  command.add_option("--metric", r.metric, "metric, on the finest level (default: drape_coefficient)")
+      ->type_name("NAME");
+  command
+      .add_option("--starts", r.starts,
+                  "runs of each factor, whose median counts: start.seed 1 to N (default: 3)")
+      ->type_name("N")
+      ->check(integer_between(1, 1000, "an integer from 1 to 1000"));
+  command
+      .add_option("--tolerance", r.tolerance, "of the median, in percent of the value to be met (default: 1)")
+      ->type_name("PERCENT")
+      ->check(number_of_at_least(1e-4));
+  command.add_option("--method", r.method, "method of the experiment (default: as of drape run)")
+      ->type_name("NAME");
+  command
+      .add_option("-o,--out", r.folder, "folder of the runs and of the result (default: results/NAME_fit)")
+      ->type_name("FOLDER");
+  command
+      .add_option("--threads", r.threads, "threads of each run; as many runs at a time as the cores allow")
+      ->type_name("N")
+      ->check(positive_integer());
+}
+
+}  // namespace drape

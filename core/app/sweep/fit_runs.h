@@ -1,0 +1,62 @@
+#pragma once
+
+#include <set>
+
+#include "core/app/experiment/scaled_keys.h"
+#include "core/app/sweep/sweep_folder.h"
+
+namespace drape {
+
+/// The runs of a fit: one experiment with some of its numbers times a factor, from several starts.
+struct FitSetup {
+  std::string config;  ///< file of the experiment
+  ConfigNode set;      ///< further values of keys, by path
+  std::string name;    ///< of the sweep that has the runs
+  std::string method, metric;
+  std::vector<ScaledKey> keys;
+  int starts = 1;
+
+  /// The sweep over these factors. Appends errors as read_sweep does.
+  std::optional<Sweep> sweep(const std::set<double>& factors, const Registry& registry,
+                             ConfigErrors& errors) const;
+};
+
+/// A metric's values on the finest level with one factor.
+struct FitSample {
+  double factor = 1;
+  std::vector<double> values;         ///< of the starts that converged, in ascending order
+  std::vector<std::string> left_out;  ///< why the others are not among them, and why there are none
+  std::string config;                 ///< of the first start: an experiment in YAML
+
+  double median() const;
+  double scaled(const ScaledKey& key) const;  ///< its value with this factor
+};
+
+/// Thrown when a stop was requested; the runs have saved their states.
+struct FitStopped {};
+
+/// The samples of a fit, each of which is made once. Their runs are a sweep's, which grows by a variation for
+/// each factor; runs that its folder has already are not repeated.
+class FitRuns {
+ public:
+  /// Reads the factors that the folder has, which must be locked.
+  FitRuns(const FitSetup& setup, const SweepFolder& folder, const SweepOptions& options,
+          const Registry& registry);
+
+  /// Executes what is missing. Throws FitStopped, and std::runtime_error for a folder that holds other runs.
+  const FitSample& at(double factor);
+  bool has(double factor) const;                                      ///< whether the sample is made already
+  const std::vector<FitSample>& samples() const { return samples_; }  ///< in the order of evaluation
+
+ private:
+  FitSample measured(const Sweep& sweep, double factor) const;
+
+  const FitSetup& setup_;
+  const SweepFolder& folder_;
+  const SweepOptions& options_;
+  const Registry& registry_;
+  std::set<double> factors_;
+  std::vector<FitSample> samples_;
+};
+
+}  // namespace drape
