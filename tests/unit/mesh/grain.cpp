@@ -10,6 +10,7 @@
 #include "core/numerics/mesh_files/io.h"
 #include "core/numerics/patterns/generate.h"
 #include "tests/support/command.h"
+#include "tests/support/evaluate.h"
 #include "tests/support/solve.h"
 
 using namespace drape;
