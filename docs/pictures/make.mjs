@@ -80,7 +80,7 @@ async function progression() {
       frames.push('-d', String(end ? (ends.length === all.length ? 4000 : 1500) : 200), `drawn_${name}`);
     }
   }
-  execFileSync('img2webp', ['-loop', '0', '-lossy', '-q', '82', '-m', '6', ...frames, '-o', path.join(here, 'tablecloth.webp')],
+  execFileSync('img2webp', ['-loop', '0', '-lossy', '-q', '74', '-m', '6', ...frames, '-o', path.join(here, 'tablecloth.webp')],
     {cwd: folder, stdio: 'pipe'});
 }
 
