@@ -1,5 +1,6 @@
 /// Plots as SVG: lines with marks, bands and ranges on linear or logarithmic axes.
-import {h, known, number, saving, unique} from './text.js';
+import {costs, ranking, targets} from './columns.js';
+import {choice, h, known, number, saving, unique} from './text.js';
 
 const space = 'http://www.w3.org/2000/svg';
 function s(tag, attributes = {}, ...children) {
@@ -48,6 +49,19 @@ function scale(values, logarithmic, categories, most) {
   const margin = .03 * (high - low), from = low === 0 ? 0 : low - margin, to = high + margin, ticks = [];
   for (let t = Math.ceil(from / step) * step; t <= to; t += step) ticks.push([t, String(Number(t.toPrecision(6)))]);
   return {place: v => (v - from) / (to - from), ticks};
+}
+
+/// Choices and a plot of errors over costs, as rows of errors.csv have them; series(cost, error) are the lines of two columns.
+export function distancePlot(name, caption, height, {measures, rows, absent}, series) {
+  const chosen = {measure: ranking(measures), cost: 'seconds'}, chart = new Chart(name, caption, height);
+  chosen.target = Object.keys(targets).find(t => rows.some(row => known(row[`${t}_${chosen.measure}`]))) || 'own';
+  const draw = () => {
+    const y = `${chosen.target}_${chosen.measure}`, {cost} = chosen;
+    chart.draw({x: {title: costs[cost], name: cost, log: true}, y: {title: measures.find(m => m.name === chosen.measure)?.label, name: y, log: true}, absent, series: series(cost, y)});
+  };
+  const pick = (label, part, options) => choice(label, options, chosen[part], value => { chosen[part] = value; draw(); }, `${name}-${part}`);
+  return {draw, elements: [h('p', {class: 'controls'}, pick('of', 'measure', Object.fromEntries(measures.map(m => [m.name, m.label]))), pick('from', 'target', targets),
+    pick('over', 'cost', costs)), chart.element]};
 }
 
 /// A plot that follows its width: draw({x, y, series}) shows other lines. An axis is {title, name, log, categories}; a series

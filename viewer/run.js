@@ -1,6 +1,6 @@
 /// The page of one run.
-import {Chart, methodLook} from './charts.js';
-import {columnsOf, costs, metricColumns, ranking, targets, withUnit} from './columns.js';
+import {Chart, distancePlot, methodLook} from './charts.js';
+import {columnsOf, metricColumns, ranking} from './columns.js';
 import {dataTable} from './tables.js';
 import {choice, converged, count, counted, explained, fold, formula, h, known, number, rowsOf, seconds, unique} from './text.js';
 import {View} from './view.js';
@@ -68,22 +68,16 @@ function curves(run, method, cost, y) {
 }
 
 function distances(run) {
-  const chosen = {measure: ranking(run.measures), cost: 'seconds'};
-  chosen.target = Object.keys(targets).find(t => run.errors.some(row => known(row[`${t}_${chosen.measure}`]))) || 'own';
-  const chart = new Chart('distance', 'How soon a method comes near: each point is a state on the way, the larger ones are ends of levels. Lower and further left is better.');
-  const draw = () => {
-    const y = `${chosen.target}_${chosen.measure}`, label = run.measures.find(m => m.name === chosen.measure)?.label;
-    chart.draw({x: {title: costs[chosen.cost], name: chosen.cost, log: true}, y: {title: label, name: y, log: true}, absent: 'No states were recorded in this run (snapshots: 0).',
-      series: run.order.map((name, k) => ({label: name, ...methodLook(run.styles, name), width: k ? 1.8 : 2.6, points: curves(run, name, chosen.cost, y)}))});
-  };
-  const pick = (label, name, options) => choice(label, options, chosen[name], value => { chosen[name] = value; draw(); }, 'distance-' + name);
-  draw();
+  const plot = distancePlot('distance', 'How soon a method comes near: each point is a state on the way, the larger ones are ends of levels. Lower and further left is better.', 360,
+    {measures: run.measures, rows: run.errors, absent: 'No states were recorded in this run (snapshots: 0).'},
+    (cost, y) => run.order.map((name, k) => ({label: name, ...methodLook(run.styles, name), width: k ? 1.8 : 2.6, points: curves(run, name, cost, y)})));
+  plot.draw();
   const {reference = {}} = run.results;
   return h('section', {id: 'errors-section'}, h('h2', {}, 'Distance against time'), explained('A method’s own interpolation prolongs every state to the finest level, where it is ' +
     'compared with the target. ', reference.file ? `The reference is the file ${reference.file}.` : reference.method ? `The reference is ${reference.method}’s end` +
     (reference.chosen === 'lowest' ? ', the lowest in energy of all that have converged' : '') + (reference.force_tolerance ? `, solved on to a force residual of ${number(reference.force_tolerance)}` : '') + '.'
     : 'This run has no reference.', ' The target’s own line ends at zero, which a logarithmic axis does not show. A line that reaches another equilibrium, with other folds, levels off.'),
-  h('p', {class: 'controls'}, pick('of', 'measure', Object.fromEntries(run.measures.map(m => [m.name, m.label]))), pick('from', 'target', targets), pick('over', 'cost', costs)), chart.element);
+  ...plot.elements);
 }
 
 function methodTable(run) {

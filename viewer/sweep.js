@@ -1,6 +1,6 @@
 /// The page of a sweep, or of several runs.
-import {Chart, methodLook, otherLook} from './charts.js';
-import {columnsOf, costs, describe, ranking, targets} from './columns.js';
+import {Chart, distancePlot, methodLook, otherLook} from './charts.js';
+import {columnsOf, describe, ranking} from './columns.js';
 import {dataTable, matcher} from './tables.js';
 import {choice, converged, count, counted, explained, fold, h, known, rowsOf, spread, unique, words} from './text.js';
 
@@ -75,26 +75,16 @@ function against(all) {
 }
 
 function errors(all) {
-  const chosen = {measure: ranking(all.measures), cost: 'seconds', target: 'own'};
-  const recorded = all.runs.filter(run => run.errors.length);
+  const recorded = all.runs.filter(run => run.errors.length), variations = unique(recorded.map(run => run.variation));
   if (!recorded.length) return null;
-  chosen.target = recorded.some(run => run.errors.some(row => known(row['reference_' + chosen.measure]))) ? 'reference' : 'own';
-  const chart = new Chart('errors', 'Medians over the starts, with a band from the lowest to the highest. Lower and further left is better.', 420);
-  const several = unique(recorded.map(run => run.variation)).length > 1;
-  const draw = () => {
-    const y = `${chosen.target}_${chosen.measure}`, lines = [];
-    for (const variation of unique(recorded.map(run => run.variation)))
-      for (const method of all.methods) {
-        const repeats = recorded.filter(run => run.variation === variation && run.shown.some(row => row.method === method)).map(run => run.errors.filter(row => row.method === method && row.level >= (run.first_levels[method] ?? 0))
-          .map(row => ({x: row[chosen.cost], y: row[y]})));
-        lines.push({label: several ? `${variation}, ${method}` : method, ...(several ? otherLook(lines.length) : methodLook(all.styles, method)), mark: null, band: true, points: medianCurve(repeats)});
-      }
-    chart.draw({x: {title: costs[chosen.cost], name: chosen.cost, log: true}, y: {title: all.measures.find(m => m.name === chosen.measure)?.label, name: y, log: true}, series: lines});
-  };
-  const pick = (label, name, options) => choice(label, options, chosen[name], value => { chosen[name] = value; draw(); }, 'error-' + name);
-  all.redraw.push(draw);
-  return fold('Distance against time', h('p', {class: 'controls'}, pick('of', 'measure', Object.fromEntries(all.measures.map(m => [m.name, m.label]))),
-    pick('from', 'target', targets), pick('over', 'cost', costs)), chart.element);
+  const line = (variation, method, cost, y) => medianCurve(recorded.filter(run => run.variation === variation && run.shown.some(row => row.method === method)).map(run =>
+    run.errors.filter(row => row.method === method && row.level >= (run.first_levels[method] ?? 0)).map(row => ({x: row[cost], y: row[y]}))));
+  const plot = distancePlot('errors', 'Medians over the starts, with a band from the lowest to the highest. Lower and further left is better.', 420,
+    {measures: all.measures, rows: recorded.flatMap(run => run.errors)}, (cost, y) => variations.flatMap((variation, v) => all.methods.map((method, m) => ({
+      ...(variations.length > 1 ? {label: `${variation}, ${method}`, ...otherLook(v * all.methods.length + m)} : {label: method, ...methodLook(all.styles, method)}),
+      mark: null, band: true, points: line(variation, method, cost, y)}))));
+  all.redraw.push(plot.draw);
+  return fold('Distance against time', ...plot.elements);
 }
 
 function table(all) {

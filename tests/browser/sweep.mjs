@@ -61,7 +61,7 @@ test('a value is shown against a parameter: medians, with ranges over starts', a
 test('distance against time is the median over starts at equal cost, between the lowest and the highest', async () => {
   const {page, errors} = await open('sweep/report.html');
   await page.evaluate(() => document.querySelectorAll('details').forEach(part => { part.open = true; }));
-  await page.locator('#error-cost').selectOption('iterations');
+  await page.locator('#errors-cost').selectOption('iterations');
   const rows = JSON.parse((await downloaded(page, '#errors button:text-is("JSON")')).bytes);
   const name = 'refiner=loop,levels=2,step_growth=1.5', curve = rows.filter(row => row.series === name + ', pcs');
   assert.equal(curve.length, 40);
