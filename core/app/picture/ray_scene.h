@@ -18,8 +18,6 @@ class RayScene {
 
   /// Origin of the coordinates of rays: single precision holds offsets from it only [m].
   const Eigen::Vector3d& centre() const { return centre_; }
-  /// Of a sphere around the centre that holds cloth and obstacle [m].
-  float radius() const { return radius_; }
 
   std::optional<SurfacePoint> nearest(const Ray& ray) const;
   /// As nearest, as if there were the obstacle alone.
@@ -31,7 +29,7 @@ class RayScene {
   struct Embree;
   std::unique_ptr<Embree> embree_;
   Eigen::Vector3d centre_ = Eigen::Vector3d::Zero();
-  float radius_ = 0;
+  float radius_ = 0;  // of a sphere around the centre that holds cloth and obstacle [m]
   std::optional<float> floor_;
 };
 

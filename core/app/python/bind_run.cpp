@@ -11,7 +11,7 @@
 #include "core/app/report/run_export.h"
 #include "core/app/report/run_table.h"
 #include "core/app/run/runner.h"
-#include "core/app/view/colours.h"
+#include "core/app/view/page.h"
 #include "core/kernel/files/number_text.h"
 #include "core/numerics/mesh_files/io.h"
 

@@ -8,7 +8,6 @@
 
 #include "core/app/report/model_keys.h"
 #include "core/app/report/run_table.h"
-#include "core/app/report/text_table.h"
 #include "core/kernel/files/message_text.h"
 #include "core/kernel/files/string_utils.h"
 #include "core/kernel/interfaces/solver.h"

@@ -11,7 +11,6 @@
 #include "core/app/report/pictures.h"
 #include "core/app/report/report_view.h"
 #include "core/app/report/run_table.h"
-#include "core/app/view/colours.h"
 #include "core/app/view/page.h"
 #include "core/app/view/view_document.h"
 #include "core/kernel/files/file.h"

@@ -4,7 +4,6 @@
 #include <map>
 #include <stdexcept>
 
-#include "core/app/report/recorded_snapshots.h"
 #include "core/app/view/view_document.h"
 #include "core/kernel/files/message_text.h"
 #include "core/kernel/plugin/parameters.h"
@@ -85,7 +84,7 @@ Json states_json(const RunData& run, const LevelRecord& level, const State& last
   Json states = Json::array();
   SnapshotFile snapshots;
   try {
-    snapshots = recorded_snapshots(run, level, last.x.rows());
+    snapshots = run.snapshots(level, last.x.rows());
   } catch (const std::exception& error) {
     notes.push_back("3D viewer: " + reason_of(error));
   }

@@ -158,6 +158,15 @@ TriangleMesh RunData::mesh(const std::string& name) const {
   return mesh;
 }
 
+SnapshotFile RunData::snapshots(const LevelRecord& level, Eigen::Index n) const {
+  const SnapshotRecord& record = level.snapshots;
+  if (record.file.empty()) return {};
+  const std::filesystem::path file = folder / record.file;
+  if (record.iterations.size() != record.seconds.size())
+    throw std::runtime_error(file.string() + ": results.json has other numbers of iterations and seconds");
+  return {file, record.iterations.size(), n, record.checksum};
+}
+
 std::string rest_file(int level) { return "rest/l" + std::to_string(level) + ".ply"; }
 
 RunData read_run(const std::filesystem::path& folder) {

@@ -10,6 +10,7 @@
 #include "core/app/experiment/declared_metrics.h"
 #include "core/app/files/csv.h"
 #include "core/app/files/optional_number.h"
+#include "core/app/files/snapshot_file.h"
 #include "core/kernel/interfaces/triangle_mesh.h"
 
 namespace drape {
@@ -96,6 +97,9 @@ struct RunData {
   /// A mesh of the run's folder. Throws std::runtime_error if it cannot be read, or if a triangle names a
   /// vertex that is not there.
   TriangleMesh mesh(const std::string& name) const;
+  /// The snapshots of a level of n vertices, in order; none if the run has recorded none. Throws
+  /// std::runtime_error for a file that is missing or damaged.
+  SnapshotFile snapshots(const LevelRecord& level, Eigen::Index n) const;
 };
 
 /// A level's rest shape, relative to a run's folder.

@@ -9,7 +9,7 @@
 #include "core/app/files/gltf.h"
 #include "core/app/picture/surface.h"
 #include "core/app/report/pictures.h"
-#include "core/app/report/recorded_snapshots.h"
+#include "core/app/report/run_data.h"
 #include "core/kernel/files/file.h"
 #include "core/kernel/files/string_utils.h"
 #include "core/numerics/mesh/texture_coordinates.h"
@@ -83,6 +83,33 @@ GltfSurface gltf_surface(const std::string& name, const TriangleMesh& mesh, cons
   surface.state = gltf_state(mesh, split);
   surface.uv = split.uv;
   return surface;
+}
+
+/// Why a level has fewer snapshots than an animation needs, with a remedy.
+std::string fault_of_snapshots(const MethodRecord& method, const LevelRecord& level, std::size_t count,
+                               std::size_t least) {
+  const std::string name = "level " + std::to_string(level.level);
+  if (count == 0) return "the run has no snapshots of " + name + "; run the experiment with snapshots: 8";
+  if (level.iterations.value_or(0) > 1)
+    return "the run has only the last state of " + name + "; run the experiment with snapshots: 8";
+  std::vector<std::string> others;
+  for (const LevelRecord& other : method.levels)
+    if (other.snapshots.iterations.size() >= least)
+      others.push_back("--level " + std::to_string(other.level));
+  return name + " of " + method.name +
+         " took no more than one iteration, so it has no state before its last; " +
+         (others.empty() ? "export it without --frames" : "choose " + joined(others));
+}
+
+/// A level's snapshots. Throws std::runtime_error, for the option --frames, if there are fewer than `least`.
+std::vector<Positions> snapshot_positions(const RunData& run, const MethodRecord& method,
+                                          const LevelRecord& level, Eigen::Index n, std::size_t least) {
+  const SnapshotFile states = run.snapshots(level, n);
+  if (states.count() < least)
+    throw std::runtime_error("--frames: " + fault_of_snapshots(method, level, states.count(), least));
+  std::vector<Positions> all;
+  for (std::size_t k = 0; k < states.count(); ++k) all.push_back(states.positions(k));
+  return all;
 }
 
 /// Adds the snapshots before the final state, `last`. Throws std::runtime_error if the run has none.

@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "core/app/files/json_file.h"
-#include "core/app/view/colours.h"
 #include "core/app/view/page.h"
 
 namespace drape {

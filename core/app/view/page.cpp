@@ -1,6 +1,8 @@
 #include "core/app/view/page.h"
 
+#include <algorithm>
 #include <cctype>
+#include <iterator>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <string_view>
@@ -71,6 +73,11 @@ std::string page(const std::string& title, const nlohmann::ordered_json& data, c
     text += values.at(form.substr(open + 2, close - open - 2));
     place = close + 2;
   }
+}
+
+int solver_style(std::string_view solver) {
+  constexpr std::string_view styled[] = {"pcs", "cascadic", "newton"};
+  return static_cast<int>(std::find(std::begin(styled), std::end(styled), solver) - std::begin(styled));
 }
 
 std::string url_path(const std::filesystem::path& path) {

@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <nlohmann/json_fwd.hpp>
 #include <string>
+#include <string_view>
 
 namespace drape {
 
@@ -10,6 +11,11 @@ namespace drape {
 /// It needs no other file and no network. `blocks` are elements of block_element.
 std::string page(const std::string& title, const nlohmann::ordered_json& data,
                  const std::string& blocks = "");
+
+/// The look of a solver's methods in every chart, of Python too: an index of the colours --solver-N in
+/// viewer/page.css and of the marks in viewer/charts.js. Solvers that drape does not come with share the last
+/// one.
+int solver_style(std::string_view solver);
 
 /// A path as a URL, reserved characters as %XX.
 std::string url_path(const std::filesystem::path& path);

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <limits>
 
-#include "core/app/view/colours.h"
 #include "core/numerics/collision_detection/box_tree.h"
 #include "core/numerics/collision_detection/closest.h"
 
@@ -41,6 +40,18 @@ void lower_to_distance(Eigen::VectorXd& gap, const BoxTree& points, const Positi
       const Eigen::Vector4d w = closest_point_triangle(p, a, b, c).c;
       gap[i] = std::min(gap[i], (w[0] * p + w[1] * a + w[2] * b + w[3] * c).norm());
     });
+}
+
+/// The quantile of all finite |values|; 0 without any.
+double magnitude_quantile(const std::vector<const Eigen::VectorXd*>& fields, double quantile) {
+  std::vector<double> all;
+  for (const Eigen::VectorXd* field : fields)
+    for (const double value : *field)
+      if (std::isfinite(value)) all.push_back(std::abs(value));
+  if (all.empty()) return 0;
+  const auto place = all.begin() + static_cast<std::ptrdiff_t>(quantile * (all.size() - 1));
+  std::nth_element(all.begin(), place, all.end());
+  return *place;
 }
 
 }  // namespace

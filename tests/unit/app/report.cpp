@@ -10,8 +10,6 @@
 
 #include "core/app/report/pictures.h"
 #include "core/app/report/run_table.h"
-#include "core/app/report/text_table.h"
-#include "core/app/view/colours.h"
 #include "core/kernel/files/file.h"
 #include "core/kernel/threads/parallel.h"
 #include "core/numerics/hierarchy/midpoint.h"
@@ -294,15 +292,6 @@ TEST_CASE("figures in a table have three digits") {
   CHECK(base64("light work.") == "bGlnaHQgd29yay4=");
   CHECK(base64("light wor") == "bGlnaHQgd29y");
   CHECK(base64("light wo") == "bGlnaHQgd28=");
-}
-
-TEST_CASE("a quantile of magnitudes leaves out what is not finite") {
-  Eigen::VectorXd v(5);
-  v << 0, 1, 5, -1, std::nan("");
-  const Eigen::VectorXd ramp = Eigen::VectorXd::LinSpaced(101, -100, 0);
-  CHECK(magnitude_quantile({&ramp, &v}, 1) == 100);
-  CHECK(magnitude_quantile({&ramp}, 0.5) == 50);
-  CHECK(magnitude_quantile({}, 0.5) == 0);
 }
 
 TEST_CASE("errors are read, and are in the page") {

@@ -124,6 +124,20 @@ TEST_CASE("the gap is the distance to an obstacle, or to the cloth folded over i
   CHECK(std::isnan(gap[10]));  // at the crease
 }
 
+TEST_CASE("nearly all magnitudes lie in a field's range, and what is not finite counts for nothing") {
+  Eigen::VectorXd v(5);
+  v << 0, 1, 5, -1, none;
+  const Eigen::VectorXd ramp = Eigen::VectorXd::LinSpaced(101, -100, 0);
+  const auto range = [](const char* map, const std::vector<const Eigen::VectorXd*>& values) {
+    return field_range({"f", "f", "1", map, ""}, values, 0.25);
+  };
+  CHECK(range("diverging", {&ramp}) == std::pair(-98.0, 98.0));
+  CHECK(range("force", {&ramp}) == std::pair(0.0, 98.0));
+  CHECK(range("sequential", {&ramp, &v}) == std::pair(1.0, 100.0));
+  CHECK(range("near", {&ramp}) == std::pair(0.0, 0.25));
+  CHECK(range("force", {}) == std::pair(0.0, 0.0));
+}
+
 TEST_CASE("the document names what can be coloured, and blocks of every state") {
   const std::vector<Level> levels = {sheet(4)};
   std::map<std::string, std::string> blocks;
