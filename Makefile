@@ -138,6 +138,7 @@ pictures: benchmarks data
 	$(BUILD)/bin/drape report $(SPHERE)
 	rm -rf results/pictures && mkdir -p results/pictures
 	set -e; $(foreach s,$(SCENES),$(call draw,configs/$(s).yaml --levels 3 --method pcs --threads 1,$(notdir $(s)));)
+	$(BUILD)/bin/drape report results/pictures/tablecloth
 	set -e; $(foreach s,ribbon handkerchief,$(call draw,configs/$(s).yaml --method pcs,$(s));)
 	sed -n '/^```yaml my_curtain/,/^```$$/{/^```/!p}' README.md >results/my_curtain.yaml
 	$(call draw,results/my_curtain.yaml,curtain)

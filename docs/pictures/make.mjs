@@ -1,5 +1,5 @@
-// Pictures of README and docs: node docs/pictures/make.mjs SPHERE RUNS, with a run of the study sphere that has a report, and the
-// folder of the runs that `make pictures` makes.
+// Pictures of README and docs: node docs/pictures/make.mjs SPHERE RUNS, with a run of the study sphere, which has a report as that of
+// the tablecloth has, and the folder of the runs that `make pictures` makes.
 import {execFileSync} from 'node:child_process';
 import fs from 'node:fs';
 import path from 'node:path';
@@ -10,21 +10,22 @@ const sphere = path.resolve(process.argv[2]);
 const runs = path.resolve(process.argv[3]);
 const folder = scratch();
 
-/// Parts of the report as they look on the page.
-async function reportPictures() {
-  const {page} = await openPage('file://' + path.join(sphere, 'report.html'),
+/// A part of a run's report as it looks on the page.
+async function reportPart(results, selector, name, margin = 12) {
+  const {page} = await openPage('file://' + path.join(results, 'report.html'),
     {viewport: {width: 1100, height: 900}, deviceScaleFactor: 1.5});
-  const picture = async (selector, name, margin = 12) => {
-    await page.locator(selector).scrollIntoViewIfNeeded();
-    await page.waitForTimeout(3000);  // charts move in, the viewer draws
-    const box = await page.locator(selector).boundingBox();
-    await page.screenshot({path: path.join(here, name), clip: {x: box.x - margin, y: box.y - margin,
-      width: box.width + 2 * margin, height: box.height + 2 * margin}});
-  };
-  await page.locator('#distance-target').selectOption('own');
-  await picture('#distance .plot', 'speed_against_error.png');
-  await picture('#in-3d', 'viewer.png');
+  if (selector.startsWith('#distance')) await page.locator('#distance-target').selectOption('own');
+  await page.locator(selector).scrollIntoViewIfNeeded();
+  await page.waitForTimeout(3000);  // charts move in, the viewer draws
+  const box = await page.locator(selector).boundingBox();
+  const file = path.join(folder, `${name}.png`);
+  await page.screenshot({path: file, clip: {x: box.x - margin, y: box.y - margin, width: box.width + 2 * margin,
+    height: box.height + 2 * margin}});
+  execFileSync('cwebp', ['-quiet', '-q', '88', file, '-o', path.join(here, `${name}.webp`)]);
 }
+
+const plot = () => reportPart(sphere, '#distance .plot', 'speed_against_error');
+const viewer = () => reportPart(path.join(runs, 'tablecloth'), '#in-3d', 'viewer');
 
 /// A state as `drape export` draws it, half as wide, so that edges are smooth.
 async function still(results, name, width, ...options) {
@@ -84,6 +85,6 @@ async function progression() {
     {cwd: folder, stdio: 'pipe'});
 }
 
-const parts = {reportPictures, levels, gallery, progression};
+const parts = {plot, viewer, levels, gallery, progression};
 for (const name of process.argv[4] ? process.argv[4].split(',') : Object.keys(parts)) await parts[name]();
 await (await browser()).close();
