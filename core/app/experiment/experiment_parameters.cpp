@@ -105,27 +105,6 @@ void ClothParameters::declare(Declaration<ClothParameters>& d) {
       .description("parts of the cloth that were cut at another angle; later ones take precedence");
 }
 
-void GrainRegionParameters::declare(Declaration<GrainRegionParameters>& d) {
-  d.add("lower", &GrainRegionParameters::lower)
-      .unit("m")
-      .at_least(-bounds::largest_coordinate)
-      .at_most(bounds::largest_coordinate)
-      .required()
-      .description("lower corner of a box of the rest shape; triangles belong to it by their centroids");
-  d.add("upper", &GrainRegionParameters::upper)
-      .unit("m")
-      .at_least(-bounds::largest_coordinate)
-      .at_most(bounds::largest_coordinate)
-      .required()
-      .description("upper corner of the box");
-  d.add("grain", &GrainRegionParameters::grain)
-      .unit("degree")
-      .at_least(-bounds::largest_angle)
-      .at_most(bounds::largest_angle)
-      .required()
-      .description("direction of warp there, as `cloth.grain`");
-}
-
 void StartParameters::declare(Declaration<StartParameters>& d) {
   d.add("file", &StartParameters::file)
       .path()

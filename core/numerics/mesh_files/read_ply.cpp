@@ -1,9 +1,6 @@
 // PLY in: text, binary little endian and binary big endian.
 #include <algorithm>
-#include <bit>
 #include <cmath>
-#include <cstdint>
-#include <cstring>
 #include <stdexcept>
 
 #include "core/kernel/files/file.h"
@@ -11,83 +8,10 @@
 #include "core/numerics/mesh/mesh_builder.h"
 #include "core/numerics/mesh_files/io.h"
 #include "core/numerics/mesh_files/io_formats.h"
-#include "core/numerics/mesh_files/ply_header.h"
+#include "core/numerics/mesh_files/ply_body.h"
 
 namespace drape {
 namespace {
-
-static_assert(std::endian::native == std::endian::little, "numbers are decoded on a little-endian machine");
-
-template <class Number>
-double decode(std::array<char, 8> bytes) {
-  Number number;
-  std::memcpy(&number, bytes.data(), sizeof number);
-  return static_cast<double>(number);
-}
-
-/// Of each PlyType.
-constexpr std::array<double (*)(std::array<char, 8>), 8> decoders{
-    decode<std::int8_t>,  decode<std::uint8_t>,  decode<std::int16_t>, decode<std::uint16_t>,
-    decode<std::int32_t>, decode<std::uint32_t>, decode<float>,        decode<double>};
-
-/// The numbers behind the header, whatever their encoding.
-class PlyBody {
- public:
-  PlyBody(TextReader& reader, std::string_view bytes, PlyFormat format, std::filesystem::path path)
-      : reader_(reader), bytes_(bytes.substr(reader.position())), format_(format), path_(std::move(path)) {}
-
-  void enter(const PlyElement& element, int number) {
-    end_line();
-    element_ = &element, number_ = number;
-  }
-
-  /// Nothing but white space may follow the last element.
-  void finish() {
-    end_line();
-    const bool more = format_ == PlyFormat::ascii ? reader_.next_line()
-                                                  : bytes_.find_first_not_of(" \t\r\n") != bytes_.npos;
-    if (!more) return;
-    const std::string message = "the file has data after the elements that its header declares";
-    if (format_ == PlyFormat::ascii) reader_.fail(message);
-    throw std::runtime_error(path_.string() + ": " + message + reader_.note());
-  }
-
-  double next(PlyType type) {
-    if (format_ == PlyFormat::ascii) {
-      const std::string_view word = reader_.next_word(place());
-      return type == PlyType::f32 || type == PlyType::f64 ? reader_.number(word)
-                                                          : static_cast<double>(reader_.integer(word));
-    }
-    const std::size_t size = ply_type_size[static_cast<int>(type)];
-    if (bytes_.size() < size) fail("the file ends");
-    std::array<char, 8> bytes;
-    std::copy_n(bytes_.data(), size, bytes.data());
-    if (format_ == PlyFormat::big_endian) std::reverse(bytes.begin(), bytes.begin() + size);
-    bytes_.remove_prefix(size);
-    return decoders[static_cast<int>(type)](bytes);
-  }
-
-  [[noreturn]] void fail(const std::string& message) const {
-    if (format_ == PlyFormat::ascii) reader_.fail(place() + ": " + message);
-    throw std::runtime_error(path_.string() + ": " + place() + ": " + message + reader_.note());
-  }
-
- private:
-  /// An element of a text may take several lines, but shares none.
-  void end_line() const {
-    if (format_ == PlyFormat::ascii && reader_.has_words_left())
-      fail("its line has more values than the header declares");
-  }
-
-  std::string place() const { return excerpt(element_->name) + " " + std::to_string(number_); }
-
-  TextReader& reader_;
-  std::string_view bytes_;
-  PlyFormat format_;
-  std::filesystem::path path_;
-  const PlyElement* element_ = nullptr;
-  int number_ = 0;
-};
 
 /// A face before it is cut, for which the vertices have to be known.
 struct PlyFace {
