@@ -12,8 +12,9 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// What a page has a reader write and type: blocks that name a file (```yaml my_drape.yaml), the lines of its sh
-/// blocks that call the command, continued lines joined, comments cut, and the commands in cells of tables.
+/// What a page has a reader write and type: blocks that name a file (```yaml my_drape.yaml), the lines of its
+/// sh blocks that call the command, continued lines joined, comments cut, and the commands in cells of
+/// tables.
 struct Page {
   std::map<std::string, std::string> files;
   std::vector<std::string> commands;

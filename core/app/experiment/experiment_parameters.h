@@ -8,7 +8,6 @@
 #include "core/kernel/interfaces/material.h"
 #include "core/kernel/plugin/declared_numbers.h"
 #include "core/numerics/mesh/grain.h"
-#include "core/numerics/mesh/grain.h"
 #include "core/numerics/mesh_files/file_coordinates.h"
 #include "core/numerics/step/newton_parameters.h"
 
