@@ -78,8 +78,8 @@ const Cloth& cloth_of() {
 template <class Kernel>
 requires requires { Kernel::cloth(); }
 const BoundEnergy& energy() {
-  static const BoundMidedgeBending made(Kernel::cloth().level,
-                                        ShapeOperators::of(Kernel::cloth().level, Material(), 0.02));
+  static const BoundMidedgeBending made(
+      Kernel::cloth().level, ShapeOperators::of(Kernel::cloth().level, Material(), 0.02), BendingFriction());
   return made;
 }
 

@@ -28,7 +28,7 @@ constexpr int most_evaluations = 24;
 struct FitRequest : ConfigArguments, SweepOptions {
   double target = 0, tolerance = 1;  ///< tolerance in percent of the target
   std::vector<std::string> by;
-  std::string metric = "drape_coefficient", method, folder;
+  std::string metric, method, folder;
   int starts = 3;
 };
 
@@ -38,12 +38,14 @@ std::string digits(double value) {
   return text;
 }
 
-/// Appends an error unless a metric of the experiment has this column.
-void check_metric(const Experiment& experiment, const std::string& metric, ConfigErrors& errors) {
+/// Appends an error unless a metric of the experiment has this column; without a name, the first column is
+/// taken.
+void choose_metric(const Experiment& experiment, std::string& metric, ConfigErrors& errors) {
   std::vector<std::string> names;
   for (const MetricColumn& column :
        columns_of(declared_metrics(experiment.metrics), MetricScope::state, Shown::stored))
     names.push_back(column.name);
+  if (metric.empty() && !names.empty()) metric = names.front();
   if (std::find(names.begin(), names.end(), metric) != names.end()) return;
   const std::string near = nearest_word(metric, names);
   errors.push_back({{"--metric", 0, 0},
@@ -59,10 +61,11 @@ FitSetup setup_of(FitRequest& request, const Registry& registry) {
   const auto experiment = read_experiment(request.config, request.overrides(), registry, errors);
   require_none(errors);
   FitSetup setup;
-  setup.config = request.config, setup.metric = request.metric, setup.starts = request.starts;
+  setup.config = request.config, setup.starts = request.starts;
   setup.name = experiment->parameters.name + "_fit";
   setup.keys = scaled_keys(*experiment, request.by, "--by", errors);
-  check_metric(*experiment, request.metric, errors);
+  choose_metric(*experiment, request.metric, errors);
+  setup.metric = request.metric;
   if (request.method == all_methods) throw std::runtime_error("--method: a fit takes one method");
   setup.method = chosen_methods(
       *experiment, request.method.empty() ? std::vector<std::string>() : std::vector{request.method})[0];
@@ -219,7 +222,9 @@ void add_fit_command(Commands& commands) {
       ->type_name("KEY")
       ->allow_extra_args(false)
       ->required();
-  command.add_option("--metric", r.metric, "metric, on the finest level (default: drape_coefficient)")
+  command
+      .add_option("--metric", r.metric,
+                  "column of a metric, on the finest level (default: the first of the experiment's metrics)")
       ->type_name("NAME");
   command
       .add_option("--starts", r.starts,
