@@ -5,6 +5,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
+#include "core/kernel/files/number_text.h"
 #include "core/kernel/interfaces/energy.h"
 #include "core/numerics/patterns/generate.h"
 #include "tests/support/strip.h"
@@ -16,15 +17,6 @@ using Eigen::Vector3d;
 namespace {
 
 constexpr double poisson = 0.3;
-
-/// D = E d³ / 12 (1 − ν²) = 1 N m.
-const Material unit_plate = [] {
-  Material m;
-  m.thickness = 0.01;
-  m.poisson_ratio = poisson;
-  m.bending_modulus = 12 * (1 - poisson * poisson) / 1e-6;
-  return m;
-}();
 
 /// A surface and another one of the same metric, over a rectangle from (0, 0) to `size`.
 struct Shape {
@@ -129,18 +121,6 @@ const Shape exact_shapes[] = {
      },
      false}};
 
-TriangleMesh pattern_of(const std::string& triangulation, const Vector2d& size, double a) {
-  const Eigen::Vector2i cells = (size / a).array().round().cast<int>();
-  const int vertices = (cells.x() + 1) * (cells.y() + 1);
-  if (triangulation == "random") return random_triangulation(size, vertices, 5);
-  if (triangulation == "equilateral") {
-    const Eigen::Vector2i counts = equilateral_counts(size, vertices);
-    return equilateral(size, counts.x(), counts.y());
-  }
-  return grid(size, cells.x() + 1, cells.y() + 1,
-              triangulation == "one_way" ? Diagonals::one_way : Diagonals::criss_cross);
-}
-
 template <class Surface>
 Positions on(const Surface& surface, const TriangleMesh& pattern) {
   Positions x = pattern.vertices;
@@ -150,7 +130,7 @@ Positions on(const Surface& surface, const TriangleMesh& pattern) {
 }
 
 double energy_of(const std::string& model, const TriangleMesh& rest, const Positions& x) {
-  return make_plugin_from<Energy>(model)->bind(Level::of(0, rest), unit_plate)->value(x);
+  return make_plugin_from<Energy>(model)->bind(Level::of(0, rest), unit_plate(poisson))->value(x);
 }
 
 double plate_energy(const Shape& shape) {
@@ -162,16 +142,10 @@ double plate_energy(const Shape& shape) {
   return sum * shape.size.prod() / (n * n);
 }
 
-std::string four_digits(double number) {
-  char digits[32];
-  std::snprintf(digits, sizeof digits, "%.4f", number);
-  return digits;
-}
-
 /// The model's energy over the plate's.
 double ratio_to_plate(const std::string& model, const Shape& shape, const std::string& triangulation,
                       double a) {
-  TriangleMesh rest = pattern_of(triangulation, shape.size, a);
+  TriangleMesh rest = triangulated(triangulation, shape.size, a);
   const Positions bent = on(shape.bent, rest);
   rest.vertices = on(shape.rest, rest);
   return energy_of(model, rest, bent) / plate_energy(shape);
@@ -191,7 +165,8 @@ TEST_CASE("midedge_bending has the plate's energy of exact shapes, on every tria
       const double hinge = ratio_to_plate("hinge", shape, triangulation, 0.025),
                    limit = 2 * midedge[2] - midedge[1];
       const std::string quadratic =
-          shape.is_flat ? four_digits(ratio_to_plate("quadratic_bending", shape, triangulation, 0.025)) : "-";
+          shape.is_flat ? fixed_text(ratio_to_plate("quadratic_bending", shape, triangulation, 0.025), 4)
+                        : "-";
       row("%24s %12s %8.4f %10s %8.4f %8.4f %8.4f %8.4f", shape.name.c_str(), triangulation.c_str(), hinge,
           quadratic.c_str(), midedge[0], midedge[1], midedge[2], limit);
       INFO(shape.name << ", " << triangulation);
@@ -208,7 +183,7 @@ TEST_CASE("A crease costs as much as a bend over a cell's width, and more on fin
   for (const std::string& triangulation : all_triangulations)
     for (const int cells : {10, 20, 40}) {
       const double a = 1. / cells;
-      TriangleMesh rest = pattern_of(triangulation, {1, 1}, a);
+      TriangleMesh rest = triangulated(triangulation, {1, 1}, a);
       double width = a;                      // of the row of triangles on either side
       if (triangulation == "equilateral") {  // with a row of edges in the middle
         const int strips = 2 * static_cast<int>(std::lround(cells / std::sqrt(3.0)));

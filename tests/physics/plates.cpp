@@ -14,15 +14,6 @@ using namespace drape;
 
 namespace {
 
-/// D = E d³ / 12 (1 − ν²) = 1 N m.
-Material plate_material(double nu) {
-  Material m;
-  m.thickness = 0.01;
-  m.poisson_ratio = nu;
-  m.bending_modulus = 12 * (1 - nu * nu) / 1e-6;
-  return m;
-}
-
 struct Model {
   std::string name, yaml;
 };
@@ -32,24 +23,11 @@ const Model models[] = {{"hinge", "hinge"},
                         {"average", "{type: midedge_bending, correction_tolerance: 1}"},
                         {"midedge", "midedge_bending"}};
 
-/// With edges of about a.
-TriangleMesh mesh_of(const std::string& triangulation, const Eigen::Vector2d& size, double a) {
-  const Eigen::Vector2i cells = (size / a).array().round().cast<int>();
-  const int vertices = (cells.x() + 1) * (cells.y() + 1);
-  if (triangulation == "random") return random_triangulation(size, vertices, 5);
-  if (triangulation == "equilateral") {
-    const Eigen::Vector2i counts = equilateral_counts(size, vertices);
-    return equilateral(size, counts.x(), counts.y());
-  }
-  return grid(size, cells.x() + 1, cells.y() + 1,
-              triangulation == "one_way" ? Diagonals::one_way : Diagonals::criss_cross);
-}
-
 using Matrix = Eigen::SparseMatrix<double>;
 
 /// Stiffness [N/m] by deflections.
 Matrix stiffness_of(const Level& level, const Model& model, double nu) {
-  const auto energy = make_plugin_from<Energy>(model.yaml)->bind(level, plate_material(nu));
+  const auto energy = make_plugin_from<Energy>(model.yaml)->bind(level, unit_plate(nu));
   const BlockMatrix h = hessian_of(*energy, level.rest.vertices, Projection::none);
   std::vector<Eigen::Triplet<double>> entries;
   for (int i = 0; i < h.pattern->rows(); ++i)
@@ -114,7 +92,7 @@ int vertex_at(const Level& level, const Eigen::Vector2d& p) {
 /// A strip on two supports under its weight, ν = 0: stiffness over the beam's, from 5 q L⁴ / 384 D in the
 /// middle.
 double beam(const std::string& triangulation, const Model& model, double a) {
-  const Level level = Level::of(0, mesh_of(triangulation, {1, 0.2}, a));
+  const Level level = Level::of(0, triangulated(triangulation, {1, 0.2}, a));
   const Matrix k = stiffness_of(level, model, 0);
   const Eigen::VectorXd w = deflections(level, k, level.vertex_area,
                                         [](const Eigen::Vector2d& p) { return p.x() == 0 || p.x() == 1; });
@@ -123,7 +101,7 @@ double beam(const std::string& triangulation, const Model& model, double a) {
 
 /// A square plate on its four sides under its weight: stiffness over the plate's, 0.00406235 q L⁴ / D.
 double supported_plate(const std::string& triangulation, const Model& model, double a) {
-  const Level level = Level::of(0, mesh_of(triangulation, {1, 1}, a));
+  const Level level = Level::of(0, triangulated(triangulation, {1, 1}, a));
   const Matrix k = stiffness_of(level, model, 0.3);
   const Eigen::VectorXd w = deflections(level, k, level.vertex_area, [](const Eigen::Vector2d& p) {
     return p.x() == 0 || p.x() == 1 || p.y() == 0 || p.y() == 1;
@@ -135,7 +113,7 @@ double supported_plate(const std::string& triangulation, const Model& model, dou
 /// plate's.
 double twisted_plate(const std::string& triangulation, const Model& model, double a) {
   const double nu = 0.3;
-  const Level level = Level::of(0, mesh_of(triangulation, {1, 1}, a));
+  const Level level = Level::of(0, triangulated(triangulation, {1, 1}, a));
   const Matrix k = stiffness_of(level, model, nu);
   Eigen::VectorXd force = Eigen::VectorXd::Zero(level.vertex_count());
   const int corner = vertex_at(level, {1, 1});
@@ -189,7 +167,7 @@ TEST_CASE("midedge_bending has the modes of a plate on every triangulation, and 
   for (const std::string& triangulation : all_triangulations)
     for (const Model& model : models) {
       if (model.name == "quadratic") continue;
-      const Level level = Level::of(0, mesh_of(triangulation, {1, 1}, 0.05));
+      const Level level = Level::of(0, triangulated(triangulation, {1, 1}, 0.05));
       int free = 0;
       const std::vector<int> number = free_numbers(
           level,

@@ -14,22 +14,6 @@
 
 using namespace drape;
 
-namespace {
-
-TriangleMesh strip_mesh(const std::string& triangulation, const Eigen::Vector2d& size, int cells,
-                        int across) {
-  const int vertices = (cells + 1) * (across + 1);
-  if (triangulation == "random") return random_triangulation(size, vertices, 5);
-  if (triangulation == "equilateral") {
-    const Eigen::Vector2i counts = equilateral_counts(size, vertices);
-    return equilateral(size, counts.x(), counts.y());
-  }
-  return grid(size, cells + 1, across + 1,
-              triangulation == "one_way" ? Diagonals::one_way : Diagonals::criss_cross);
-}
-
-}  // namespace
-
 TEST_CASE("A strip of woven cloth that is pulled stretches in closed form at every angle to its warp",
           "[physics]") {
   Material material;
@@ -42,7 +26,7 @@ TEST_CASE("A strip of woven cloth that is pulled stretches in closed form at eve
   for (const std::string& triangulation : all_triangulations)
     for (const double degrees : {0., 30., 45., 90.}) {
       // Warp is at `degrees` to the strip, which is along x.
-      TriangleMesh mesh = strip_mesh(triangulation, {1, 0.3}, 10, 3);
+      TriangleMesh mesh = triangulated(triangulation, {1, 0.3}, Eigen::Vector2i(10, 3));
       mesh.warp = warp_at(mesh, degrees);
       const Level level = Level::of(0, mesh);
       const double angle = degrees * M_PI / 180, stretch = 1.05, o = std::cos(angle), s = std::sin(angle);
@@ -208,8 +192,8 @@ double lateral_buckling(const std::string& triangulation, const std::string& ben
   constexpr int across = 4;  // cells
   const int cells = static_cast<int>(std::lround(across / slenderness));
   const double cell = 1 / (cells - 0.5);
-  const Level level =
-      Level::of(0, strip_mesh(triangulation, Eigen::Vector2d(cells, across) * cell, cells, across));
+  const Level level = Level::of(
+      0, triangulated(triangulation, Eigen::Vector2d(cells, across) * cell, Eigen::Vector2i(cells, across)));
   Material m;
   m.thickness = 1e-3, m.poisson_ratio = nu, m.membrane_modulus = 1e6;
   m.bending_modulus = 12 * (1 - nu * nu) / std::pow(m.thickness, 3);  // D = 1 N m

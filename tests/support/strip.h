@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "core/numerics/patterns/generate.h"
 #include "tests/support/solve.h"
 
 /// The shortest text that reads back as the same number.
@@ -18,6 +19,34 @@ inline std::string text(const Eigen::Vector3d& v) {
 
 /// The ways in which a rectangle is cut into triangles.
 inline const std::string all_triangulations[] = {"one_way", "criss_cross", "equilateral", "random"};
+
+/// A rectangle cut in such a way into about 2 · cells.x · cells.y triangles.
+inline drape::TriangleMesh triangulated(const std::string& triangulation, const Eigen::Vector2d& size,
+                                        const Eigen::Vector2i& cells) {
+  const int vertices = (cells.x() + 1) * (cells.y() + 1);
+  if (triangulation == "random") return drape::random_triangulation(size, vertices, 5);
+  if (triangulation == "equilateral") {
+    const Eigen::Vector2i counts = drape::equilateral_counts(size, vertices);
+    return drape::equilateral(size, counts.x(), counts.y());
+  }
+  return drape::grid(size, cells.x() + 1, cells.y() + 1,
+                     triangulation == "one_way" ? drape::Diagonals::one_way : drape::Diagonals::criss_cross);
+}
+/// The same with edges of about a.
+inline drape::TriangleMesh triangulated(const std::string& triangulation, const Eigen::Vector2d& size,
+                                        double a) {
+  const Eigen::Vector2i cells = (size / a).array().round().cast<int>();
+  return triangulated(triangulation, size, cells);
+}
+
+/// D = E d³ / 12 (1 − ν²) = 1 N m.
+inline drape::Material unit_plate(double nu) {
+  drape::Material m;
+  m.thickness = 0.01;
+  m.poisson_ratio = nu;
+  m.bending_modulus = 12 * (1 - nu * nu) / 1e-6;
+  return m;
+}
 
 /// A beam made of cloth along x, clamped at the left, of `cells` cells by two, cut like a union jack:
 /// mirrored at its middle line, so that bending does not twist it. Its cells are far longer than wide: with
