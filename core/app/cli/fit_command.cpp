@@ -16,6 +16,7 @@
 #include "core/app/sweep/memory.h"
 #include "core/kernel/files/file.h"
 #include "core/kernel/files/message_text.h"
+#include "core/kernel/files/number_text.h"
 #include "core/kernel/files/string_utils.h"
 #include "core/kernel/plugin/parameters.h"
 #include "core/kernel/threads/parallel.h"
@@ -32,11 +33,7 @@ struct FitRequest : ConfigArguments, SweepOptions {
   int starts = 3;
 };
 
-std::string digits(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.4g", value);
-  return text;
-}
+std::string digits(double value) { return general_text(value, 4); }
 
 /// Appends an error unless a metric of the experiment has this column; without a name, the first column is
 /// taken.

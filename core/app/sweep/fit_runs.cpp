@@ -1,11 +1,10 @@
 #include "core/app/sweep/fit_runs.h"
 
 #include <algorithm>
-#include <cstdio>
-#include <cstdlib>
 
 #include "core/app/report/run_data.h"
 #include "core/app/sweep/local_engine.h"
+#include "core/kernel/files/number_text.h"
 #include "core/kernel/plugin/parameters.h"
 
 namespace drape {
@@ -16,11 +15,7 @@ const std::string prefix = "factor=";
 std::string name_of(double factor) { return prefix + ConfigNode::of(factor).scalar; }
 
 /// To six digits: what a person reads, and far finer than any fit.
-double six_digits(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.6g", value);
-  return std::strtod(text, nullptr);
-}
+double six_digits(double value) { return parse_number(general_text(value, 6)).value(); }
 
 std::string first_line(const std::string& text) { return text.substr(0, text.find('\n')); }
 

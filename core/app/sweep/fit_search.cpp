@@ -4,9 +4,10 @@
 #include <boost/math/tools/toms748_solve.hpp>
 #include <cmath>
 #include <cstdint>
-#include <cstdio>
-#include <cstdlib>
 #include <utility>
+
+#include "core/kernel/files/number_text.h"
+#include "core/kernel/plugin/parameters.h"
 
 namespace drape {
 namespace {
@@ -15,11 +16,7 @@ const double first_step = std::log(4), last_place = std::log(1024);
 constexpr double least_step = 0.05;      ///< towards a factor that is not known
 constexpr double least_interval = 1e-3;  ///< of the logarithm
 
-double rounded(double factor) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.4g", factor);
-  return std::strtod(text, nullptr);
-}
+double rounded(double factor) { return parse_number(general_text(factor, 4)).value(); }
 
 class Search {
  public:
