@@ -19,8 +19,7 @@ inline double value_of(drape::Objective& objective, const drape::Positions& x) {
 
 /// The cloth's warp at this angle from x everywhere [degree].
 inline drape::Positions warp_at(const drape::TriangleMesh& mesh, double angle) {
-  return drape::cut_directions(mesh, drape::GrainAxis::x,
-                               Eigen::VectorXd::Constant(mesh.triangles.rows(), angle));
+  return drape::cut_directions(mesh, drape::GrainAxis::x, angle);
 }
 
 /// ∂f/∂x by central differences of fourth order with step h [m]; f is a number or an Eigen vector or matrix,

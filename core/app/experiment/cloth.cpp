@@ -40,22 +40,23 @@ TriangleMesh read_cloth(const ClothParameters& c) {
 std::vector<std::string> cut(TriangleMesh& cloth, const ClothParameters& c) {
   if (cloth.warp.rows() > 0) cloth.warp = projected_warp(cloth.warp, cloth);
   if (!c.grain && c.grain_regions.empty()) return {};
-  Eigen::VectorXd angles = Eigen::VectorXd::Constant(cloth.triangles.rows(), c.grain.value_or(0));
+  const std::vector<std::string> faults = grain_faults(cloth, c.grain_along);
+  if (!faults.empty()) return faults;
+  Positions warp = c.grain ? cut_directions(cloth, c.grain_along, *c.grain) : warp_directions(cloth);
   for (std::size_t i = 0; i < c.grain_regions.size(); ++i) {
     const GrainRegionParameters& region = c.grain_regions[i];
+    const Positions own = cut_directions(cloth, c.grain_along, region.grain);
     bool any = false;
-    for (Eigen::Index t = 0; t < angles.size(); ++t) {
-      const Eigen::Vector3d centroid = cloth.vertices(cloth.triangles.row(t), Eigen::all).colwise().mean();
-      if ((centroid.array() < region.lower.array()).any() || (centroid.array() > region.upper.array()).any())
-        continue;
-      angles[t] = region.grain, any = true;
+    for (Eigen::Index t = 0; t < warp.rows(); ++t) {
+      const Eigen::Array3d centroid = cloth.vertices(cloth.triangles.row(t), Eigen::all).colwise().mean();
+      if ((centroid < region.lower.array()).any() || (centroid > region.upper.array()).any()) continue;
+      warp.row(t) = own.row(t), any = true;
     }
     if (!any)
       return {"\"grain_regions\": entry " + std::to_string(i) + " has no triangle's centroid; widen its box"};
   }
-  std::vector<std::string> faults = grain_faults(cloth, c.grain_along);
-  if (faults.empty()) cloth.warp = cut_directions(cloth, c.grain_along, angles);
-  return faults;
+  cloth.warp = warp;
+  return {};
 }
 
 TriangleMesh make_cloth(const Experiment& e) {

@@ -44,21 +44,17 @@ Vector direction(const TriangleMesh& mesh, Eigen::Index t, const Sides& sides, G
 }  // namespace
 
 Positions warp_directions(const TriangleMesh& rest) {
-  return rest.warp.rows() > 0
-             ? rest.warp
-             : cut_directions(rest, GrainAxis::x, Eigen::VectorXd::Zero(rest.triangles.rows()));
+  return rest.warp.rows() > 0 ? rest.warp : cut_directions(rest, GrainAxis::x, 0);
 }
 
-Positions cut_directions(const TriangleMesh& rest, GrainAxis along, const Eigen::VectorXd& angles) {
+Positions cut_directions(const TriangleMesh& rest, GrainAxis along, double degrees) {
+  const double angle = degrees * std::numbers::pi / 180;
   Positions warp(rest.triangles.rows(), 3);
   for (Eigen::Index t = 0; t < warp.rows(); ++t) {
     const Sides sides(rest, t);
     Vector first = direction(rest, t, sides, along);
     for (int axis = 0; axis < 3 && first.isZero(0); ++axis) first = sides.projected(Vector::Unit(axis));
-    if (angles[t] != 0) {
-      const double angle = angles[t] * std::numbers::pi / 180;
-      first = std::cos(angle) * first + std::sin(angle) * sides.normal.cross(first);
-    }
+    if (angle != 0) first = std::cos(angle) * first + std::sin(angle) * sides.normal.cross(first);
     warp.row(t) = first.transpose();
   }
   return warp;

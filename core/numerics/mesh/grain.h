@@ -15,9 +15,9 @@ enum class GrainAxis { x, u, file };
 /// or along x. Where x is a triangle's normal, the next axis stands for it.
 Positions warp_directions(const TriangleMesh& rest);
 
-/// The directions of a pattern that was cut at these angles from the axis, one a triangle, counter-clockwise
-/// seen from the triangle's front [degree]. Where texture coordinates have no area, the x axis stands for u.
-Positions cut_directions(const TriangleMesh& rest, GrainAxis along, const Eigen::VectorXd& angles);
+/// The directions of a pattern that was cut at this angle from the axis, counter-clockwise seen from each
+/// triangle's front. Where texture coordinates have no area, the x axis stands for u.
+Positions cut_directions(const TriangleMesh& rest, GrainAxis along, double degrees);
 
 /// The first triangle in which the axis has no direction, and why.
 std::vector<std::string> grain_faults(const TriangleMesh& rest, GrainAxis along);
