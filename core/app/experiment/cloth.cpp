@@ -40,7 +40,7 @@ TriangleMesh read_cloth(const ClothParameters& c) {
 std::vector<std::string> cut(TriangleMesh& cloth, const ClothParameters& c) {
   if (cloth.warp.rows() > 0) cloth.warp = projected_warp(cloth.warp, cloth);
   if (!c.grain && c.grain_regions.empty()) return {};
-  const std::vector<std::string> faults = grain_faults(cloth, c.grain_along);
+  std::vector<std::string> faults = grain_faults(cloth, c.grain_along);
   if (!faults.empty()) return faults;
   Positions warp = c.grain ? cut_directions(cloth, c.grain_along, *c.grain) : warp_directions(cloth);
   for (std::size_t i = 0; i < c.grain_regions.size(); ++i) {
