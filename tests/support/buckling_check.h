@@ -9,7 +9,7 @@
 #include "core/numerics/formulas/membrane_formula.h"
 #include "tests/support/kernel_check.h"
 
-/// Properties of every membrane that buckles below the mesh (core/numerics/elements/buckling_membrane.h), for
+/// Properties of every membrane that buckles below the mesh (core/numerics/buckling/buckling_membrane.h), for
 /// one triangle.
 template <class Law>
 class BucklingCheck {

@@ -5,8 +5,8 @@
 #include <stdexcept>
 #include <vector>
 
-#include "core/numerics/elements/buckling_membrane.h"
-#include "core/numerics/elements/buckling_strains.h"
+#include "core/numerics/buckling/buckling_membrane.h"
+#include "core/numerics/buckling/buckling_strains.h"
 #include "core/numerics/elements/element_energy.h"
 #include "core/numerics/elements/green_strain.h"
 #include "core/numerics/formulas/formula_law.h"
@@ -127,11 +127,11 @@ class MembraneFormula final : public Energy {
     const Law law(p_, material);
     const double at_origin[] = {1, 0, 0, 0};
     const bool isotropic = (reads(law) & Trace::stretches) || is_isotropic([&](const Eigen::Vector3d& g) {
-                             return energy(law, g, at_origin).value;
+                             return energy<double>(law, g, at_origin).value;
                            });
     if (!isotropic)
       return bind_buckling_strains(
-          [law](const Eigen::Vector3d& g, const double* place) { return energy(law, g, place); },
+          [law](const auto& g, const auto* place) { return energy<Pack<native_pack_width>>(law, g, place); },
           material_triangles(level), level, s);
     return bind_buckling_membrane(PrincipalFormula<Law>{law}, level, numbers(level), s);
   }
@@ -156,9 +156,10 @@ class MembraneFormula final : public Energy {
   }
 
   /// A StrainLaw.
-  static Jet<3, double> energy(const Law& law, const Eigen::Vector3d& g, const double* place) {
-    using J = Jet<3, double>;
-    const double det = (1 + 2 * g[0]) * (1 + 2 * g[1]) - 4 * g[2] * g[2];
+  template <class T>
+  [[gnu::flatten]] static Jet<3, T> energy(const Law& law, const Eigen::Matrix<T, 3, 1>& g, const T* place) {
+    using J = Jet<3, T>;
+    const T det = (1.0 + 2.0 * g[0]) * (1.0 + 2.0 * g[1]) - 4.0 * (g[2] * g[2]);
     const J none(0.0);
     return place[0] * law(J::variable(g[0], 0), J::variable(g[1], 1), J::variable(g[2], 2), none, none,
                           area_ratio<3>(g[0], g[1], g[2], det), place[0], place[1], place[2], place[3]);

@@ -2,9 +2,9 @@
 #include <cmath>
 #include <utility>
 
+#include "core/numerics/buckling/buckling_membrane.h"
+#include "core/numerics/buckling/buckling_strains.h"
 #include "core/numerics/elements/batched_energy.h"
-#include "core/numerics/elements/buckling_membrane.h"
-#include "core/numerics/elements/buckling_strains.h"
 #include "core/numerics/elements/green_strain.h"
 #include "core/numerics/formulas/formula_properties.h"
 #include "plugins/energy/formula/formula.h"
@@ -195,18 +195,19 @@ struct PrincipalProgram {
 };
 
 /// A StrainLaw by a program of strains.
-Jet<3, double> energy_at(const Program& program, const Eigen::Vector3d& g, const double* place) {
-  double registers[Program::slots] = {};
+template <class T>
+Jet<3, T> energy_at(const Program& program, const Eigen::Matrix<T, 3, 1>& g, const T* place) {
+  T registers[Program::slots];
   using I = TriangleInput;
-  const double det = (1 + 2 * g[0]) * (1 + 2 * g[1]) - 4 * g[2] * g[2];
+  const T det = (1.0 + 2.0 * g[0]) * (1.0 + 2.0 * g[1]) - 4.0 * (g[2] * g[2]);
   for (const auto& [input, value] :
        {std::pair(I::g11, g[0]), std::pair(I::g22, g[1]), std::pair(I::g12, g[2]), std::pair(I::det, det),
         std::pair(I::area, place[0]), std::pair(I::u, place[1]), std::pair(I::v, place[2]),
         std::pair(I::w, place[3])})
     registers[program.register_of(input)] = value;
-  program.run<double, 1>(registers);
+  program.run<T, 1>(registers);
   const auto output = [&](int k) { return registers[program.output(k)]; };
-  Jet<3, double> w(output(0));
+  Jet<3, T> w(output(0));
   for (int k = 0; k < 3; ++k) w.first[k] = output(1 + k);
   for (int k = 0; k < 6; ++k) w.second[k] = output(4 + k);
   return w;
@@ -230,9 +231,7 @@ std::unique_ptr<BoundEnergy> bind_buckling(const Law& law, const Level& level, c
   if (uses_strains(law)) {
     if (uses_stretches(law)) return bind_membrane(law, level, material);
     const Program program = compile_triangle(law, material, TriangleVariables::strains).all;
-    const auto energy = [program](const Eigen::Vector3d& g, const double* place) {
-      return energy_at(program, g, place);
-    };
+    const auto energy = [program](const auto& g, const auto* place) { return energy_at(program, g, place); };
     const double at_origin[] = {1, 0, 0, 0};
     if (!is_isotropic([&](const Eigen::Vector3d& g) { return energy(g, at_origin).value; }))
       return bind_buckling_strains(energy, triangles, level, s);

@@ -46,7 +46,8 @@ class Buckling {
  public:
   /// κ [1]: of a fold that turns by half a circle, over its chord.
   static constexpr double largest_shortening = std::numbers::pi / 2;
-  static constexpr double remainder = 0.01;  ///< r [1]
+  static constexpr double most = largest_shortening * largest_shortening;  ///< κ² [1]
+  static constexpr double remainder = 0.01;                                ///< r [1]
 
   /// At stretches s1 ≥ s2, with s [J] and both_wrinkled(law, s).
   template <class Law>

@@ -1,4 +1,4 @@
-#include "core/numerics/elements/buckling_strains.h"
+#include "core/numerics/buckling/wrinkles.h"
 
 #include <Eigen/Dense>
 #include <algorithm>
@@ -6,8 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include "core/numerics/elements/buckling_membrane.h"
-#include "core/numerics/elements/element_energy.h"
+#include "core/numerics/buckling/buckling_membrane.h"
 
 namespace drape {
 namespace {
@@ -15,14 +14,7 @@ namespace {
 using Eigen::Matrix2d, Eigen::Matrix3d, Eigen::Vector2d, Eigen::Vector3d;
 using Wrinkles = Vector3d;  // q₁, q₂ and the angle of c₁ [rad]
 
-constexpr double most = Buckling<double>::largest_shortening * Buckling<double>::largest_shortening;  // κ²
-constexpr double remainder = Buckling<double>::remainder;
-
-Matrix2d metric(const Vector3d& strains) {
-  Matrix2d c;
-  c << 1 + 2 * strains[0], 2 * strains[2], 2 * strains[2], 1 + 2 * strains[1];
-  return c;
-}
+constexpr double most = Buckling<double>::most;
 
 Matrix3d second(const Jet<3, double>& w) {
   Matrix3d h;
@@ -54,7 +46,8 @@ struct Relaxed {
     const J along = 0.5 * (q1 - q2) * square, all = 0.5 * (q2 - 1.0);
     const J a[] = {all * c11 + along * x * x, all * c22 + along * y * y, all * c12 + along * x * y};
     const J strains[] = {g11 + a[0], g22 + a[1], g12 + a[2]};
-    const Jet<3, double> w = law({strains[0].value, strains[1].value, strains[2].value}, place);
+    const Jet<3, double> w =
+        energy_of_one(law, {strains[0].value, strains[1].value, strains[2].value}, place);
     value = w.value + s * (a[0].value + a[1].value);
     Eigen::Matrix<double, 3, N> by;
     for (int k = 0; k < 3; ++k)
@@ -92,30 +85,13 @@ struct Relaxed {
   }
 };
 
-/// The strains of a triangle that wrinkles in all directions, where the stress is -s; NaN without any.
-Vector3d slack_strains(const StrainLaw& law, const double* place, double s) {
-  Vector3d g = Vector3d::Zero();
-  for (int i = 0; i < 50; ++i) {
-    const Jet<3, double> w = law(g, place);
-    const Eigen::LLT<Matrix3d> llt(second(w));
-    if (llt.info() != Eigen::Success) break;
-    const Vector3d step = -llt.solve(Vector3d(w.first) + s * Vector3d(1, 1, 0));
-    g += step;
-    if (!(step.norm() < 1)) break;
-    if (step.norm() < 1e-14) return g;
-  }
-  return Vector3d::Constant(std::numeric_limits<double>::quiet_NaN());
-}
-
-/// Whether M lies between C and κ² C.
-bool within_bounds(const Matrix2d& c, const Matrix2d& m) {
-  const auto positive = [](const Matrix2d& a) { return a.trace() >= 0 && a.determinant() >= 0; };
-  return positive(m - c) && positive(most * c - m);
-}
-
-/// The angle of the c₁ along which the energy falls most for a stress that is too small by the matrix n.
-double falling_angle(const Matrix2d& n, const Matrix2d& c) {
-  const Eigen::GeneralizedSelfAdjointEigenSolver<Matrix2d> solver(n, c.inverse());
+/// The angle of the c₁ along which the energy falls most.
+double falling_angle(const StrainLaw& law, const Vector3d& g, const double* place, double s) {
+  const Jet<3, double> plain = energy_of_one(law, g, place);
+  Matrix2d too_small, metric;  // S + s I and C
+  too_small << plain.first[0] + s, plain.first[2] / 2, plain.first[2] / 2, plain.first[1] + s;
+  metric << 1 + 2 * g[0], 2 * g[2], 2 * g[2], 1 + 2 * g[1];
+  const Eigen::GeneralizedSelfAdjointEigenSolver<Matrix2d> solver(too_small, metric.inverse());
   const Vector2d v = solver.eigenvectors().col(0);
   return std::atan2(v.y(), v.x());
 }
@@ -150,11 +126,36 @@ Wrinkles downhill_step(const Relaxed<3>& at, const std::array<bool, 3>& free) {
   return step;
 }
 
-/// min_A [ W(G + A) + s tr A ] where G is not taut; with derivatives, if they are wanted.
-[[gnu::noinline]] Jet<3, double> wrinkled(const StrainLaw& law, const Vector3d& g, const double* place,
-                                          double s, double angle, bool derivatives) {
+}  // namespace
+
+Jet<3, double> energy_of_one(const StrainLaw& law, const Vector3d& g, const double* place) {
+  using P = Pack<native_pack_width>;
+  const P all[] = {place[0], place[1], place[2], place[3]};
+  const Jet<3, P> w = law({g[0], g[1], g[2]}, all);
+  Jet<3, double> own(w.value[0]);
+  for (int k = 0; k < 3; ++k) own.first[k] = w.first[k][0];
+  for (int k = 0; k < 6; ++k) own.second[k] = w.second[k][0];
+  return own;
+}
+
+Vector3d slack_strains(const StrainLaw& law, const double* place, double s) {
+  Vector3d g = Vector3d::Zero();
+  for (int i = 0; i < 50; ++i) {
+    const Jet<3, double> w = energy_of_one(law, g, place);
+    const Eigen::LLT<Matrix3d> llt(second(w));
+    if (llt.info() != Eigen::Success) break;
+    const Vector3d step = -llt.solve(Vector3d(w.first) + s * Vector3d(1, 1, 0));
+    g += step;
+    if (!(step.norm() < 1)) break;
+    if (step.norm() < 1e-14) return g;
+  }
+  return Vector3d::Constant(std::numeric_limits<double>::quiet_NaN());
+}
+
+Jet<3, double> wrinkled(const StrainLaw& law, const Vector3d& g, const double* place, double s,
+                        bool derivatives) {
   constexpr int max_iterations = 60;
-  Wrinkles p(1, 1, angle);
+  Wrinkles p(1, 1, falling_angle(law, g, place, s));
   Relaxed<3> now(law, g, place, s, p);
   for (int i = 0; i < max_iterations; ++i) {
     std::array<bool, 3> free = now.free(p);
@@ -187,82 +188,6 @@ Wrinkles downhill_step(const Relaxed<3>& at, const std::array<bool, 3>& free) {
     if (!free[k]) coupling.row(k).setZero();
   const Matrix3d eliminated = coupling.transpose() * end.of_wrinkles(free).ldlt().solve(coupling);
   return jet_of(now.value, end.first.tail<3>(), end.second.bottomRightCorner<3, 3>() - eliminated);
-}
-
-/// The kernel of ElementEnergy. Rest is a MaterialTriangle and its slack strains.
-struct BucklingStrains {
-  static constexpr int vertices = 3;
-  static constexpr bool convex = false;
-  using Rest = Eigen::Matrix<double, 11, 1>;
-  template <class T>
-  using Vector = Eigen::Matrix<T, 3, 1>;
-
-  StrainLaw law;
-  double s;
-
-  template <class T>
-  T value(const Vector<T>* e, const T* rest) const {
-    return energy(GreenStrain<T>(e, rest), rest, false).value;
-  }
-  template <class T>
-  T gradient(const Vector<T>* e, const T* rest, Vector<T>* g) const {
-    const GreenStrain<T> strain(e, rest);
-    const Jet<3, T> w = energy(strain, rest, true);
-    StrainDerivatives<T>::gradient(strain.f1, strain.f2, w.first, rest, g);
-    return w.value;
-  }
-  template <class T>
-  void hessian(const Vector<T>* e, const T* rest, Eigen::Matrix<T, 6, 6>& h) const {
-    const GreenStrain<T> strain(e, rest);
-    const Jet<3, T> w = energy(strain, rest, true);
-    StrainDerivatives<T>::hessian(strain.f1, strain.f2, w.first, w.second, rest, h);
-  }
-
- private:
-  Jet<3, double> energy(const GreenStrain<double>& g, const double* rest, bool derivatives) const {
-    return relaxed({g.g11, g.g22, g.g12}, rest + 4, Vector3d(rest + 8), derivatives);
-  }
-  template <int W>
-  Jet<3, Pack<W>> energy(const GreenStrain<Pack<W>>& g, const Pack<W>* rest, bool derivatives) const {
-    Jet<3, Pack<W>> all(0.0);
-    for (int i = 0; i < W; ++i) {
-      double own[7];
-      for (int k = 0; k < 7; ++k) own[k] = rest[4 + k][i];
-      const Jet<3, double> w = relaxed({g.g11[i], g.g22[i], g.g12[i]}, own, Vector3d(own + 4), derivatives);
-      all.value.v[i] = w.value;
-      for (int k = 0; k < 3; ++k) all.first[k].v[i] = w.first[k];
-      for (int k = 0; k < 6; ++k) all.second[k].v[i] = w.second[k];
-    }
-    return all;
-  }
-
-  [[gnu::noinline]] Jet<3, double> relaxed(const Vector3d& g, const double* place, const Vector3d& slack,
-                                           bool derivatives) const {
-    const Jet<3, double> plain = law(g, place);
-    Matrix2d too_small;  // S + s I
-    too_small << plain.first[0] + s, plain.first[2] / 2, plain.first[2] / 2, plain.first[1] + s;
-    const bool taut = too_small.trace() >= 0 && too_small.determinant() >= 0;
-    if (taut || !std::isfinite(plain.value)) return plain;
-    const Matrix2d c = metric(g);
-    const Jet<3, double> buckled =
-        within_bounds(c, metric(slack))
-            ? jet_of(law(slack, place).value + s * (slack[0] + slack[1] - g[0] - g[1]), {-s, -s, 0},
-                     Matrix3d::Zero())
-            : wrinkled(law, g, place, s, falling_angle(too_small, c), derivatives);
-    return (1 - remainder) * buckled + remainder * plain;
-  }
-};
-
-}  // namespace
-
-std::unique_ptr<BoundEnergy> bind_buckling_strains(const StrainLaw& law,
-                                                   const std::vector<MaterialTriangle>& triangles,
-                                                   const Level& level, double s) {
-  std::vector<BucklingStrains::Rest> rest;
-  for (const MaterialTriangle& triangle : triangles)
-    rest.emplace_back() << triangle, slack_strains(law, triangle.data() + 4, s);
-  return std::make_unique<ElementEnergy<BucklingStrains>>(level.rest.triangles, rest, level.triangle_order,
-                                                          BucklingStrains{law, s});
 }
 
 }  // namespace drape
