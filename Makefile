@@ -2,10 +2,11 @@
 # make setup    install what third_party/packages-to-run.txt and packages-to-test.txt list (Debian 12, asks apt-get); each
 #               target installs what it needs of them
 # make demo     build the command and its plugins, drape a square over a sphere by PCS, show the preview first
-# make results  run what the pages state and fill their figures in; resumes; STUDIES=sphere,scale chooses some
+# make results  run what the pages state and fill their figures in, at most eight hours on two cores; resumes; STUDIES=sphere,scale chooses
+#               some
 # make figures  fill the pages' figures in from the stored records; runs nothing
-# make table1   the study of the supplement's Table 1, hours (`make data` for all of its scenes); LEVELS=2 goes to at most so many
-#               levels, and writes no record
+# make table1   the study of the supplement's Table 1 (`make data` for its meshes); LEVELS=2 goes to at most so many levels, and writes
+#               no record
 # make scenes   the study of every scene of the supplement's Table 2 by PCS, many hours (`make data`); LEVELS=2 goes to at most
 #               so many, and writes no record
 # make python   build the Python module: PYTHONPATH=build/python python3 -c "import drape"; `make test` then tests it too
@@ -91,10 +92,10 @@ demo: build
 # Whole studies are those of `make results`; a part of one stays in results/.
 to_levels = $(BUILD)/bin/drape sweep configs/sweeps/$(1).yaml --out results/$(1)_levels_$(LEVELS) --most-levels $(LEVELS)
 table1: benchmarks
-	@$(if $(LEVELS),$(call to_levels,table1); benchmarks/table1 results/table1_levels_$(LEVELS),benchmarks/run_studies $(BUILD) table1)
+	@$(if $(LEVELS),$(call to_levels,table1); benchmarks/table1 results/table1_levels_$(LEVELS),benchmarks/run_studies --no-limit $(BUILD) table1)
 
 scenes: benchmarks
-	@$(if $(LEVELS),$(call to_levels,scenes); $(BUILD)/bin/drape table results/scenes_levels_$(LEVELS),benchmarks/run_studies $(BUILD) scenes)
+	@$(if $(LEVELS),$(call to_levels,scenes); $(BUILD)/bin/drape table results/scenes_levels_$(LEVELS),benchmarks/run_studies --no-limit $(BUILD) scenes)
 
 test: build-tests
 	@ctest --preset $(PRESET) -j $(JOBS)

@@ -123,20 +123,6 @@ def remedies():
     return table(["Newton iterations", *scenes_of, "sphere, cube and tablecloth, PCS and direct"], rows, [], "lrrrr")[1:]
 
 
-def interpolation():
-    rows = []
-    variants = [("midpoint", m, m) for m in METHODS] + [("refiner", "pcs_loop", "pcs_loop")] + [
-        (v, "pcs", "pcs, " + v.replace("_", " ")) for v in ("bending_by_the_refiner",)]
-    direct = runs("interpolation", "newton", "sphere", "midpoint")
-    for variant, method, name in variants:
-        r = runs("interpolation", method, "sphere", variant)
-        rows.append([name, ", ".join(figure(n) for n in iterations(r)), figure(iterations(r)[-1] / iterations(direct)[-1], 2),
-                     figure(of(r, "tflop") / of(direct, "tflop"), 2)]
-                    + [preview(r, m) for m in ("distance_rms", "silhouette_overlap", "energy_above_end")])
-    return table(["method", "iterations by level", "finest, relative to direct", "total flops, relative to direct", "preview: RMS", "overlap",
-                  "energy above end [J]"], rows, ["interpolation.md"], "llrrrrr")
-
-
 def ablations():
     """A row a method of each variation of the sphere's experiment; its flops are compared with the direct solve by the defaults."""
     direct = of(runs("ablations", "newton", variant="as_it_is"), "tflop")
@@ -154,27 +140,12 @@ def ablations():
                   "final energy [J]"], rows, [], "lllrrrr")[1:]
 
 
-def progressions():
-    """The whole of PCS's levels over the direct solve's finest level, in time; start by start."""
-    rows = []
-    for scene in ("pinned_square", "sphere"):
-        pairs = {}
-        for method in ("pcs", "newton"):
-            for r in runs("progressions", method, scene, "default"):
-                pairs.setdefault(r["seed"], {})[method] = r
-        ratios = [p["pcs"]["seconds"] / p["newton"]["seconds"] for p in pairs.values() if len(p) == 2]
-        first = next(iter(pairs.values()))["pcs"]
-        rows.append([scene, str(first["vertices"]), f"{figure(median(ratios), 2)} ({figure(min(ratios), 2)}–{figure(max(ratios), 2)})"])
-    # No comment for docs_figures: ratios start by start stand in no record.
-    return table(["scene", "vertices", "PCS, total time relative to direct"], rows, [], "lrr")[1:]
-
-
 def decrements():
     """PCS and the direct solve of the dragon, levels ended at a decrement."""
-    direct = {r["seed"]: r["tflop"] for r in runs("dragon_decrements_levels_4", "newton")}
+    direct = {r["seed"]: r["tflop"] for r in runs("dragon_decrements", "newton")}
     rows = []
     for method in ("pcs", "newton"):
-        r = runs("dragon_decrements_levels_4", method)
+        r = runs("dragon_decrements", method)
         rows.append([method, ", ".join(figure(n) for n in iterations(r)),
                      with_range([x["tflop"] / direct[x["seed"]] for x in r], lambda v: figure(v, 2)),
                      with_range([x["energy"] for x in r], lambda v: figure(v, 4)),
@@ -279,7 +250,6 @@ def scale():
 
 STUDIES = [
     ("[sphere to 98K](previews.md#the-sphere-to-98k-vertices)", "sphere.md"),
-    ("[progressions](speed.md#whole-progressions)", "progressions.md"),
     ("[ratios](speed.md#ratios)", "ratios.json"),
     ("[changes](speed.md#changes-of-a-parameter)", "changes.json"),
     ("[linear solvers](speed.md#the-linear-solver)", "linear_solvers.json"),
@@ -287,23 +257,22 @@ STUDIES = [
     ("[beside Codim-IPC](speed.md#beside-codim-ipc)", "codim_ipc.json"),
     ("[scale](speed.md#scale)", "scale.json"),
     ("[six scenes to 5.9K](previews.md#six-scenes)", "previews.md"),
-    ("[interpolation](ablations.md#interpolation)", "interpolation.md"),
     ("[four levels](previews.md#four-levels)", "four_levels.md"),
     ("[ablations](ablations.md#one-choice-at-a-time)", "ablations.md"),
     ("[hard cases](hard-cases.md)", "hard.md"),
     ("[remedies](ablations.md#newton)", "hard_remedies.md"),
     ("[Table 1](table1.md)", "table1.md"),
     ("[scenes](speed.md#every-scene)", "scenes.md"),
-    ("[the dragon, by decrements, four levels](speed.md#levels-that-end-at-a-decrement)", "dragon_decrements_levels_4.md"),
-    ("the dragon, by decrements", "dragon_decrements.md"),
+    ("[the dragon, by decrements](speed.md#levels-that-end-at-a-decrement)", "dragon_decrements.md"),
 ]
 
 
 def studies():
-    rows = [[title, f"[{record}](../../benchmarks/results/{record})", conditions(record)]
+    minutes = lambda record: figure(stamps()["records"].get(record, {}).get("minutes"), 2)  # noqa: E731
+    rows = [[title, f"[{record}](../../benchmarks/results/{record})", minutes(record), conditions(record)]
             for title, record in STUDIES if (RESULTS / record).exists()]
-    rows.append(["[known answers](validation.md)", "`tests/physics`, which print and bound them", "each build"])
-    return table(["study", "record", "how it was measured"], rows, [])[1:]
+    rows.append(["[known answers](validation.md)", "`tests/physics`, which print and bound them", "–", "each build"])
+    return table(["study", "record", "minutes", "how it was measured"], rows, [], "llrl")[1:]
 
 
 def solves(*names):
@@ -342,9 +311,7 @@ BLOCKS = {
     "chosen scenes": chosen_scenes,
     "table 1": table1,
     "remedies": remedies,
-    "interpolation": interpolation,
     "ablations": ablations,
-    "progressions": progressions,
     "decrements": decrements,
     "ratios": ratios,
     "changes": changes,
@@ -389,8 +356,4 @@ VALUES = {
     "crossing solves of sphere and previews": lambda: str(solves("sphere", "previews")[1]),
     "hard cases that pass": lambda: row_count("hard.json"),
     "remedies that pass": lambda: row_count("hard_remedies.json"),
-    "preview of pcs_loop on the pinned square": lambda: preview(runs("interpolation", "pcs_loop", "pinned_square", "refiner"), "distance_rms"),
-    "preview of pcs on the pinned square": lambda: preview(runs("interpolation", "pcs", "pinned_square", "midpoint"), "distance_rms"),
-    "finest of pcs_loop on the pinned square": lambda: figure(iterations(runs("interpolation", "pcs_loop", "pinned_square", "refiner"))[-1]),
-    "finest of pcs on the pinned square": lambda: figure(iterations(runs("interpolation", "pcs", "pinned_square", "midpoint"))[-1]),
 }

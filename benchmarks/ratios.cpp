@@ -4,7 +4,7 @@
 //
 // Without contact and with it: the finest level's whole Newton iterations against its factorisation and
 // solve, and the steps of PCS's coarsest level against those of the plain coarse model. Whole progressions
-// are another study, configs/sweeps/progressions.yaml.
+// are other studies, configs/sweeps/sphere.yaml and previews.yaml.
 
 #include <cstdio>
 #include <fstream>

@@ -1,6 +1,6 @@
 """The studies of `make results`, in the order in which they run.
 
-A study: `what` it is; whether its times are compared (`timed`: one process at a time, all cores, on an idle machine) or only
+A study: `what` it is; the `minutes` that it may take, over all calls, on two cores (at most eight hours in sum); whether its times are compared (`timed`: one process at a time, all cores, on an idle machine) or only
 its iterations and flops (one thread a run, a run a core); the `threads` of a timed one that does not take all cores;
 `starts`; the commands that `run` it in {out}, which go on where they were cut; those that `gather` its records, a first word
 ">FILE" storing what the rest prints; its `records` in benchmarks/results; `meshes` of data/ that it needs; what else it
@@ -16,19 +16,17 @@ MODULE = {"python/drape": "the Python module: run `make python`"}
 RUN_COLUMNS = "run,status,vertices,steps,seconds,energy_released,smallest_gap,largest_stretch,intersections,d_H_fit,message"
 
 
-def sweep(name, out="{out}", most_levels=None):
-    command = ["{drape}", "sweep", f"configs/sweeps/{name}.yaml", "-o", out, "-j", "{workers}", "--threads", "{threads}", "-q"]
-    return command + (["--most-levels", str(most_levels)] if most_levels else [])
+def sweep(name, out="{out}"):
+    return ["{drape}", "sweep", f"configs/sweeps/{name}.yaml", "-o", out, "-j", "{workers}", "--threads", "{threads}", "-q"]
 
 
-def previews(name, what, starts, timed=False, meshes=(), most_levels=None):
-    record = f"{name}_levels_{most_levels}" if most_levels else name
-    return {"what": what, "timed": timed, "starts": starts, "meshes": list(meshes), "run": [sweep(name, most_levels=most_levels)],
-            "gather": [["benchmarks/previews", record, "{out}"]], "records": [f"{record}.json", f"{record}.md"]}
+def previews(name, what, minutes, starts=3, timed=False, meshes=()):
+    return {"what": what, "minutes": minutes, "timed": timed, "starts": starts, "meshes": list(meshes), "run": [sweep(name)],
+            "gather": [["benchmarks/previews", name, "{out}"]], "records": [f"{name}.json", f"{name}.md"]}
 
 
-def program(name, what):
-    return {"what": what, "timed": True, "run": [["{build}/bin/drape_bench_" + name, "{out}/" + name + ".json"]],
+def program(name, what, minutes):
+    return {"what": what, "minutes": minutes, "timed": True, "run": [["{build}/bin/drape_bench_" + name, "{out}/" + name + ".json"]],
             "gather": [["cp", "{out}/" + name + ".json", "{results}/"]], "records": [f"{name}.json"]}
 
 
@@ -36,45 +34,42 @@ HARD = ["closing", "contact", "dragged", "folded", "friction", "material", "mesh
         "same_shape", "sleeve", "steps", "time"]
 
 STUDIES = {
-    "sphere": previews("sphere", "the sphere to 98K vertices, three methods", 3, timed=True),
-    "progressions": previews("progressions", "whole progressions against direct solves", 3, timed=True),
-    "ratios": program("ratios", "parts of an iteration against each other"),
-    "changes": program("changes", "what a change of a parameter costs"),
-    "linear_solvers": program("linear_solvers", "both linear solvers on the same matrices"),
+    "sphere": previews("sphere", "the sphere to 98K vertices, three methods", 40, timed=True),
+    "ratios": program("ratios", "parts of an iteration against each other", 15),
+    "changes": program("changes", "what a change of a parameter costs", 10),
+    "linear_solvers": program("linear_solvers", "both linear solvers on the same matrices", 15),
     "python": {
-        "what": "what the Python module costs", "timed": True, "needs": MODULE,
+        "what": "what the Python module costs", "minutes": 5, "timed": True, "needs": MODULE,
         "run": [["env", "PYTHONPATH={build}/python", "/usr/bin/python3", "benchmarks/python", "{drape}", "{out}/python.json"]],
         "gather": [["cp", "{out}/python.json", "{results}/"]], "records": ["python.json"]},
     "codim_ipc": {
-        "what": "direct Newton beside Codim-IPC", "timed": True, "threads": 1, "starts": 3, "needs": MODULE,
+        "what": "direct Newton beside Codim-IPC", "minutes": 60, "timed": True, "threads": 1, "starts": 3, "needs": MODULE,
         "check": ["benchmarks/codim_ipc/installation.py"],
         "run": [["env", "PYTHONPATH={build}/python", "benchmarks/codim_ipc/compare", "{out}/codim_ipc.json"]],
         "gather": [["cp", "{out}/codim_ipc.json", "{results}/"]], "records": ["codim_ipc.json"]},
     "scale": {
-        "what": "an iteration by the number of vertices, 6K to 371K, and with a million", "timed": True, "starts": 3,
+        "what": "an iteration by the number of vertices, 6K to 371K, and with a million", "minutes": 30, "timed": True, "starts": 3,
         "run": [sweep("scale")], "attempt": [sweep("scale_million", "{out}/million") + ["--allow-memory"]],
         "gather": [["benchmarks/scale", "{out}", "{results}/scale.json"]], "records": ["scale.json"]},
-    "previews": previews("previews", "six scenes to 5.9K vertices", 3, meshes=MESHES),
-    "interpolation": previews("interpolation", "the choice of interpolation", 3),
-    "four_levels": previews("four_levels", "six scenes with a fourth level", 3, meshes=MESHES),
-    "ablations": previews("ablations", "one choice changed at a time", 3),
+    "previews": previews("previews", "six scenes to 5.9K vertices", 35, meshes=MESHES),
+    "four_levels": previews("four_levels", "six scenes with a fourth level", 60, meshes=MESHES),
+    "ablations": previews("ablations", "one choice changed at a time", 20),
     "hard": {
-        "what": "the hard cases", "timed": False, "starts": 1, "failures": True,
+        "what": "the hard cases", "minutes": 15, "timed": False, "starts": 1, "failures": True,
         "run": [["{drape}", "sweep", f"configs/hard/sweeps/{name}.yaml", "-o", "{out}/" + name, "-q"] for name in HARD],
         "gather": [["configs/hard/write_tables", "{drape}", "{out}", "{results}"]],
         "records": ["hard.json", "hard.md", "hard_remedies.json", "hard_remedies.md"]},
     "cusick": {
-        "what": "drape coefficients of fabrics", "timed": False, "starts": 5, "run": [sweep("cusick")],
+        "what": "drape coefficients of fabrics", "minutes": 20, "timed": False, "starts": 5, "run": [sweep("cusick")],
         "gather": [[">{results}/cusick.csv", "{drape}", "table", "{out}", "--format", "csv", "--columns",
                     "run,seed,status,drape_coefficient,folds,intersections"]], "records": ["cusick.csv"]},
     "table1": {
-        "what": "the supplement's Table 1", "timed": False, "starts": 1, "meshes": MESHES, "partial": True, "run": [sweep("table1")],
+        "what": "two scenes of the supplement's Table 1", "minutes": 35, "timed": False, "starts": 1, "meshes": MESHES, "partial": True, "run": [sweep("table1")],
         "gather": [["benchmarks/table1", "{out}", "{results}/table1"]], "records": ["table1.json", "table1.md"]},
     "scenes": {
-        "what": "every scene of the supplement's Table 2", "timed": False, "starts": 1, "meshes": ALL_MESHES, "run": [sweep("scenes")],
+        "what": "scenes of the supplement's Table 2, to their finest levels", "minutes": 75, "timed": False, "starts": 1, "meshes": ALL_MESHES, "run": [sweep("scenes")],
         "scenes": True, "partial": True, "gather": [[">{results}/scenes.md", "{drape}", "table", "{out}", "--columns", RUN_COLUMNS]],
         "records": ["scenes.md"]},
-    "dragon_decrements_levels_4": previews("dragon_decrements", "the dragon under the paper's rule for ending levels, to 93K vertices", 3,
-                                           meshes=["dragon.ply"], most_levels=4),
-    "dragon_decrements": previews("dragon_decrements", "the dragon under the paper's rule for ending levels", 3, meshes=["dragon.ply"]),
+    "dragon_decrements": previews("dragon_decrements", "the dragon to 371K vertices under the paper's rule for ending levels", 45, starts=1,
+                                  timed=True, meshes=["dragon.ply"]),
 }
