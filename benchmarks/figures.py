@@ -338,11 +338,15 @@ def build_of(name):
 
 
 VALUES = {
-    "vertices of the sphere": lambda: f"{runs('sphere', 'pcs')[0]['vertices'] / 1000:.0f}K",
-    "seen on the sphere [s]": lambda: median_seconds("pcs", "seconds_of_preview"),
-    "finished on the sphere [s]": lambda: median_seconds("pcs", "seconds"),
-    "direct on the sphere [s]": lambda: median_seconds("newton", "seconds"),
-    "build of the sphere": lambda: build_of("sphere.json"),
+    "sphere.vertices": lambda: f"{runs('sphere', 'pcs')[0]['vertices'] / 1000:.0f}K",
+    "sphere.seen": lambda: median_seconds("pcs", "seconds_of_preview"),
+    "sphere.finished": lambda: median_seconds("pcs", "seconds"),
+    "sphere.cascadic": lambda: median_seconds("cascadic", "seconds"),
+    "sphere.distance_ratio": lambda: figure(
+        median([r["preview"]["distance_rms"] for r in runs("sphere", "cascadic")])
+        / median([r["preview"]["distance_rms"] for r in runs("sphere", "pcs")]), 2),
+    "sphere.direct": lambda: median_seconds("newton", "seconds"),
+    "sphere.build": lambda: build_of("sphere.json"),
     **{f"conditions of {name}": lambda name=name: conditions(name) for _, name in STUDIES},
     **{f"{method}'s preview of the sphere [s]": lambda method=method: seconds_text(
         [r["seconds_of_preview"] for r in runs("sphere", method)]) for method in METHODS},
@@ -352,8 +356,9 @@ VALUES = {
     "processor of Codim-IPC's BLAS": lambda: read("codim_ipc.json")["runs"][0]["codim_ipc"]["blas_kernels"],
     "iterations of Codim-IPC": lambda: codim_ipc_range("seconds_per_iteration"),
     "same state by Codim-IPC": lambda: codim_ipc_range("seconds_to_same_state"),
-    "solves of sphere and previews": lambda: str(solves("sphere", "previews")[0]),
-    "crossing solves of sphere and previews": lambda: str(solves("sphere", "previews")[1]),
+    "sphere.solves": lambda: str(solves("sphere")[0]),
+    "previews.solves": lambda: str(solves("previews")[0]),
+    "crossings": lambda: str(solves("sphere", "previews")[1]),
     "hard cases that pass": lambda: row_count("hard.json"),
     "remedies that pass": lambda: row_count("hard_remedies.json"),
 }
