@@ -89,17 +89,25 @@ def chosen_scenes():
     return table(columns, [by_name[n] for n in names if n in by_name], ["scenes.md"], "lrrrrrrr")
 
 
+def best_in_table1():
+    """For each scene, of the rows of curvature, of distance and of energy: how many, and on how many each method is best."""
+    text = (RESULTS / "table1.md").read_text()
+    found = {}
+    for scene in read("table1.json"):
+        section = text.split(f"\n## {scene}", 1)[1].split("\n## ", 1)[0]
+        found[scene] = [(int(rows_of), {method: int(count) for method, count in re.findall(r"(\w+) (\d+)", counts)})
+                        for rows_of, counts in re.findall(r"Best on the (\d+) rows of [^:]*:([^.]*)\.", section)]
+    return found
+
+
 def table1():
     """A row a scene of the supplement's Table 1: on how many rows each method is best, iterations."""
-    text = (RESULTS / "table1.md").read_text()
-    rows = []
+    rows, best = [], best_in_table1()
     for scene, entry in read("table1.json").items():
         methods = entry["methods"]
-        section = text.split(f"\n## {scene}", 1)[1].split("\n## ", 1)[0]
-        best = [" / ".join(re.findall(r" (\d+)", counts)) + f" of {rows_of}"
-                for rows_of, counts in re.findall(r"Best on the (\d+) rows of [^:]*:([^.]*)\.", section)]
         first = next(iter(methods.values()))
-        rows.append([scene, str(first["vertices_by_level"][-1]), *best,
+        rows.append([scene, str(first["vertices_by_level"][-1]),
+                     *(" / ".join(str(counts[m]) for m in methods) + f" of {rows_of}" for rows_of, counts in best[scene]),
                      " / ".join(str(r["iterations_by_level"][-1]) for r in methods.values()),
                      " / ".join(figure(r["tflop"] / methods["newton"]["tflop"], 2) for r in methods.values())])
     names = " / ".join(methods)
@@ -123,12 +131,17 @@ def remedies():
     return table(["Newton iterations", *scenes_of, "sphere, cube and tablecloth, PCS and direct"], rows, [], "lrrrr")[1:]
 
 
-def ablations():
-    """A row a method of each variation of the sphere's experiment; its flops are compared with the direct solve by the defaults."""
-    direct = of(runs("ablations", "newton", variant="as_it_is"), "tflop")
+def named_ablations():
+    """The runs by variation and method, and the direct solve's flops by the defaults."""
     named = {}
     for r in read("ablations.json"):
         named.setdefault((r["variant"], r["method"]), []).append(r)
+    return named, of(runs("ablations", "newton", variant="as_it_is"), "tflop")
+
+
+def ablations():
+    """A row a method of each variation of the sphere's experiment; its flops are compared with the direct solve by the defaults."""
+    named, direct = named_ablations()
     rows = []
     for variant in dict.fromkeys(v for v, _ in named):
         for method in [m for m in ("pcs", "pcs_loop", "cascadic", "newton") if (variant, m) in named]:
@@ -360,5 +373,6 @@ VALUES = {
     "previews.solves": lambda: str(solves("previews")[0]),
     "crossings": lambda: str(solves("sphere", "previews")[1]),
     "hard cases that pass": lambda: row_count("hard.json"),
+    "hard cases at rest": lambda: str(sum(r["status"] == "converged" for r in read("hard.json"))),
     "remedies that pass": lambda: row_count("hard_remedies.json"),
 }
