@@ -241,6 +241,22 @@ def codim_ipc():
                   "RMS distance of the final states"], rows, [], "lrrrrrrrr")[1:]
 
 
+def blender():
+    two = lambda v: figure(v, 2)  # noqa: E731
+    found = {}
+    for r in read("blender.json")["runs"]:
+        found.setdefault(r["scene"], []).append(r)
+    rows = []
+    for scene, starts in found.items():
+        for program in ("drape", "blender"):
+            of_program = [r[program] for r in starts]
+            rows.append([scene, program.capitalize() if program == "blender" else program, seconds_text([r["seconds"] for r in of_program]),
+                         with_range([r["force_residual"] for r in of_program], two), str(sum(r["intersections"] > 0 for r in of_program)),
+                         with_range([r["largest_stretch"] for r in of_program])])
+    # No comment for docs_figures: a row for each of two programs in one entry of the record.
+    return table(["scene", "program", "CPU time [s]", "force residual at the end", "starts with intersections", "largest stretch"], rows, [], "llrrrr")[1:]
+
+
 def scale():
     record = read("scale.json")
     mean = lambda r: f"{figure(r['seconds'], 2)} ({figure(r['seconds_lowest'], 2)}–{figure(r['seconds_highest'], 2)})"  # noqa: E731
@@ -268,6 +284,7 @@ STUDIES = [
     ("[linear solvers](speed.md#the-linear-solver)", "linear_solvers.json"),
     ("[Python](../extend/from-python.md#what-it-costs)", "python.json"),
     ("[beside Codim-IPC](speed.md#beside-codim-ipc)", "codim_ipc.json"),
+    ("[beside Blender](speed.md#beside-blender)", "blender.json"),
     ("[scale](speed.md#scale)", "scale.json"),
     ("[six scenes to 5.9K](previews.md#six-scenes)", "previews.md"),
     ("[four levels](previews.md#four-levels)", "four_levels.md"),
@@ -331,6 +348,7 @@ BLOCKS = {
     "linear solvers": linear_solvers,
     "python": python,
     "codim_ipc": codim_ipc,
+    "blender": blender,
     "scale": scale,
     "studies": studies,
 }

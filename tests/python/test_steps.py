@@ -27,6 +27,17 @@ def test_iterations_have_the_bits_of_a_run(experiment):
     assert list(solver) == []
 
 
+def test_the_scenes_beside_other_programs_come_to_rest(monkeypatch):
+    monkeypatch.syspath_prepend(pathlib.Path(__file__).resolve().parents[2] / "benchmarks")
+    import two_drapes
+
+    for name in two_drapes.SCENES:
+        seconds, states, level = two_drapes.solved(two_drapes.experiment_of(name, 9, seed=1))
+        assert level.status == "converged"
+        assert len(seconds) == len(states) == level.iterations
+        assert len(two_drapes.solved(two_drapes.experiment_of(name, 9, seed=1), most=3)[1]) == 3
+
+
 def test_stop_and_refine(experiment):
     solver = experiment.solver("pcs")
     next(solver)
