@@ -251,10 +251,11 @@ def blender():
         for program in ("drape", "blender"):
             of_program = [r[program] for r in starts]
             rows.append([scene, program.capitalize() if program == "blender" else program, seconds_text([r["seconds"] for r in of_program]),
+                         f"{sum(r.get('at_rest', True) for r in of_program)} of {len(starts)}",
                          with_range([r["force_residual"] for r in of_program], two), str(sum(r["intersections"] > 0 for r in of_program)),
                          with_range([r["largest_stretch"] for r in of_program])])
     # No comment for docs_figures: a row for each of two programs in one entry of the record.
-    return table(["scene", "program", "CPU time [s]", "force residual at the end", "starts with intersections", "largest stretch"], rows, [], "llrrrr")[1:]
+    return table(["scene", "program", "CPU time [s]", "starts at rest", "force residual at the end", "starts with intersections", "largest stretch"], rows, [], "llrrrrr")[1:]
 
 
 def scale():
