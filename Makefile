@@ -5,7 +5,7 @@
 # make results  run what the pages state and fill their figures in, at most eight hours on two cores; resumes; STUDIES=sphere,scale chooses
 #               some
 # make figures  fill the pages' figures in from the stored records; runs nothing
-# make table1   the study of the supplement's Table 1 (`make data` for its meshes); LEVELS=2 goes to at most so many levels, and writes
+# make table1   the study of the supplement's Table 1; LEVELS=2 goes to at most so many levels, and writes
 #               no record
 # make scenes   the study of every scene of the supplement's Table 2 by PCS, many hours (`make data`); LEVELS=2 goes to at most
 #               so many, and writes no record

@@ -48,12 +48,10 @@ def preview(records, measure):
 
 def sphere(columns):
     """A row a method of the sphere to 98K vertices."""
-    direct = of(runs("sphere", "newton"), "tflop")
     cells = {
         "iterations": lambda r: ", ".join(figure(n) for n in iterations(r)),
         "preview [s]": lambda r: seconds_text([x["seconds_of_preview"] for x in r]),
         "total [s]": lambda r: seconds_text([x["seconds"] for x in r]),
-        "flops, relative to direct": lambda r: figure(of(r, "tflop") / direct, 2),
         "final energy [J]": lambda r: figure(of(r, "energy"), 6),
         "preview: RMS distance from the final state [diagonals]": lambda r: with_range([x["preview"]["distance_rms"] for x in r], lambda v: figure(v, 2)),
         "silhouette overlap": lambda r: preview(r, "silhouette_overlap"),
@@ -109,10 +107,10 @@ def table1():
         rows.append([scene, str(first["vertices_by_level"][-1]),
                      *(" / ".join(str(counts[m]) for m in methods) + f" of {rows_of}" for rows_of, counts in best[scene]),
                      " / ".join(str(r["iterations_by_level"][-1]) for r in methods.values()),
-                     " / ".join(figure(r["tflop"] / methods["newton"]["tflop"], 2) for r in methods.values())])
+                     " / ".join(figure(r["seconds"] / methods["newton"]["seconds"], 2) for r in methods.values())])
     names = " / ".join(methods)
     return table(["scene", "vertices", f"best on rows of curvature: {names}", "of distance and silhouette", "of energy",
-                  "iterations on the finest level", "total flops, relative to direct"], rows, [], "lr")[1:]
+                  "iterations on the finest level", "total time, relative to direct"], rows, [], "lr")[1:]
 
 
 def remedies():
@@ -155,16 +153,16 @@ def ablations():
 
 def decrements():
     """PCS and the direct solve of the dragon, levels ended at a decrement."""
-    direct = {r["seed"]: r["tflop"] for r in runs("dragon_decrements", "newton")}
+    direct = {r["seed"]: r["seconds"] for r in runs("dragon_decrements", "newton")}
     rows = []
     for method in ("pcs", "newton"):
         r = runs("dragon_decrements", method)
-        rows.append([method, ", ".join(figure(n) for n in iterations(r)),
-                     with_range([x["tflop"] / direct[x["seed"]] for x in r], lambda v: figure(v, 2)),
+        rows.append([method, ", ".join(figure(n) for n in iterations(r)), seconds_text([x["seconds_of_preview"] for x in r]),
+                     seconds_text([x["seconds"] for x in r]), with_range([x["seconds"] / direct[x["seed"]] for x in r], lambda v: figure(v, 2)),
                      with_range([x["energy"] for x in r], lambda v: figure(v, 4)),
                      with_range([x["force_residual"] for x in r], lambda v: figure(v, 2))])
     # No comment for docs_figures: ratios start by start stand in no record.
-    return table(["method", "Newton iterations by level", "total flops, relative to direct", "final energy [J]", "force residual"], rows, [], "llrrr")[1:]
+    return table(["method", "Newton iterations by level", "preview [s]", "total [s]", "relative to direct", "final energy [J]", "force residual"], rows, [], "llrrrrr")[1:]
 
 
 def ratios():
@@ -333,7 +331,7 @@ TOP = ["preview, RMS: pcs / cascadic", "overlap", "finest level, iterations: pcs
        "total flops, relative to direct: pcs / cascadic", "final energy, pcs minus cascadic, start by start [J]"]
 
 BLOCKS = {
-    "sphere in full": lambda: sphere(["iterations", "preview [s]", "total [s]", "flops, relative to direct", "final energy [J]",
+    "sphere in full": lambda: sphere(["iterations", "preview [s]", "total [s]", "final energy [J]",
                                       "preview: RMS distance from the final state [diagonals]", "silhouette overlap",
                                       "preview: energy above the final state [J]", "level 1: RMS distance"]),
     "six scenes in full": lambda: scenes("previews", TOP),
@@ -353,12 +351,6 @@ BLOCKS = {
     "scale": scale,
     "studies": studies,
 }
-
-def flops_in_table1(method):
-    """The range of a method's flops relative to the direct solve's over the scenes of Table 1 that have run."""
-    methods = [entry["methods"] for entry in read("table1.json").values()]
-    return lowest_to_highest([of_scene[method]["tflop"] / of_scene["newton"]["tflop"] for of_scene in methods])
-
 
 def median_seconds(method, key):
     return seconds_text([of(runs("sphere", method), key)])
@@ -382,9 +374,7 @@ VALUES = {
     **{f"conditions of {name}": lambda name=name: conditions(name) for _, name in STUDIES},
     **{f"{method}'s preview of the sphere [s]": lambda method=method: seconds_text(
         [r["seconds_of_preview"] for r in runs("sphere", method)]) for method in METHODS},
-    "flops of pcs on the sphere, four levels": lambda: figure(flops_with_four_levels("sphere"), 2),
     "flops of pcs on five scenes, four levels": flops_of_five_scenes,
-    **{f"flops of {method} in table 1": lambda method=method: flops_in_table1(method) for method in ("pcs", "cascadic")},
     "processor of Codim-IPC's BLAS": lambda: read("codim_ipc.json")["runs"][0]["codim_ipc"]["blas_kernels"],
     "iterations of Codim-IPC": lambda: codim_ipc_range("seconds_per_iteration"),
     "same state by Codim-IPC": lambda: codim_ipc_range("seconds_to_same_state"),
