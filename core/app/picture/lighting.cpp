@@ -4,8 +4,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/app/picture/sampling.h"
-
 namespace drape {
 
 namespace {
@@ -16,7 +14,28 @@ constexpr float floor_key_share = 0.42f;  // of the light on the floor
 const Rgb key_light(0.98f, 0.92f, 0.83f), sky_light(0.40f, 0.44f, 0.50f), fill_light(0.10f, 0.13f, 0.17f);
 const Rgb front_colour = linear_of_srgb({0.86f, 0.79f, 0.69f}),
           back_colour = linear_of_srgb({0.62f, 0.70f, 0.77f}),
-          obstacle_colour = linear_of_srgb({0.42f, 0.44f, 0.47f});
+          obstacle_colour = linear_of_srgb({0.42f, 0.44f, 0.47f}),
+          backdrop = linear_of_srgb({0.985f, 0.985f, 0.985f});
+
+/// A point in [0, 1)² for a place in the grid of samples: from M. Roberts' R2 sequence (2018), numbered along
+/// a Morton curve, so that the points of every square of 2^k×2^k places are evenly spread.
+Eigen::Vector2f sample_point(std::uint32_t column, std::uint32_t row) {
+  const auto spread = [](std::uint32_t v) {
+    for (const int shift : {8, 4, 2, 1}) v = (v | v << shift) & 0xffffffffu / ((1u << shift) + 1);
+    return v;
+  };
+  const std::uint32_t number = spread(column) | spread(row) << 1;
+  return {static_cast<float>(number * 0xc13fa9a9u >> 8) * 0x1p-24f,
+          static_cast<float>(number * 0x91e10da5u >> 8) * 0x1p-24f};
+}
+
+/// [0, 1)² to directions about the unit vector n whose parts across n fill a disc of that radius evenly; the
+/// part along n is that of unit vectors if the radius is 1, otherwise about 1.
+Eigen::Vector3f around(const Eigen::Vector3f& n, float radius, const Eigen::Vector2f& sample) {
+  const float across = radius * std::sqrt(sample[0]), turn = 2 * static_cast<float>(M_PI) * sample[1];
+  const Eigen::Vector3f u = n.unitOrthogonal();
+  return across * (std::cos(turn) * u + std::sin(turn) * n.cross(u)) + std::sqrt(1 - across * across) * n;
+}
 
 }  // namespace
 
@@ -33,53 +52,39 @@ unsigned char srgb_byte(float linear) {
   return static_cast<unsigned char>(std::lround(255 * s));
 }
 
-Rgb Lighting::backdrop() {
-  static const Rgb colour = linear_of_srgb({0.985f, 0.985f, 0.985f});
-  return colour;
-}
-
 Lighting::Lighting(const RayScene& scene, const Camera& camera) : scene_(scene) {
   const Eigen::Matrix3f to_world = camera.frame.transpose().cast<float>();
   key_ = (to_world * Eigen::Vector3f(-0.75f, 0.25f, 0.25f) + Eigen::Vector3f(0, 0, 0.62f)).normalized();
-  tangents(key_, key_u_, key_v_);
   fill_ = (to_world * Eigen::Vector3f(0.8f, 0.1f, 0.45f)).normalized();
 }
 
-Light Lighting::at(const SurfacePoint& point, const Ray& ray) const {
-  if (point.surface == SurfacePoint::Surface::floor)
-    return {floor_key_share * backdrop(), (1 - floor_key_share) * backdrop(), Rgb::Zero()};
-  const Rgb base = point.surface == SurfacePoint::Surface::obstacle ? obstacle_colour
-                   : point.front                                    ? front_colour
-                                                                    : back_colour;
-  const float side = std::max(point.normal.dot(fill_), 0.0f);
+Rgb Lighting::to_eye(const Seen& seen, const Ray& ray, const Arriving& arriving) const {
+  if (seen.surface == Seen::Surface::nothing) return backdrop;
+  if (seen.surface == Seen::Surface::floor)
+    return (floor_key_share * arriving[0] + (1 - floor_key_share) * arriving[1]) * backdrop;
+  const Rgb base = seen.surface == Seen::Surface::obstacle ? obstacle_colour
+                   : seen.front                            ? front_colour
+                                                           : back_colour;
+  const float key = std::max(seen.normal.dot(key_), 0.0f), side = std::max(seen.normal.dot(fill_), 0.0f);
   // A faint sheen where cloth turns away separates a fold from what lies behind it.
-  const float grazing = 1 - std::clamp(-point.normal.dot(ray.direction()), 0.0f, 1.0f);
+  const float grazing = 1 - std::clamp(-seen.normal.dot(ray.direction()), 0.0f, 1.0f);
   const float sheen = 0.1f * grazing * grazing * grazing * grazing;
-  Light light;
-  light.key = base * key_light * std::max(point.normal.dot(key_), 0.0f);
-  light.sky = base * (sky_light + 0.7f * side * fill_light) + sheen;
-  light.other = base * 0.3f * side * fill_light;
-  return light;
+  return base * (arriving[0] * key * key_light + arriving[1] * (sky_light + 0.7f * side * fill_light) +
+                 0.3f * side * fill_light) +
+         arriving[1] * sheen;
 }
 
-float Lighting::sky_arriving(const SurfacePoint& point, const Eigen::Vector2f& sample) const {
-  Eigen::Vector3f u, v;
-  tangents(point.normal, u, v);
-  const Eigen::Vector2f c = on_disc(sample);
-  Eigen::Vector3f towards =
-      c[0] * u + c[1] * v + std::sqrt(std::max(0.0f, 1 - c.squaredNorm())) * point.normal;
+Arriving Lighting::arriving(const SurfacePoint& point, int column, int row) const {
+  const Eigen::Vector2f sample = sample_point(column, row);
+  const auto blocked = [&](const Eigen::Vector3f& towards) {
+    return scene_.blocked({point.light_origin, towards});
+  };
+  Arriving all(point.normal.dot(key_) > 0 && !blocked(around(key_, key_radius, sample)), bounce);
+  Eigen::Vector3f towards = around(point.normal, 1, sample);
   const float out = towards.dot(point.face_normal);
   if (out < 0) towards -= 2 * out * point.face_normal;  // under the triangle: mirrored
-  if (scene_.blocked({point.light_origin, towards})) return bounce;
-  return point.surface == SurfacePoint::Surface::floor ? 1 : 0.71f + 0.29f * towards[2];
-}
-
-Arriving Lighting::arriving(const SurfacePoint& point, const Eigen::Vector2f& key_sample,
-                            const Eigen::Vector2f& sky_sample) const {
-  const Eigen::Vector2f c = key_radius * on_disc(key_sample);
-  const Eigen::Vector3f towards = (key_ + c[0] * key_u_ + c[1] * key_v_).normalized();
-  const bool lit = point.normal.dot(key_) > 0 && !scene_.blocked({point.light_origin, towards});
-  return {lit ? 1.0f : 0.0f, sky_arriving(point, sky_sample)};
+  if (!blocked(towards)) all[1] = point.surface == Seen::Surface::floor ? 1 : 0.71f + 0.29f * towards[2];
+  return all;
 }
 
 }  // namespace drape

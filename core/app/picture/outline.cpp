@@ -4,30 +4,26 @@
 #include <cmath>
 #include <vector>
 
-#include "core/app/picture/eye.h"
-#include "core/app/picture/lighting.h"
-#include "core/app/picture/ray_scene.h"
+#include "core/app/picture/sample_grid.h"
 #include "core/kernel/threads/parallel.h"
 
 namespace drape {
 
 namespace {
 
-constexpr int split = 2;             // sub-pixels along the side of a pixel
 constexpr float line_width = 3e-3f;  // of the picture's height
 constexpr float least_width = 1.5f;  // [pixels]
 constexpr float softness = 0.5f;     // half the width over which the line fades out [pixels]
 
-/// Which sub-pixels of a picture a mesh covers, row by row.
+/// Which samples of a picture a mesh covers, row by row.
 std::vector<unsigned char> cover_of(const TriangleMesh& mesh, const Camera& camera, int width, int height) {
   std::vector<unsigned char> covered(static_cast<std::size_t>(width) * height);
   const RayScene scene(Drawing{mesh});
-  const Eye eye(camera, scene.centre(), width, height);
   parallel_for(height, 8, [&](int begin, int end) {
     for (int row = begin; row < end; ++row)
       for (int column = 0; column < width; ++column)
-        covered[static_cast<std::size_t>(row) * width + column] =
-            scene.blocked(eye.through(column + 0.5f, row + 0.5f));
+        covered[static_cast<std::size_t>(row) * width + column] = scene.blocked(
+            scene.through(camera, (2 * column + 1.0) / width - 1, 1 - (2 * row + 1.0) / height));
   });
   return covered;
 }
@@ -40,7 +36,7 @@ void draw_outline(Image& image, const TriangleMesh& mesh, const Camera& camera,
   const std::vector<unsigned char> covered = cover_of(mesh, camera, width, height);
   const float edge = std::max(line_width * image.height, least_width) / 2 + softness;
   // The squared distance of each pixel's centre to the nearest border between a covered and an uncovered
-  // sub-pixel, as far as the line reaches [pixels].
+  // sample, as far as the line reaches [pixels].
   std::vector<float> distances(static_cast<std::size_t>(image.width) * image.height, edge * edge);
   const auto add_border = [&](float x, float y) {
     x /= split, y /= split;

@@ -7,6 +7,7 @@
 #endif
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <stdexcept>
 #include <string>
@@ -51,104 +52,115 @@ RTCRayHit embree_ray(const Ray& ray, float length = std::numeric_limits<float>::
 
 }  // namespace
 
-struct RayScene::Embree {
-  RTCDevice device = nullptr;
-  RTCScene all = nullptr, obstacle_alone = nullptr;
-  DrawnSurface surfaces[2];  // cloth, obstacle
-
-  Embree() {
+RayScene::RayScene(const Drawing& drawing)
     // One thread builds, so that equal drawings give equal trees, and the run's other threads are left alone.
-    device = rtcNewDevice("threads=1,start_threads=0,set_affinity=0");
-    if (!device) throw std::runtime_error("Embree, which draws pictures, does not start");
-    for (RTCScene* scene : {&all, &obstacle_alone}) {
-      *scene = rtcNewScene(device);
-      rtcSetSceneFlags(*scene, RTC_SCENE_FLAG_ROBUST);  // no ray slips between two triangles
-    }
+    : device_(rtcNewDevice("threads=1,start_threads=0,set_affinity=0"), rtcReleaseDevice) {
+  if (!device_) throw std::runtime_error("Embree, which draws pictures, does not start");
+  for (auto* scene : {&all_, &obstacle_alone_}) {
+    scene->reset(rtcNewScene(device_.get()), rtcReleaseScene);
+    rtcSetSceneFlags(scene->get(), RTC_SCENE_FLAG_ROBUST);  // no ray slips between two triangles
   }
-  ~Embree() {
-    for (RTCScene scene : {all, obstacle_alone})
-      if (scene) rtcReleaseScene(scene);
-    if (device) rtcReleaseDevice(device);
-  }
-
-  void attach(int id) {
-    const DrawnSurface& surface = surfaces[id];
-    if (surface.triangles.rows() == 0) return;
-    RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
-    const auto copy = [&](RTCBufferType type, RTCFormat format, const auto& rows) {
-      void* buffer = rtcSetNewGeometryBuffer(geometry, type, 0, format, 12, rows.rows());
-      if (buffer)
-        std::copy_n(rows.data(), rows.size(), static_cast<std::decay_t<decltype(rows(0, 0))>*>(buffer));
-    };
-    copy(RTC_BUFFER_TYPE_VERTEX, RTC_FORMAT_FLOAT3, surface.x);
-    copy(RTC_BUFFER_TYPE_INDEX, RTC_FORMAT_UINT3, surface.triangles);
-    rtcCommitGeometry(geometry);
-    rtcAttachGeometryByID(all, geometry, id);
-    if (id == 1) rtcAttachGeometryByID(obstacle_alone, geometry, id);
-    rtcReleaseGeometry(geometry);
-  }
-
-  void commit() {
-    rtcCommitScene(all);
-    rtcCommitScene(obstacle_alone);
-    const RTCError error = rtcGetDeviceError(device);
-    if (error == RTC_ERROR_OUT_OF_MEMORY) throw std::runtime_error("no memory is left to draw a picture");
-    if (error != RTC_ERROR_NONE)
-      throw std::runtime_error("Embree, which draws pictures, fails with error " + std::to_string(error));
-  }
-
-  std::optional<SurfacePoint> nearest(RTCScene scene, const Ray& ray) const {
-    RTCRayHit query = embree_ray(ray);
-    intersect(scene, &query);
-    if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return {};
-    SurfacePoint point =
-        surfaces[query.hit.geomID].point(static_cast<int>(query.hit.primID), query.hit.u, query.hit.v, ray);
-    point.surface = query.hit.geomID == 0 ? SurfacePoint::Surface::cloth : SurfacePoint::Surface::obstacle;
-    point.distance = query.ray.tfar;
-    return point;
-  }
-
-  bool blocked(const Ray& ray, float length = std::numeric_limits<float>::infinity()) const {
-    RTCRayHit query = embree_ray(ray, length);
-    occlude(all, &query.ray);
-    return query.ray.tfar < 0;
-  }
-};
-
-RayScene::RayScene(const Drawing& drawing) : embree_(std::make_unique<Embree>()) {
-  Eigen::AlignedBox3d box;
-  for (const TriangleMesh* mesh : {&drawing.mesh, drawing.obstacle}) {
-    if (!mesh) continue;
-    for (Eigen::Index i = 0; i < mesh->vertices.rows(); ++i)
-      if (mesh->vertices.row(i).allFinite()) box.extend(mesh->vertices.row(i).transpose());
-  }
+  Eigen::AlignedBox3d box = bounding_box(drawing.mesh.vertices);
+  if (drawing.obstacle) box.extend(bounding_box(drawing.obstacle->vertices));
   if (box.isEmpty()) box.extend(Eigen::Vector3d::Zero());
   centre_ = box.center();
   radius_ = static_cast<float>(std::max(box.diagonal().norm() / 2, 1e-9));
   if (drawing.floor) floor_ = static_cast<float>(*drawing.floor - centre_[2]);
-  embree_->surfaces[0] = DrawnSurface(drawing.mesh, centre_, smooth_normals(drawing.mesh));
+  add(0, drawing.mesh, smooth_normals(drawing.mesh));
   if (drawing.obstacle) {
     Positions normals;
     const TriangleMesh creased = split_at_creases(*drawing.obstacle, normals);
-    embree_->surfaces[1] = DrawnSurface(creased, centre_, normals);
+    add(1, creased, normals);
   }
-  embree_->attach(0);
-  embree_->attach(1);
-  embree_->commit();
+  rtcCommitScene(all_.get());
+  rtcCommitScene(obstacle_alone_.get());
+  const RTCError error = rtcGetDeviceError(device_.get());
+  if (error == RTC_ERROR_OUT_OF_MEMORY) throw std::runtime_error("no memory is left to draw a picture");
+  if (error != RTC_ERROR_NONE)
+    throw std::runtime_error("Embree, which draws pictures, fails with error " + std::to_string(error));
 }
 
-RayScene::~RayScene() = default;
+void RayScene::add(int id, const TriangleMesh& mesh, const Positions& normals) {
+  surfaces_[id] = {(mesh.vertices.rowwise() - centre_.transpose()).cast<float>(), normals.cast<float>(),
+                   mesh.triangles};
+  if (mesh.triangles.rows() == 0) return;
+  RTCGeometry geometry = rtcNewGeometry(device_.get(), RTC_GEOMETRY_TYPE_TRIANGLE);
+  const auto copy = [&](RTCBufferType type, RTCFormat format, const auto& rows) {
+    void* buffer = rtcSetNewGeometryBuffer(geometry, type, 0, format, 12, rows.rows());
+    if (buffer)
+      std::copy_n(rows.data(), rows.size(), static_cast<std::decay_t<decltype(rows(0, 0))>*>(buffer));
+  };
+  copy(RTC_BUFFER_TYPE_VERTEX, RTC_FORMAT_FLOAT3, surfaces_[id].x);
+  copy(RTC_BUFFER_TYPE_INDEX, RTC_FORMAT_UINT3, mesh.triangles);
+  rtcCommitGeometry(geometry);
+  rtcAttachGeometryByID(all_.get(), geometry, id);
+  if (id == 1) rtcAttachGeometryByID(obstacle_alone_.get(), geometry, id);
+  rtcReleaseGeometry(geometry);
+}
+
+/// The point with barycentric coordinates (1 - u - v, u, v) of a triangle, met by a ray.
+SurfacePoint RayScene::Surface::point(int triangle, float u, float v, const Ray& ray) const {
+  const Eigen::Vector3f weight(1 - u - v, u, v);
+  Eigen::Matrix3f corners, n;
+  SurfacePoint point;
+  for (int k = 0; k < 3; ++k) {
+    const int i = triangles(triangle, k);
+    corners.col(k) = x.row(i);
+    n.col(k) = normals.row(i);
+  }
+  const Eigen::Vector3f across = (corners.col(1) - corners.col(0)).cross(corners.col(2) - corners.col(0));
+  const float twice_area = across.norm();
+  point.front = across.dot(ray.direction()) < 0;
+  const float side = point.front ? 1 : -1;
+  point.face_normal = side / std::max(twice_area, std::numeric_limits<float>::min()) * across;
+  point.position = corners * weight;
+  point.normal = side * (n * weight);
+  const float length = point.normal.norm();
+  point.normal = length > 0.01f ? Eigen::Vector3f(point.normal / length) : point.face_normal;
+  // Interpolated normals may turn away from the eye near a silhouette: they are bent back.
+  const float away = point.normal.dot(ray.direction());
+  if (away > -0.02f) point.normal = (point.normal - (away + 0.02f) * ray.direction()).normalized();
+  // Flat triangles shadow the smooth surface that their normals suggest, in steps along the shadow's border.
+  // Rays therefore start on that surface where it bulges out (J. Hanika, Hacking the Shadow Terminator, Ray
+  // Tracing Gems II, 2021).
+  point.light_origin = point.position;
+  for (int k = 0; k < 3; ++k) {
+    const float below = std::min(side * (point.position - corners.col(k)).dot(n.col(k)), 0.0f);
+    point.light_origin -= weight[k] * side * below * n.col(k);
+    const Eigen::Vector3f across_edge =
+        (corners.col((k + 2) % 3) - corners.col((k + 1) % 3)).cross(ray.direction()).normalized();
+    point.edge_distance[k] = std::abs(across_edge.dot(corners.col((k + 1) % 3) - point.position));
+  }
+  return point;
+}
+
+std::optional<SurfacePoint> RayScene::hit(RTCSceneTy* scene, const Ray& ray) const {
+  RTCRayHit query = embree_ray(ray);
+  intersect(scene, &query);
+  if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return {};
+  SurfacePoint point =
+      surfaces_[query.hit.geomID].point(static_cast<int>(query.hit.primID), query.hit.u, query.hit.v, ray);
+  point.surface = query.hit.geomID == 0 ? Seen::Surface::cloth : Seen::Surface::obstacle;
+  point.distance = query.ray.tfar;
+  return point;
+}
+
+Ray RayScene::through(const Camera& camera, double right, double up) const {
+  const auto world = camera.frame.transpose();
+  const Eigen::Vector3d ahead(right * camera.tangent[0], up * camera.tangent[1], -1);
+  return {(world * camera.eye - centre_).cast<float>(), (world * ahead).normalized().cast<float>()};
+}
 
 std::optional<SurfacePoint> RayScene::nearest(const Ray& ray) const {
-  std::optional<SurfacePoint> point = embree_->nearest(embree_->all, ray);
+  std::optional<SurfacePoint> point = hit(all_.get(), ray);
   if (floor_ && ray.direction()[2] < 0 && ray.origin()[2] > *floor_) {
     const float distance = (*floor_ - ray.origin()[2]) / ray.direction()[2];
     // Neither cloth that lies on the floor nor an obstacle that is the floor may flicker.
-    const bool cloth = point && point->surface == SurfacePoint::Surface::cloth;
+    const bool cloth = point && point->surface == Seen::Surface::cloth;
     const float level = *floor_ + (cloth ? -floor_margin : floor_margin) * radius_;
     if (!point || point->position[2] < level) {
       point.emplace();
-      point->surface = SurfacePoint::Surface::floor;
+      point->surface = Seen::Surface::floor;
       point->distance = distance;
       point->position = ray.pointAt(distance);
       point->normal = point->face_normal = Eigen::Vector3f::UnitZ();
@@ -161,16 +173,19 @@ std::optional<SurfacePoint> RayScene::nearest(const Ray& ray) const {
   const Eigen::Vector3f bulge = point->light_origin - point->position;
   // At a sharp fold the smooth surface may lie behind the next layer.
   const bool far = bulge.squaredNorm() > off_surface.squaredNorm();
-  if (far && embree_->blocked({point->position + off_surface, bulge}, 1))
-    point->light_origin = point->position;
+  if (far && blocked({point->position + off_surface, bulge}, 1)) point->light_origin = point->position;
   point->light_origin += off_surface;
   return point;
 }
 
 std::optional<SurfacePoint> RayScene::nearest_obstacle(const Ray& ray) const {
-  return embree_->nearest(embree_->obstacle_alone, ray);
+  return hit(obstacle_alone_.get(), ray);
 }
 
-bool RayScene::blocked(const Ray& ray) const { return embree_->blocked(ray); }
+bool RayScene::blocked(const Ray& ray, float length) const {
+  RTCRayHit query = embree_ray(ray, length);
+  occlude(all_.get(), &query.ray);
+  return query.ray.tfar < 0;
+}
 
 }  // namespace drape

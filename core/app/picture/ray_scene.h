@@ -1,33 +1,68 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <Eigen/Geometry>
+#include <limits>
 #include <memory>
 #include <optional>
 
 #include "core/app/picture/render.h"
-#include "core/app/picture/surface_point.h"
+
+struct RTCDeviceTy;  // of Embree
+struct RTCSceneTy;
 
 namespace drape {
+
+using Ray = Eigen::ParametrizedLine<float, 3>;
+
+/// What is seen along a ray. Normals point to the side that the ray comes from.
+struct Seen {
+  enum class Surface { nothing, cloth, obstacle, floor };
+  Surface surface = Surface::nothing;
+  bool front = true;  ///< whether the ray meets the side where the triangle runs counter-clockwise
+  Eigen::Vector3f position = Eigen::Vector3f::Zero();  ///< relative to the scene's centre [m]
+  Eigen::Vector3f normal = Eigen::Vector3f::Zero();    ///< interpolated between the vertices
+};
+
+/// Where a ray first meets a surface.
+struct SurfacePoint : Seen {
+  float distance = 0;  ///< along the ray
+  Eigen::Vector3f face_normal = Eigen::Vector3f::Zero();
+  /// Where rays to lights start: off the smooth surface that the normals suggest.
+  Eigen::Vector3f light_origin = Eigen::Vector3f::Zero();
+  Eigen::Vector3f edge_distance = Eigen::Vector3f::Zero();  ///< across the ray, to the triangle's edges [m]
+};
 
 /// A drawing's surfaces, ready for rays (Embree). Ray queries may run on any number of threads.
 class RayScene {
  public:
   /// Throws std::runtime_error if Embree fails.
   explicit RayScene(const Drawing& drawing);
-  ~RayScene();
 
-  /// Origin of the coordinates of rays: single precision holds offsets from it only [m].
-  const Eigen::Vector3d& centre() const { return centre_; }
+  /// From a camera's eye through a place in its picture, as Camera::seen gives it. Coordinates of rays are
+  /// relative to the scene's centre: single precision holds offsets from it only [m].
+  Ray through(const Camera& camera, double right, double up) const;
 
   std::optional<SurfacePoint> nearest(const Ray& ray) const;
   /// As nearest, as if there were the obstacle alone.
   std::optional<SurfacePoint> nearest_obstacle(const Ray& ray) const;
   /// Whether cloth or obstacle is in a ray's way.
-  bool blocked(const Ray& ray) const;
+  bool blocked(const Ray& ray, float length = std::numeric_limits<float>::infinity()) const;
 
  private:
-  struct Embree;
-  std::unique_ptr<Embree> embree_;
+  using Rows = Eigen::Matrix<float, Eigen::Dynamic, 3, Eigen::RowMajor>;
+  struct Surface {
+    Rows x, normals;  // n×3: vertices relative to the centre [m], unit normals
+    Triangles triangles;
+    SurfacePoint point(int triangle, float u, float v, const Ray& ray) const;
+  };
+
+  void add(int id, const TriangleMesh& mesh, const Positions& normals);
+  std::optional<SurfacePoint> hit(RTCSceneTy* scene, const Ray& ray) const;
+
+  std::shared_ptr<RTCDeviceTy> device_;
+  std::shared_ptr<RTCSceneTy> all_, obstacle_alone_;
+  Surface surfaces_[2];  // cloth, obstacle
   Eigen::Vector3d centre_ = Eigen::Vector3d::Zero();
   float radius_ = 0;  // of a sphere around the centre that holds cloth and obstacle [m]
   std::optional<float> floor_;

@@ -2,34 +2,20 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
 #include <thread>
-#include <utility>
 
-#include "core/app/picture/eye.h"
-#include "core/app/picture/light_buffer.h"
-#include "core/app/picture/lighting.h"
-#include "core/app/picture/ray_scene.h"
-#include "core/app/picture/sampling.h"
+#include "core/app/picture/sample_grid.h"
 #include "core/kernel/threads/parallel.h"
 
 namespace drape {
 
 namespace {
 
-constexpr int tile_size = 32;        // [pixels]
+constexpr int tile_size = 32;  // [pixels]
+// Weights, along a row or a column, of the samples around a pixel's middle: a tent.
+constexpr float tent[2 * split] = {0.125f, 0.375f, 0.375f, 0.125f};
 constexpr float edge_width = 1e-3f;  // of the picture's height
 constexpr float edge_opacity = 0.5f;
-constexpr int border_rays = 16;  // through a pixel where surfaces end
-constexpr int light_rays = 2;    // from a pixel to each light; more would cost as much again and hardly show
-enum Seed : std::uint32_t { border_seed = 0x68bc21ebu, key_seed = 0x02e5be93u, sky_seed = 0x967a889bu };
-
-/// How much of a pixel at a point the lines along the edges of its triangle cover, with soft borders.
-float edge_cover(const SurfacePoint& point, float pixel_size, int height) {
-  const float half_width = std::max(edge_width * height, 0.6f) / 2, soft = 0.75f;
-  const float distance = point.edge_distance.minCoeff() / pixel_size;
-  return std::clamp((half_width + soft - distance) / (2 * soft), 0.0f, 1.0f);
-}
 
 /// What is seen of an obstacle through cloth: its outline more than its middle.
 float show_through(const SurfacePoint& obstacle, const Ray& ray) {
@@ -37,125 +23,101 @@ float show_through(const SurfacePoint& obstacle, const Ray& ray) {
   return 0.05f + 0.3f * (1 - facing) * (1 - facing);
 }
 
-/// One picture: what is seen through the pixels' centres, with random rays to the lights; the light that
-/// arrives, smoothed; more rays from the eye where surfaces end.
+/// One picture: what is seen through a grid of samples, with random rays to the lights; the light that
+/// arrives, smoothed; means over the samples around a pixel's middle.
 class Painting {
  public:
-  Painting(const Drawing& drawing, const Camera& camera, LightBuffer& buffer)
+  Painting(const Drawing& drawing, const Camera& camera, int width, int height)
       : drawing_(drawing),
+        camera_(camera),
         scene_(drawing),
         lighting_(scene_, camera),
-        eye_(camera, scene_.centre(), buffer.width(), buffer.height()),
-        buffer_(buffer) {}
+        grid_(split * width, split * height) {}
 
   void see(int column, int row) {
-    Seen seen = look(column + 0.5f, row + 0.5f);
-    Pixel& pixel = buffer_.pixel(column, row);
-    pixel.light = seen.light;
-    pixel.kind = seen.kind;
-    pixel.veil = seen.veil;
-    if (!seen.point) return;
-    pixel.position = seen.point->position;
-    pixel.normal = seen.point->normal;
-    Arriving& arriving = buffer_.arriving(column, row);
-    const std::uint32_t first = morton_number(column, row) * light_rays;
-    for (int k = 0; k < light_rays; ++k)
-      arriving += lighting_.arriving(*seen.point, sample_point(first + k, key_seed),
-                                     sample_point(first + k, sky_seed));
-    arriving /= light_rays;
+    for (int y = split * row; y < split * (row + 1); ++y)
+      for (int x = split * column; x < split * (column + 1); ++x) {
+        const Ray ray = ray_through(x, y);
+        const std::optional<SurfacePoint> point = scene_.nearest(ray);
+        if (point) grid_.at(x, y) = {*point, share(*point, ray), lighting_.arriving(*point, x, y)};
+      }
   }
+
+  void smooth() { grid_.smooth(sample_size(scene_.through(camera_, 0, 0).origin().norm())); }
 
   Rgb colour(int column, int row) const {
-    const Pixel& pixel = buffer_.pixel(column, row);
-    if (buffer_.uniform(column, row, pixel_size(pixel.position)))
-      return sum(pixel.light, buffer_.arriving(column, row));
-    Rgb all = Rgb::Zero();
-    for (int k = 0; k < border_rays; ++k) {
-      const Eigen::Vector2f place = sample_point(k, border_seed);
-      const Seen seen = look(column + 0.5f + on_tent(place[0]), row + 0.5f + on_tent(place[1]));
-      Arriving arriving = Arriving::Zero();
-      if (seen.point)
-        arriving = buffer_.arriving_at(*seen.point, column, row, pixel_size(seen.point->position));
-      all += sum(seen.light, arriving);
+    Rgb sum = Rgb::Zero();
+    for (int k = 0; k < 4 * split * split; ++k) {
+      const int x = k % (2 * split), y = k / (2 * split);
+      sum += tent[x] * tent[y] *
+             light(std::clamp(split * column + x - split / 2, 0, grid_.width - 1),
+                   std::clamp(split * row + y - split / 2, 0, grid_.height - 1));
     }
-    return all / border_rays;
+    return sum;
   }
-
-  float pixel_size(const Eigen::Vector3f& position) const { return eye_.pixel_size(position); }
 
  private:
-  struct Seen {
-    std::optional<SurfacePoint> point;
-    Light light;
-    std::uint8_t kind = 0;
-    float veil = 0;
-  };
-
-  static Rgb sum(const Light& light, const Arriving& arriving) {
-    return arriving[0] * light.key + arriving[1] * light.sky + light.other;
+  Ray ray_through(int x, int y) const {
+    return scene_.through(camera_, (2 * x + 1.0) / grid_.width - 1, 1 - (2 * y + 1.0) / grid_.height);
   }
 
-  /// Through a place in the picture [pixels].
-  Seen look(float column, float row) const {
-    const Ray ray = eye_.through(column, row);
-    Seen seen{scene_.nearest(ray), {}};
-    if (!seen.point) {
-      seen.light.other = Lighting::backdrop();
-      return seen;
-    }
-    seen.kind = 1 + static_cast<std::uint8_t>(seen.point->surface);
-    seen.light = lighting_.at(*seen.point, ray);
-    if (seen.point->surface == SurfacePoint::Surface::cloth) add_lines(ray, seen);
-    return seen;
+  /// The distance between samples on a surface that faces the eye, that far away [m].
+  float sample_size(double distance) const {
+    return static_cast<float>(2 * camera_.tangent[1] / grid_.height * distance);
   }
 
-  /// Darkens cloth by its edges and, under X-rays, by the obstacle behind it.
-  void add_lines(const Ray& ray, Seen& seen) const {
-    float share = 0;
-    if (drawing_.edges)
-      share = edge_opacity * edge_cover(*seen.point, pixel_size(seen.point->position), buffer_.height());
-    if (drawing_.obstacle && drawing_.xray) {
-      if (const auto behind = scene_.nearest_obstacle(ray)) {
-        seen.veil = show_through(*behind, ray);
-        share = std::max(share, seen.veil);
-      }
+  Rgb light(int x, int y) const {
+    const Sample& sample = grid_.at(x, y);
+    return sample.share * lighting_.to_eye(sample, ray_through(x, y), sample.arriving);
+  }
+
+  /// What cloth's edges and, under X-rays, the obstacle behind it leave of its light.
+  float share(const SurfacePoint& point, const Ray& ray) const {
+    float taken = 0;
+    if (point.surface != Seen::Surface::cloth) return 1;
+    if (drawing_.edges) {  // lines along the triangle's, with soft borders
+      const float half_width = std::max(edge_width * grid_.height, 0.6f * split) / 2, soft = 0.25f * split;
+      const float distance = point.edge_distance.minCoeff() / sample_size(point.distance);
+      taken = edge_opacity * std::clamp((half_width + soft - distance) / (2 * soft), 0.0f, 1.0f);
     }
-    for (Rgb* part : {&seen.light.key, &seen.light.sky, &seen.light.other}) *part *= 1 - share;
+    if (drawing_.obstacle && drawing_.xray)
+      if (const auto behind = scene_.nearest_obstacle(ray))
+        taken = std::max(taken, show_through(*behind, ray));
+    return 1 - taken;
   }
 
   const Drawing& drawing_;
+  const Camera& camera_;
   const RayScene scene_;
   const Lighting lighting_;
-  const Eye eye_;
-  LightBuffer& buffer_;
+  SampleGrid grid_;
 };
 
-}  // namespace
-
-Renderer::Renderer(int width, int height, std::function<bool()> cancelled)
-    : width_(width), height_(height), cancelled_(std::move(cancelled)) {}
-
-void Renderer::for_tiles(const std::function<void(int column, int row)>& body) const {
-  const int columns = (width_ - 1) / tile_size + 1, rows = (height_ - 1) / tile_size + 1;
+/// Calls body for all pixels, tile by tile, on all threads.
+void for_tiles(int width, int height, const std::function<bool()>& cancelled,
+               const std::function<void(int column, int row)>& body) {
+  const int columns = (width - 1) / tile_size + 1, rows = (height - 1) / tile_size + 1;
   const std::thread::id caller = std::this_thread::get_id();
   parallel_for(columns * rows, 1, [&](int tile, int) {
-    if (cancelled_ && std::this_thread::get_id() == caller && cancelled_()) throw RenderingCancelled();
+    if (cancelled && std::this_thread::get_id() == caller && cancelled()) throw RenderingCancelled();
     const int left = tile % columns * tile_size, top = tile / columns * tile_size;
-    for (int row = top; row < std::min(top + tile_size, height_); ++row)
-      for (int column = left; column < std::min(left + tile_size, width_); ++column) body(column, row);
+    for (int row = top; row < std::min(top + tile_size, height); ++row)
+      for (int column = left; column < std::min(left + tile_size, width); ++column) body(column, row);
   });
 }
 
-Image Renderer::draw(const Drawing& drawing, const Camera& camera) const {
-  LightBuffer buffer(width_, height_);
-  Painting painting(drawing, camera, buffer);
-  for_tiles([&](int column, int row) { painting.see(column, row); });
-  buffer.smooth(painting.pixel_size(Eigen::Vector3f::Zero()));
-  Image image{width_, height_, {}};
-  image.pixels.resize(3 * static_cast<std::size_t>(width_) * height_);
-  for_tiles([&](int column, int row) {
+}  // namespace
+
+Image render(const Drawing& drawing, const Camera& camera, int width, int height,
+             const std::function<bool()>& cancelled) {
+  Painting painting(drawing, camera, width, height);
+  for_tiles(width, height, cancelled, [&](int column, int row) { painting.see(column, row); });
+  painting.smooth();
+  Image image{width, height, {}};
+  image.pixels.resize(3 * static_cast<std::size_t>(width) * height);
+  for_tiles(width, height, cancelled, [&](int column, int row) {
     const Rgb colour = painting.colour(column, row);
-    const std::size_t first = 3 * (static_cast<std::size_t>(row) * width_ + column);
+    const std::size_t first = 3 * (static_cast<std::size_t>(row) * width + column);
     for (int k = 0; k < 3; ++k) image.pixels[first + k] = srgb_byte(colour[k]);
   });
   return image;

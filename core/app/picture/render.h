@@ -38,28 +38,16 @@ struct Drawing {
   std::optional<double> floor = {};        ///< height of a floor that shows shadows only [m]
 };
 
-/// A Renderer stopped before its picture was finished.
+/// `render` was cancelled before its picture was finished.
 struct RenderingCancelled : std::runtime_error {
   RenderingCancelled() : std::runtime_error("the picture was cancelled") {}
 };
 
 /// Traces rays (Embree) on thread_count() threads: a wide key light with soft shadows, a fill light, and sky
-/// light with occlusion. The same drawing gives the same bits with any number of threads.
-class Renderer {
- public:
-  /// Size of the pictures [pixels]. `cancelled`, which may be empty, is polled between tiles, on the thread
-  /// that draws.
-  Renderer(int width, int height, std::function<bool()> cancelled = {});
-
-  /// Throws RenderingCancelled once `cancelled` returns true, std::runtime_error if Embree fails.
-  Image draw(const Drawing& drawing, const Camera& camera) const;
-
- private:
-  /// Calls body for all pixels, on all threads.
-  void for_tiles(const std::function<void(int column, int row)>& body) const;
-
-  int width_, height_;
-  std::function<bool()> cancelled_;
-};
+/// light with occlusion. The same drawing gives the same bits with any number of threads. `cancelled`, which
+/// may be empty, is polled between tiles, on the thread that draws. Throws RenderingCancelled once it returns
+/// true, std::runtime_error if Embree fails.
+Image render(const Drawing& drawing, const Camera& camera, int width, int height,
+             const std::function<bool()>& cancelled = {});
 
 }  // namespace drape

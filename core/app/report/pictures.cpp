@@ -20,14 +20,6 @@ const Eigen::Vector3f outline_colour = Eigen::Vector3f(0x0b, 0x62, 0xa8) / 255;
 
 int height_of(int width) { return static_cast<int>(std::lround(width * 7.0 / 9)); }
 
-Eigen::AlignedBox3d box_of(const std::vector<const Positions*>& states) {
-  Eigen::AlignedBox3d box;
-  for (const Positions* x : states)
-    for (Eigen::Index i = 0; i < x->rows(); ++i)
-      if (x->row(i).allFinite()) box.extend(x->row(i).transpose());
-  return box;
-}
-
 /// The points of an obstacle that a picture of the cloth includes: not the far ends of a floor.
 Positions near_cloth(const Positions& obstacle, const Eigen::AlignedBox3d& cloth) {
   const double margin = cloth.isEmpty() ? 0 : cloth.diagonal().norm() / 4;
@@ -67,7 +59,7 @@ std::string file_part(std::string name) {
 
 PictureScene::PictureScene(const RunData& run, std::vector<std::string>& notes, const PictureFrame& frame,
                            std::function<bool()> cancelled)
-    : cancelled_(std::move(cancelled)), renderer_(frame.width, height_of(frame.width), cancelled_) {
+    : width_(frame.width), cancelled_(std::move(cancelled)) {
   std::vector<const Positions*> all = frame.further;
   for (const MethodRecord& method : run.methods)
     for (const LevelRecord& level : method.levels)
@@ -77,9 +69,12 @@ PictureScene::PictureScene(const RunData& run, std::vector<std::string>& notes, 
   for (const std::string& name : run.obstacles)
     if (auto mesh = mesh_or_note(run, name, notes)) obstacles.push_back(std::move(*mesh));
   obstacle_ = merged(obstacles);
-  const Positions near = near_cloth(obstacle_.vertices, box_of(all));
+  Eigen::AlignedBox3d box;
+  for (const Positions* x : all) box.extend(bounding_box(*x));
+  const Positions near = near_cloth(obstacle_.vertices, box);
   if (near.rows() > 0) all.push_back(&near);
-  if (const Eigen::AlignedBox3d box = box_of(all); !box.isEmpty()) floor_ = box.min()[2];
+  box.extend(bounding_box(near));
+  if (!box.isEmpty()) floor_ = box.min()[2];
   camera_ = Camera::around(all, frame.direction, double(frame.width) / height_of(frame.width));
 }
 
@@ -89,12 +84,12 @@ const TriangleMesh* PictureScene::state(const std::string& method, int level) co
 }
 
 Image PictureScene::draw(const TriangleMesh& cloth, bool xray) const {
-  return renderer_.draw({.mesh = cloth,
-                         .edges = cloth.vertices.rows() <= most_vertices_with_edges,
-                         .xray = xray,
-                         .obstacle = obstacle_.triangles.rows() > 0 ? &obstacle_ : nullptr,
-                         .floor = floor_},
-                        camera_);
+  return render({.mesh = cloth,
+                 .edges = cloth.vertices.rows() <= most_vertices_with_edges,
+                 .xray = xray,
+                 .obstacle = obstacle_.triangles.rows() > 0 ? &obstacle_ : nullptr,
+                 .floor = floor_},
+                camera_, width_, height_of(width_), cancelled_);
 }
 
 void PictureScene::draw_outline(Image& picture, const TriangleMesh& cloth) const {

@@ -46,8 +46,8 @@ class PictureScene {
   TriangleMesh obstacle_;
   Camera camera_;
   std::optional<double> floor_;  // height below everything
+  int width_;                    // [pixels]
   std::function<bool()> cancelled_;
-  Renderer renderer_;
 };
 
 /// All pictures of a run.

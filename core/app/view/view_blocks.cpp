@@ -21,11 +21,8 @@ void append(std::string& bytes, T value) {
 }
 
 Eigen::AlignedBox3f box_of(const Positions& x) {
-  Eigen::AlignedBox3f box;
-  for (Eigen::Index i = 0; i < x.rows(); ++i)
-    if (x.row(i).allFinite()) box.extend(x.row(i).transpose().cast<float>());
-  if (box.isEmpty()) box.extend(Eigen::Vector3f::Zero());
-  return box;
+  Eigen::AlignedBox3d box = bounding_box(x);
+  return (box.isEmpty() ? box.extend(Eigen::Vector3d::Zero()) : box).cast<float>();
 }
 
 }  // namespace

@@ -1,12 +1,20 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <Eigen/Geometry>
 
 namespace drape {
 
 /// n×3 vertex positions, one row a vertex [m]. Row-major so that one vertex is contiguous.
 using Positions = Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor>;
 
+/// Box around the positions that are finite; empty without any.
+inline Eigen::AlignedBox3d bounding_box(const Positions& x) {
+  Eigen::AlignedBox3d box;
+  for (Eigen::Index i = 0; i < x.rows(); ++i)
+    if (x.row(i).allFinite()) box.extend(x.row(i).transpose());
+  return box;
+}
 /// Diagonal of the positions' bounding box, n ≥ 1 [m].
 inline double bounding_box_diagonal(const Positions& x) {
   return (x.colwise().maxCoeff() - x.colwise().minCoeff()).norm();

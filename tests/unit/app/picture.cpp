@@ -96,9 +96,8 @@ TEST_CASE("the camera sees all of every state and wastes no picture") {
 
 TEST_CASE("a drawing shows both sides of the cloth") {
   TriangleMesh sheet = grid({1, 1}, 5, 5, Diagonals::one_way);
-  const Renderer renderer(60, 60);
   const auto middle = [&](const Drawing& drawing, const Camera& camera) {
-    const Image image = renderer.draw(drawing, camera);
+    const Image image = render(drawing, camera, 60, 60);
     const unsigned char* p = &image.pixels[3 * (30 * 60 + 30)];
     return Eigen::Vector3i(p[0], p[1], p[2]);
   };
@@ -118,11 +117,10 @@ TEST_CASE("a picture has the same bits on any number of threads, and from one dr
   drawing.obstacle = &block;
   drawing.floor = -0.2;
   const Camera camera = Camera::around({&cloth.vertices, &block.vertices}, {0.55, -1, 0.68}, 1.25);
-  const Renderer renderer(125, 100);
   set_thread_count(1);
-  const Image one = renderer.draw(drawing, camera), again = renderer.draw(drawing, camera);
+  const Image one = render(drawing, camera, 125, 100), again = render(drawing, camera, 125, 100);
   set_thread_count(3);
-  const Image three = renderer.draw(drawing, camera);
+  const Image three = render(drawing, camera, 125, 100);
   set_thread_count(0);
   CHECK(one.pixels == again.pixels);
   CHECK(one.pixels == three.pixels);
@@ -131,11 +129,10 @@ TEST_CASE("a picture has the same bits on any number of threads, and from one dr
 TEST_CASE("a floor shows shadows and nothing else") {
   const TriangleMesh cloth = dome(12);
   const Camera camera = Camera::around({&cloth.vertices}, {0.55, -1, 0.68}, 1);
-  const Renderer renderer(80, 80);
   Drawing drawing{cloth};
-  const Image without = renderer.draw(drawing, camera);
+  const Image without = render(drawing, camera, 80, 80);
   drawing.floor = -0.1;
-  const Image with = renderer.draw(drawing, camera);
+  const Image with = render(drawing, camera, 80, 80);
   int darker = 0, brighter = 0;
   for (int row = 0; row < 80; ++row)
     for (int column = 0; column < 80; ++column) {
@@ -148,9 +145,9 @@ TEST_CASE("a floor shows shadows and nothing else") {
 
   const TriangleMesh flat = grid({1, 1}, 5, 5, Diagonals::one_way);
   Drawing lying{flat};
-  const Image hanging = renderer.draw(lying, camera);
+  const Image hanging = render(lying, camera, 80, 80);
   lying.floor = 0;
-  const Image on_floor = renderer.draw(lying, camera);
+  const Image on_floor = render(lying, camera, 80, 80);
   const Eigen::Vector2i middle = pixel_of({0.5, 0.5, 0}, camera, hanging);
   for (int column = middle[0] - 15; column < middle[0] + 15; ++column)
     CHECK(brightness(on_floor, column, middle[1]) == brightness(hanging, column, middle[1]));
@@ -181,12 +178,11 @@ TEST_CASE("an obstacle shows through cloth under X-rays alone") {
   TriangleMesh block = cube(0.1);
   block.vertices.rowwise() += Eigen::RowVector3d(0.5, 0.5, 0.1);
   const Camera camera = Camera::around({&cloth.vertices}, {0.2, -0.3, 1}, 1);
-  const Renderer renderer(80, 80);
   const auto taken = [&](bool xray, const Eigen::Vector3d& point) {
     Drawing drawing{.mesh = cloth, .xray = xray};
-    const Image alone = renderer.draw(drawing, camera);
+    const Image alone = render(drawing, camera, 80, 80);
     drawing.obstacle = &block;
-    const Image both = renderer.draw(drawing, camera);
+    const Image both = render(drawing, camera, 80, 80);
     const Eigen::Vector2i p = pixel_of(point, camera, alone);
     return brightness(alone, p[0], p[1]) - brightness(both, p[0], p[1]);
   };
@@ -198,11 +194,10 @@ TEST_CASE("an obstacle shows through cloth under X-rays alone") {
 TEST_CASE("edges are drawn where asked for") {
   const TriangleMesh sheet = grid({1, 1}, 5, 5, Diagonals::one_way);
   const Camera camera = Camera::around({&sheet.vertices}, {0.2, -0.3, 1}, 1);
-  const Renderer renderer(200, 200);
   Drawing drawing{sheet};
-  const Image plain = renderer.draw(drawing, camera);
+  const Image plain = render(drawing, camera, 200, 200);
   drawing.edges = true;
-  const Image lines = renderer.draw(drawing, camera);
+  const Image lines = render(drawing, camera, 200, 200);
   const Eigen::Vector2i on = pixel_of({0.5, 0.375, 0}, camera, plain);
   const Eigen::Vector2i off = pixel_of({0.42, 0.33, 0}, camera, plain);
   CHECK(brightness(lines, on[0], on[1]) < brightness(plain, on[0], on[1]) - 20);
@@ -214,12 +209,12 @@ TEST_CASE("a picture is left when asked, and triangles that are not finite are l
   const Camera camera = Camera::around({&sheet.vertices}, {0, 0, 1}, 1);
   int polls = 0;
   set_thread_count(1);  // the thread that draws polls; with helpers it may get few tiles
-  CHECK_THROWS_AS(Renderer(100, 100, [&] { return ++polls == 3; }).draw({sheet}, camera), RenderingCancelled);
+  CHECK_THROWS_AS(render({sheet}, camera, 100, 100, [&] { return ++polls == 3; }), RenderingCancelled);
   set_thread_count(0);
   CHECK(polls == 3);
-  const Image whole = Renderer(50, 50).draw({sheet}, camera);
+  const Image whole = render({sheet}, camera, 50, 50);
   sheet.vertices(12, 0) = std::nan("");
-  const Image hole = Renderer(50, 50).draw({sheet}, camera);
+  const Image hole = render({sheet}, camera, 50, 50);
   CHECK(brightness(hole, 25, 25) == brightness(hole, 0, 0));  // the backdrop
   CHECK(brightness(whole, 25, 25) != brightness(whole, 0, 0));
   CHECK(brightness(hole, 5, 40) == brightness(whole, 5, 40));
