@@ -2,7 +2,7 @@
 import {Chart, distancePlot, methodLook} from './charts.js';
 import {columnsOf, metricColumns, ranking} from './columns.js';
 import {dataTable} from './tables.js';
-import {choice, converged, count, counted, explained, fold, formula, h, known, number, rowsOf, seconds, unique} from './text.js';
+import {about, choice, converged, count, counted, explained, fold, formula, h, known, number, rowsOf, seconds, unique} from './text.js';
 import {View} from './view.js';
 
 /// "after 39 s" and the like of a method: the sentence that one wants to know, beside the cloth.
@@ -166,13 +166,12 @@ function convergence(run) {
 
 /// {results, table, measures, styles, step_sizes, errors and iterations as CSV, config, pictures, notes, view}.
 export function runPage(data) {
-  const {results, table} = data, {machine = {}} = results;
+  const {results, table} = data;
   results.methods ||= {};
   const run = {...data, rows: table.rows.filter(row => results.methods[row.method]), errors: rowsOf(data.errors), iterations: rowsOf(data.iterations),
     tolerance: results.tolerance?.force_residual, of: {measures: data.measures, metrics: results.metrics}};
   run.order = run.rows.map(row => row.method);
-  const about = [results.version, results.commit, machine.cpu, machine.cores && `${machine.cores} cores`, machine.threads && counted(machine.threads, 'thread')].filter(part => part).join(' · ');
   return [h('header', {}, h('h1', {}, results.experiment || 'Unnamed experiment'), results.description ? h('p', {class: 'lead'}, results.description) : null),
     run.order.length ? hero(run) : h('p', {class: 'absent'}, 'The run holds no method’s results yet.'),
-    ...(run.order.length ? [previews(run), distances(run), methodTable(run), convergence(run)] : []), h('footer', {}, about)];
+    ...(run.order.length ? [previews(run), distances(run), methodTable(run), convergence(run)] : []), h('footer', {}, about(results))];
 }

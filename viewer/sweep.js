@@ -2,7 +2,7 @@
 import {Chart, distancePlot, methodLook, otherLook} from './charts.js';
 import {columnsOf, describe, ranking} from './columns.js';
 import {dataTable, matcher} from './tables.js';
-import {choice, converged, count, counted, explained, fold, h, known, rowsOf, spread, unique, words} from './text.js';
+import {about, choice, converged, count, counted, explained, fold, h, known, rowsOf, spread, unique, words} from './text.js';
 
 /// Median and extremes over repeats of a curve of error over cost, a step function, at costs in geometric progression from that
 /// at which all have a state to the largest.
@@ -147,7 +147,7 @@ export function sweepPage(data) {
     matching.textContent = all.shown.length < runs.length ? `${all.shown.length} of ${counted(runs.length, 'run')}` : '';
     all.redraw.forEach(draw => draw());
   };
-  const statuses = unique(runs.map(run => run.status)), machines = unique(runs.map(run => run.machine).filter(text => text));
+  const statuses = unique(runs.map(run => run.status)), machines = unique(runs.map(about).filter(text => text));
   const summary = (data.complete ? '' : 'Not all runs are done; these are the figures so far. ') + `${counted(runs.length, 'run')} of ${counted(unique(runs.map(run => run.variation)).length, 'variation')}: ` +
     statuses.map(status => `${count(runs.filter(run => run.status === status).length)} ${status.replace(/_/g, ' ') || 'unknown'}`).join(', ') + '.';
   const parts = all.rows.length ? [matrix(all), against(all), table(all), errors(all)] : [h('p', {class: 'absent'}, 'No run has written results yet.')];

@@ -50,6 +50,10 @@ export function spread(values) {
   return n ? {median: (v[(n - 1) >> 1] + v[n >> 1]) / 2, low: v[0], high: v[n - 1], count: n} : null;
 }
 
+/// The program and the machine of a run, as results.json has them.
+export const about = ({version, commit, machine}) =>
+  [version, commit, machine?.cpu, machine?.cores && counted(machine.cores, 'core'), machine?.threads && counted(machine.threads, 'thread')].filter(part => part).join(' · ');
+
 /// The rows of a file of the run as objects.
 export const rowsOf = ({names, rows}) => rows.map(row => Object.fromEntries(names.map((name, k) => [name, row[k]])));
 

@@ -95,8 +95,8 @@ TEST_CASE("an intersection, or an energy that is no number, fails whatever the s
     data.methods[0].status = "converged";
     LevelRecord level;
     level.status = "converged";
-    level.energy_released = energy;
-    level.intersections = intersections;
+    if (energy) level.values["energy_released"] = *energy;
+    if (intersections) level.values["intersections"] = *intersections;
     data.methods[0].levels.push_back(level);
     RunRecord run;
     run.variation = "case";
@@ -123,7 +123,7 @@ TEST_CASE("a table counts no shortened steps where rows of iterations.csv are mi
   run.data->methods.push_back({});
   run.data->methods[0].status = "converged";
   run.data->methods[0].levels.push_back({});
-  run.data->methods[0].levels[0].iterations = 3;
+  run.data->methods[0].levels[0].values["iterations"] = 3;
   CHECK(table_of({"set", true, {run}}).rows[0]["shortened_steps"].is_null());
 }
 
@@ -134,7 +134,7 @@ TEST_CASE("what has converged to rounding passes where it was to converge, and i
     data.methods[0].status = status;
     LevelRecord level;
     level.status = status;
-    level.energy_released = 1;
+    level.values["energy_released"] = 1;
     data.methods[0].levels.push_back(level);
     RunRecord run;
     run.status = "converged";

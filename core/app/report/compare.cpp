@@ -72,14 +72,14 @@ void add_method(Side& side, const std::string& name, const RunData& run, const M
   for (const LevelRecord& level : method.levels) {
     const std::string where = several ? name + ", level " + std::to_string(level.level) : name;
     for (const std::string& key : several ? level_keys : Names{"intersections", "smallest_gap"})
-      add(where, key, level.of(key));
+      add(where, key, level.values.of(key));
     for (const MetricColumn& column : run.columns(MetricScope::state, Shown::summary))
-      if (several) add(where, column.name, level.metrics.of(column.name), column.better);
+      if (several) add(where, column.name, level.values.of(column.name), column.better);
   }
   for (const ConsistencyRecord& pair : method.consistency)
     for (const MetricColumn& column : run.columns(MetricScope::pair, Shown::tables))
       add(name + ", levels " + std::to_string(pair.coarse) + " → " + std::to_string(pair.fine), column.name,
-          pair.metrics.of(column.name), column.better);
+          pair.values.of(column.name), column.better);
 }
 
 Side side_of(const RunCollection& collection, bool named) {

@@ -1,7 +1,6 @@
 #include "core/app/report/report.h"
 
 #include <algorithm>
-#include <cmath>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
@@ -118,10 +117,8 @@ Json run_json(const RunRecord& run, std::size_t rows, std::map<std::string, int>
   entry["reference"] = run.data->reference_is_file ? "" : run.data->reference;
   for (const MethodRecord& method : run.data->methods)
     entry["first_levels"][method.name] = method.first_level();
-  entry["machine"] = run.data->version + " · " + run.data->cpu;
-  if (run.data->threads)
-    entry["machine"] = entry["machine"].get<std::string>() +
-                       " · threads of a run: " + std::to_string(std::lround(*run.data->threads));
+  entry["version"] = member_of(run.data->results, "version");
+  entry["machine"] = member_of(run.data->results, "machine");
   return entry;
 }
 
@@ -146,7 +143,7 @@ std::vector<std::string> write_report(const fs::path& folder, const std::functio
   for (const MethodRecord& method : run.methods)
     if (method.step_size) step_sizes[method.name] = *method.step_size;
   const Json data = {{"kind", "run"},
-                     {"results", parse_json(read_file(folder / "results.json"))},
+                     {"results", run.results},
                      {"table", table_json(table_of(collection))},
                      {"measures", measures_json(run.error_measures)},
                      {"styles", styles_json(collection)},

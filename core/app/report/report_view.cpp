@@ -100,7 +100,7 @@ Json states_json(const RunData& run, const LevelRecord& level, const State& last
     states.push_back(std::move(state));
   }
   Json state = document.state(name, last.x, last.fields);
-  state["iteration"] = number(level.iterations);
+  state["iteration"] = number(level.values.of("iterations"));
   states.push_back(std::move(state));
   return states;
 }

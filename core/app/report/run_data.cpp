@@ -2,10 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <nlohmann/json.hpp>
 #include <stdexcept>
-#include <string_view>
-#include <utility>
 
 #include "core/app/files/json_file.h"
 #include "core/app/files/yaml_file.h"
@@ -17,17 +14,6 @@ namespace drape {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-/// Numbers that results.json has of every level, under the name that they have everywhere.
-constexpr std::pair<std::string_view, OptionalNumber LevelRecord::*> level_quantities[] = {
-    {"vertices", &LevelRecord::vertices},
-    {"steps", &LevelRecord::steps},
-    {"iterations", &LevelRecord::iterations},
-    {"seconds", &LevelRecord::seconds},
-    {"flops", &LevelRecord::flops},
-    {"energy_released", &LevelRecord::energy_released},
-    {"intersections", &LevelRecord::intersections},
-    {"smallest_gap", &LevelRecord::smallest_gap}};
 
 OptionalNumber number(const Json& json) {
   return json.is_number() ? finite(json.get<double>()) : std::nullopt;
@@ -53,57 +39,48 @@ std::vector<OptionalNumber> numbers(const Json& json) {
   return all;
 }
 
-/// results.json, and what its metrics declare.
-struct Results {
-  JsonFile file;
-  std::vector<DeclaredMetric> metrics;
+Values values_of(const Json& json) {
+  Values values;
+  for (const auto& [name, value] : json.items())
+    if (const OptionalNumber known = number(value)) values[name] = *known;
+  return values;
+}
 
-  Values values(const Json& json, MetricScope scope) const {
-    Values values;
-    for (const MetricColumn& column : columns_of(metrics, scope, Shown::stored))
-      values.set(column.name, number(member_of(json, column.name)));
-    return values;
-  }
+LevelRecord level_of(const Json& json, std::size_t position, const JsonFile& file) {
+  LevelRecord r;
+  r.level = file.find<int>(json, "level").value_or(static_cast<int>(position));
+  r.status = text_member(json, "status");
+  r.message = text_member(json, "message");
+  r.mesh = text_member(json, "mesh");
+  r.from_initial_state = is_true(member_of(json, "from_initial_state"));
+  r.values = values_of(json);
+  const Json& snapshots = member_of(json, "snapshots");
+  r.snapshots = {text_member(snapshots, "file"),
+                 numbers(member_of(snapshots, "iterations")),
+                 numbers(member_of(snapshots, "seconds")),
+                 {}};
+  if (const Json& checksum = member_of(snapshots, "checksum"); checksum.is_number_unsigned())
+    r.snapshots.checksum = checksum.get<std::uint32_t>();
+  return r;
+}
 
-  LevelRecord level(const Json& json, std::size_t position) const {
-    LevelRecord r;
-    r.level = file.find<int>(json, "level").value_or(static_cast<int>(position));
-    r.status = text_member(json, "status");
-    r.message = text_member(json, "message");
-    for (const auto& [name, member] : level_quantities)
-      r.*member = number(member_of(json, std::string(name)));
-    r.from_initial_state = is_true(member_of(json, "from_initial_state"));
-    r.metrics = values(json, MetricScope::state);
-    r.mesh = text_member(json, "mesh");
-    const Json& snapshots = member_of(json, "snapshots");
-    r.snapshots = {text_member(snapshots, "file"),
-                   numbers(member_of(snapshots, "iterations")),
-                   numbers(member_of(snapshots, "seconds")),
-                   {}};
-    if (const Json& checksum = member_of(snapshots, "checksum"); checksum.is_number_unsigned())
-      r.snapshots.checksum = checksum.get<std::uint32_t>();
-    return r;
+MethodRecord method_of(const std::string& name, const Json& json, const JsonFile& file) {
+  MethodRecord method;
+  method.name = name;
+  method.status = text_member(json, "status");
+  method.solver = text_member(json, "solver");
+  for (const Json& entry : list(member_of(json, "levels")))
+    if (entry.is_object()) method.levels.push_back(level_of(entry, method.levels.size(), file));
+  for (const Json& pair : list(member_of(json, "consistency"))) {
+    const int coarse = file.find<int>(pair, "coarse").value_or(-1),
+              fine = file.find<int>(pair, "fine").value_or(-1);
+    if (coarse >= 0 && fine > coarse)
+      method.consistency.push_back({coarse, fine, values_of(pair), text_member(pair, "fields")});
   }
-
-  MethodRecord method(const std::string& name, const Json& json) const {
-    MethodRecord method;
-    method.name = name;
-    method.status = text_member(json, "status");
-    method.solver = text_member(json, "solver");
-    for (const Json& entry : list(member_of(json, "levels")))
-      if (entry.is_object()) method.levels.push_back(level(entry, method.levels.size()));
-    for (const Json& pair : list(member_of(json, "consistency"))) {
-      const int coarse = file.find<int>(pair, "coarse").value_or(-1),
-                fine = file.find<int>(pair, "fine").value_or(-1);
-      if (coarse >= 0 && fine > coarse)
-        method.consistency.push_back(
-            {coarse, fine, values(pair, MetricScope::pair), text_member(pair, "fields")});
-    }
-    std::stable_sort(method.levels.begin(), method.levels.end(),
-                     [](const LevelRecord& a, const LevelRecord& b) { return a.level < b.level; });
-    return method;
-  }
-};
+  std::stable_sort(method.levels.begin(), method.levels.end(),
+                   [](const LevelRecord& a, const LevelRecord& b) { return a.level < b.level; });
+  return method;
+}
 
 OptionalNumber step_size(const ConfigNode& config, const std::string& method) {
   const ConfigNode* node = config.find("methods");
@@ -113,12 +90,6 @@ OptionalNumber step_size(const ConfigNode& config, const std::string& method) {
 
 }  // namespace
 
-OptionalNumber LevelRecord::of(const std::string& name) const {
-  for (const auto& [known, member] : level_quantities)
-    if (known == name) return this->*member;
-  return metrics.of(name);
-}
-
 int MethodRecord::first_level() const {
   int first = levels.empty() ? 0 : levels.front().level;
   for (const LevelRecord& level : levels)
@@ -126,11 +97,11 @@ int MethodRecord::first_level() const {
   return first;
 }
 
-OptionalNumber MethodRecord::cost(OptionalNumber LevelRecord::*member) const {
+OptionalNumber MethodRecord::cost(const std::string& value) const {
   OptionalNumber sum;
   for (const LevelRecord& level : levels) {
     if (level.from_initial_state) sum.reset();
-    if (level.*member) sum = sum.value_or(0) + *(level.*member);
+    if (const OptionalNumber known = level.values.of(value)) sum = sum.value_or(0) + *known;
   }
   return sum;
 }
@@ -138,7 +109,7 @@ OptionalNumber MethodRecord::cost(OptionalNumber LevelRecord::*member) const {
 bool RunData::has_contact() const {
   for (const MethodRecord& m : methods)
     for (const LevelRecord& r : m.levels)
-      if (r.intersections || r.smallest_gap) return true;
+      if (r.values.contains("intersections") || r.values.contains("smallest_gap")) return true;
   return false;
 }
 
@@ -173,19 +144,17 @@ RunData read_run(const std::filesystem::path& folder) {
   const std::filesystem::path path = folder / "results.json";
   if (!std::filesystem::is_regular_file(path))
     throw std::runtime_error(folder.string() + ": no results.json here; give the folder of a run");
-  const Json json = parse_json(read_file(path));
-  if (!json.is_object()) throw std::runtime_error(path.string() + ": not a JSON object; is it cut short?");
-
   RunData run;
   run.folder = folder;
+  run.results = parse_json(read_file(path));
+  const Json& json = run.results;
+  if (!json.is_object()) throw std::runtime_error(path.string() + ": not a JSON object; is it cut short?");
+
   run.experiment = text_member(json, "experiment");
-  run.version = text_member(json, "version");
   run.complete = is_true(member_of(json, "complete"));
   run.obstacles = texts(member_of(json, "obstacles"));
   run.obstacle_names = texts(member_of(json, "obstacle_names"));
   run.obstacle_names.resize(run.obstacles.size());
-  run.cpu = text_member(member_of(json, "machine"), "cpu");
-  run.threads = number(member_of(member_of(json, "machine"), "threads"));
   const Json& reference = member_of(json, "reference");
   run.reference_is_file = !text_member(reference, "file").empty();
   run.reference = text_member(reference, run.reference_is_file ? "file" : "method");
@@ -196,10 +165,10 @@ RunData read_run(const std::filesystem::path& folder) {
     ConfigErrors unread;
     run.config = parse_yaml(run.configuration, "config.yaml", unread);
   }
-  const Results results{{path, "run the experiment again"}, run.metrics};
+  const JsonFile file(path, "run the experiment again");
   if (const Json& methods = member_of(json, "methods"); methods.is_object())
     for (const auto& [name, value] : methods.items()) {
-      run.methods.push_back(results.method(name, value));
+      run.methods.push_back(method_of(name, value, file));
       run.methods.back().step_size = step_size(run.config, name);
     }
   // The progressive method comes first; the others stay in file order.

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <map>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <vector>
@@ -15,14 +16,11 @@
 
 namespace drape {
 
-/// The known values of metrics, by name.
+/// Finite numbers by their names in results.json (SI units).
 struct Values : std::map<std::string, double> {
   OptionalNumber of(const std::string& name) const {
     const auto found = find(name);
     return found == end() ? OptionalNumber() : found->second;
-  }
-  void set(const std::string& name, const OptionalNumber& value) {
-    if (value) insert_or_assign(name, *value);
   }
 };
 
@@ -33,26 +31,20 @@ struct SnapshotRecord {
   std::optional<std::uint32_t> checksum;
 };
 
-/// One level of one method, as results.json has it (SI units).
+/// One level of one method.
 struct LevelRecord {
   int level = 0;
   std::string status, message;
-  OptionalNumber vertices, steps, iterations, seconds, flops;
+  std::string mesh;                 ///< relative to the run's folder; may be empty
   bool from_initial_state = false;  ///< earlier levels do not contribute
-  OptionalNumber energy_released;   ///< of the finest level, since the scene's start [J]
-  OptionalNumber intersections, smallest_gap;
-  Values metrics;    ///< of state metrics, by column
-  std::string mesh;  ///< relative to the run's folder; may be empty
+  Values values;                    ///< costs, quantities and state metrics
   SnapshotRecord snapshots;
-
-  /// The quantity or state metric of that name in results.json.
-  OptionalNumber of(const std::string& name) const;
 };
 
 /// Pair metrics of a coarse state, prolonged, against a finer one.
 struct ConsistencyRecord {
   int coarse = 0, fine = 0;
-  Values metrics;      ///< by column
+  Values values;
   std::string fields;  ///< relative to the run's folder; may be empty
 };
 
@@ -64,7 +56,7 @@ struct MethodRecord {
   std::vector<ConsistencyRecord> consistency;
 
   /// Cost of the last state: the sum of the known values over the levels that it builds on.
-  OptionalNumber cost(OptionalNumber LevelRecord::*member) const;
+  OptionalNumber cost(const std::string& value) const;
   /// The coarsest level that the last state builds on.
   int first_level() const;
 };
@@ -72,11 +64,11 @@ struct MethodRecord {
 /// Everything a finished or interrupted run has written, except meshes.
 struct RunData {
   std::filesystem::path folder;
-  std::string experiment, version, cpu;
+  nlohmann::ordered_json results;  ///< results.json as a whole
+  std::string experiment;
   std::string configuration;  ///< config.yaml, also parsed; empty without one
   ConfigNode config;
   bool complete = false;
-  OptionalNumber threads;
   std::vector<std::string> obstacles;       ///< meshes, relative to the folder
   std::vector<std::string> obstacle_names;  ///< of each of them; empty for an obstacle without a name
   std::vector<DeclaredMetric> metrics;

@@ -90,7 +90,7 @@ std::string fault_of_snapshots(const MethodRecord& method, const LevelRecord& le
                                std::size_t least) {
   const std::string name = "level " + std::to_string(level.level);
   if (count == 0) return "the run has no snapshots of " + name + "; run the experiment with snapshots: 8";
-  if (level.iterations.value_or(0) > 1)
+  if (level.values.of("iterations").value_or(0) > 1)
     return "the run has only the last state of " + name + "; run the experiment with snapshots: 8";
   std::vector<std::string> others;
   for (const LevelRecord& other : method.levels)

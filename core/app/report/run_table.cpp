@@ -34,8 +34,9 @@ struct IterationSummary {
       *shortened_steps += counts && csv.number(k, "step_length").value_or(1) < 1;
       note(csv.number(k, "smallest_gap"), csv.number(k, "intersections"));
     }
-    if (rows < method.cost(&LevelRecord::iterations).value_or(0)) shortened_steps.reset();
-    for (const LevelRecord& level : method.levels) note(level.smallest_gap, level.intersections);
+    if (rows < method.cost("iterations").value_or(0)) shortened_steps.reset();
+    for (const LevelRecord& level : method.levels)
+      note(level.values.of("smallest_gap"), level.values.of("intersections"));
   }
 
   void note(const OptionalNumber& gap, const OptionalNumber& crossing) {
@@ -76,7 +77,7 @@ OptionalNumber metric_value(const MetricColumn& column, MetricScope scope, const
   if (method.levels.empty()) return {};
   for (const ConsistencyRecord& pair : method.consistency)
     if (pair.coarse == method.levels.front().level && pair.fine == method.levels.back().level)
-      return pair.metrics.of(column.name);
+      return pair.values.of(column.name);
   return {};
 }
 
@@ -129,16 +130,17 @@ TableRow row_of(const RunData& run, const MethodRecord& method) {
       (has_converged(level.status) ? remark : fault) +=
           (several ? "level " + std::to_string(level.level) + ": " : "") + level.message + "\n";
   Json row = {{"method", method.name}, {"pass", false}, {"status", statuses(method)}};
-  row["vertices"] = method.levels.empty() ? Json() : count_of(method.levels.back().vertices);
-  row["steps"] = count_of(method.cost(&LevelRecord::steps));
-  row["iterations"] = count_of(method.cost(&LevelRecord::iterations));
+  row["vertices"] = method.levels.empty() ? Json() : count_of(method.levels.back().values.of("vertices"));
+  row["steps"] = count_of(method.cost("steps"));
+  row["iterations"] = count_of(method.cost("iterations"));
   row["shortened_steps"] = count_of(iterations.shortened_steps);
-  row["seconds"] = json_of(method.cost(&LevelRecord::seconds));
-  row["flops"] = json_of(method.cost(&LevelRecord::flops));
-  row["energy_released"] = method.levels.empty() ? Json() : json_of(method.levels.back().energy_released);
+  row["seconds"] = json_of(method.cost("seconds"));
+  row["flops"] = json_of(method.cost("flops"));
+  row["energy_released"] =
+      method.levels.empty() ? Json() : json_of(method.levels.back().values.of("energy_released"));
   row["smallest_gap"] = json_of(iterations.smallest_gap);
   row["intersections"] = count_of(iterations.intersections);
-  row["preview_seconds"] = several ? json_of(method.levels.front().seconds) : Json();
+  row["preview_seconds"] = several ? json_of(method.levels.front().values.of("seconds")) : Json();
   // The error of the reference against itself says nothing.
   const bool is_reference = !run.reference_is_file && run.reference == method.name;
   for (const ErrorMeasure& m : run.error_measures) {
@@ -157,7 +159,7 @@ TableRow row_of(const RunData& run, const MethodRecord& method) {
 OptionalNumber worst_over_levels(const MetricColumn& column, const MethodRecord& method) {
   OptionalNumber worst;
   for (const LevelRecord& level : method.levels) {
-    const OptionalNumber value = level.metrics.of(column.name);
+    const OptionalNumber value = level.values.of(column.name);
     if (!value) continue;
     const bool worse =
         !worst || (column.better == Better::neither ? *value > *worst : beats(column.better, *worst, *value));

@@ -107,7 +107,7 @@ FitSample FitRuns::measured(const Sweep& sweep, double factor) const {
       continue;
     }
     const MethodRecord method = read_run(files.folder).methods.at(0);
-    const OptionalNumber value = method.levels.back().metrics.of(setup_.metric);
+    const OptionalNumber value = method.levels.back().values.of(setup_.metric);
     value ? sample.values.push_back(*value) : leave_out("has no " + setup_.metric);
   }
   std::sort(sample.values.begin(), sample.values.end());
