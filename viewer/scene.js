@@ -24,7 +24,7 @@ export class Scene {
   constructor(canvas, labels) {
     const context = ['webgl2', 'webgl'].reduce((gl, kind) => gl || canvas.getContext(kind, {antialias: false}), null);
     if (!context) throw new Error('no WebGL');
-    Object.assign(this, {canvas, labels, views: [], solids: new Map(), renders: 0, waiting: false});
+    Object.assign(this, {canvas, labels, views: [], renders: 0, waiting: false});
     this.renderer = new THREE.WebGLRenderer({canvas, context});
     this.renderer.setScissorTest(true);
     this.camera = new THREE.PerspectiveCamera(28, 1, .01, 100);
@@ -113,25 +113,25 @@ export class Scene {
     this.views.length = count;
     this.layOut();
   }
-  /// Shows obstacles in a view. Views share the geometry of those that are in the same place.
+  /// Shows obstacles in a view.
   setObstacles(k, shapes) {
     const view = this.views[k];
     if (view.obstacles.length === shapes.length && shapes.every(({x}, i) => view.obstacles[i].userData.x === x)) return;
-    view.obstacles.forEach(mesh => view.scene.remove(mesh));
-    view.obstacles = shapes.map(({x, index}) => {
-      if (!this.solids.has(x)) this.solids.set(x, this.geometry(x, index));
-      const mesh = this.fixed(new THREE.Mesh(this.solids.get(x), this.solid));
-      mesh.userData.x = x;
-      return mesh;
-    });
-    view.obstacles.forEach(mesh => view.scene.add(mesh));
-    const shown = new Set(this.views.flatMap(v => v.obstacles.map(mesh => mesh.userData.x)));
-    for (const [x, geometry] of this.solids) {
-      if (shown.has(x)) continue;
-      geometry.setIndex(null);
-      geometry.dispose();
-      this.solids.delete(x);
-    }
+    view.obstacles.forEach(mesh => this.remove(view, mesh));
+    view.obstacles = shapes.map(shape => this.add(view, shape, this.solid));
+  }
+
+  add(view, {x, index}, material) {
+    const mesh = this.fixed(new THREE.Mesh(this.geometry(x, index), material));
+    mesh.userData.x = x;
+    view.scene.add(mesh);
+    return mesh;
+  }
+  remove(view, mesh) {
+    view.scene.remove(mesh);
+    mesh.children.forEach(lines => lines.geometry.dispose());
+    mesh.geometry.setIndex(null);  // the index is the document's, and stays
+    mesh.geometry.dispose();
   }
   fixed(mesh) {
     mesh.frustumCulled = false;
@@ -142,18 +142,13 @@ export class Scene {
   setCloth(k, shape) {
     const view = this.views[k];
     if (view.mesh && (!shape || view.mesh.userData.x !== shape.x)) {
-      view.scene.remove(view.mesh);
-      view.mesh.children.forEach(lines => lines.geometry.dispose());
-      view.mesh.geometry.setIndex(null);  // the index is the level's, and stays
-      view.mesh.geometry.dispose();
+      this.remove(view, view.mesh);
       view.mesh = null;
     }
     if (!shape) return;
     if (!view.mesh) {
-      view.mesh = this.fixed(new THREE.Mesh(this.geometry(shape.x, shape.index), this.cloth));
-      view.mesh.userData.x = shape.x;
+      view.mesh = this.add(view, shape, this.cloth);
       if (shape.warp) view.mesh.add(this.fixed(new THREE.LineSegments(arrows(shape.x, shape.warp, .06 * this.home.radius), this.lines)));
-      view.scene.add(view.mesh);
     }
     if (shape.tints) view.mesh.geometry.setAttribute('tint', new THREE.BufferAttribute(shape.tints, 3, true));
     view.mesh.material = shape.tints ? this.painted : this.cloth;
