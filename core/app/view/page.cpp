@@ -18,27 +18,12 @@
 #error "define DRAPE_THREE_JS as the quoted path of three.min.js (Debian: libjs-three)"
 #endif
 
-#define DRAPE_EMBED(name, path)                                                              \
-  __asm__(                                                                                   \
-      ".pushsection .rodata\n"                                                               \
-      ".local drape_embedded_" #name                                                         \
-      "\n"                                                                                   \
-      ".local drape_embedded_" #name                                                         \
-      "_end\n"                                                                               \
-      "drape_embedded_" #name                                                                \
-      ":\n"                                                                                  \
-      ".incbin \"" path                                                                      \
-      "\"\n"                                                                                 \
-      "drape_embedded_" #name                                                                \
-      "_end:\n"                                                                              \
-      ".byte 0\n"                                                                            \
-      ".popsection\n");                                                                      \
-  extern "C" __attribute__((visibility("hidden"))) const char drape_embedded_##name[];       \
-  extern "C" __attribute__((visibility("hidden"))) const char drape_embedded_##name##_end[]; \
-  static std::string_view name() {                                                           \
-    return {drape_embedded_##name,                                                           \
-            static_cast<std::size_t>(drape_embedded_##name##_end - drape_embedded_##name)};  \
-  }
+#define DRAPE_EMBED(name, path)                                                                     \
+  __asm__(".pushsection .rodata; .local drape_" #name ", drape_" #name "_end; drape_" #name         \
+          ":; "                                                                                     \
+          ".incbin \"" path "\"; drape_" #name "_end:; .byte 0; .popsection");                      \
+  extern "C" __attribute__((visibility("hidden"))) const char drape_##name[], drape_##name##_end[]; \
+  static std::string_view name() { return {drape_##name, drape_##name##_end}; }
 
 DRAPE_EMBED(page_html, "viewer/page.html")
 DRAPE_EMBED(page_css, "viewer/page.css")
