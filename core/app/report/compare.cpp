@@ -42,17 +42,12 @@ struct Entry {
 /// All quantities in file order, and whether each method converged.
 struct Side {
   std::vector<Entry> entries;
-  std::vector<std::pair<std::string, bool>> converged;
+  std::map<std::string, bool> converged;
 
   const Entry* find(const Entry& other) const {
     for (const Entry& entry : entries)
       if (entry.where == other.where && entry.key == other.key) return &entry;
     return nullptr;
-  }
-  std::optional<bool> has_converged(const std::string& method) const {
-    for (const auto& [name, is] : converged)
-      if (name == method) return is;
-    return {};
   }
 };
 
@@ -64,7 +59,7 @@ void add_method(Side& side, const std::string& name, const RunData& run, const M
       side.entries.push_back(
           {where, key, *value, better.value_or(higher ? Better::higher : Better::lower), &run});
   };
-  side.converged.emplace_back(name, has_converged(method.status));
+  side.converged[name] = has_converged(method.status);
   const TableRow row = row_of(run, method);
   for (const std::string& key : summary_quantities(run.error_measures))
     if (row[key].is_number()) add(name, key, row[key].get<double>());
@@ -197,7 +192,7 @@ Comparison compare(const RunCollection& before, const RunCollection& after, cons
   const auto list = [&](const char* where, const Side& side, const Side& other) {
     Names names;
     for (const auto& [name, converged] : side.converged)
-      if (!other.has_converged(name)) names.push_back(name);
+      if (!other.converged.contains(name)) names.push_back(name);
     for (const std::string& name : first_of(names, 40))
       lists += std::string("only in the ") + where + ": " + name + "\n";
   };
@@ -205,9 +200,11 @@ Comparison compare(const RunCollection& before, const RunCollection& after, cons
   list("second", b, a);
   for (const auto& [name, was] : a.converged) {
     if (ratios.empty()) break;
-    const std::optional<bool> is = b.has_converged(name);
-    if (!is) broken.push_back(name + ": is in the first alone; no bound holds");
-    if (is && was && !*is) broken.push_back(name + ": converged before and does not now; no bound holds");
+    const auto now = b.converged.find(name);
+    if (now == b.converged.end())
+      broken.push_back(name + ": is in the first alone; no bound holds");
+    else if (was && !now->second)
+      broken.push_back(name + ": converged before and does not now; no bound holds");
   }
 
   std::string text = rows.size() > 1 ? text_table(rows) + "\n" : "";

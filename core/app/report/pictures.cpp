@@ -124,32 +124,26 @@ std::optional<LevelPair> widest_levels(const MethodRecord& method) {
 PictureSet draw_pictures(const RunData& run, const std::function<bool()>& cancelled,
                          std::optional<int> width) {
   PictureSet set;
-  make_folder(run.folder / "pictures");
+  const std::filesystem::path folder = run.folder / "pictures";
+  make_folder(folder);
   const PictureScene scene(run, set.notes, {.width = width.value_or(default_picture_width)}, cancelled);
   const auto keep = [&](const std::string& name, Image image) {
-    write_file(run.folder / "pictures" / name, encode_png(image));
+    write_file(folder / name, encode_png(image));
     set.pictures.insert_or_assign(name, std::move(image));
   };
-  // An earlier report may have drawn a state whose mesh is gone.
-  const auto remove_stale = [&](const std::string& name) {
-    std::filesystem::remove(run.folder / "pictures" / name);
-  };
   try {
-    for (const MethodRecord& method : run.methods)
-      for (const LevelRecord& level : method.levels)
-        if (const TriangleMesh* state = scene.state(method.name, level.level))
-          keep(state_picture(method, level.level), scene.draw(*state));
-        else
-          remove_stale(state_picture(method, level.level));
     for (const MethodRecord& method : run.methods) {
+      for (const LevelRecord& level : method.levels) {
+        const std::string name = state_picture(method, level.level);
+        std::filesystem::remove(folder / name);  // an earlier report may have drawn a state whose mesh is gone
+        if (const TriangleMesh* state = scene.state(method.name, level.level)) keep(name, scene.draw(*state));
+      }
       const std::optional<LevelPair> levels = widest_levels(method);
       if (!levels) continue;
+      std::filesystem::remove(folder / outline_picture(method, *levels));
       const TriangleMesh* coarse = scene.state(method.name, levels->coarse);
       const Image* fine = set.find(state_picture(method, levels->fine));
-      if (!coarse || !fine) {
-        remove_stale(outline_picture(method, *levels));
-        continue;
-      }
+      if (!coarse || !fine) continue;
       Image outlined = *fine;
       scene.draw_outline(outlined, *coarse);
       keep(outline_picture(method, *levels), std::move(outlined));

@@ -47,21 +47,16 @@ std::vector<const LevelRecord*> recorded_levels(const MethodRecord& method, std:
   return all;
 }
 
-/// The rest shape of a level. Throws std::runtime_error unless it has so many triangles.
-TriangleMesh rest_of(const RunData& run, int level, Eigen::Index triangles) {
-  TriangleMesh rest = run.mesh(rest_file(level));
-  if (rest.triangles.rows() != triangles)
-    throw std::runtime_error((run.folder / "rest").string() + ": level " + std::to_string(level) +
-                             " has other triangles than its state; run the experiment again");
-  return rest;
-}
-
 /// The cloth at the end of a level, with texture coordinates: those of the cloth's file, or, for a flat rest
-/// shape, its own plane's, which are the same on every level.
+/// shape, its own plane's, which are the same on every level. Throws std::runtime_error if the rest shape has
+/// other triangles.
 TriangleMesh cloth_mesh(const RunData& run, const LevelRecord& level) {
   TriangleMesh mesh = run.mesh(level.mesh);
-  TriangleMesh rest = rest_of(run, level.level, mesh.triangles.rows());
-  mesh.uv = std::move(rest.uv);
+  const TriangleMesh rest = run.mesh(rest_file(level.level));
+  if (rest.triangles.rows() != mesh.triangles.rows())
+    throw std::runtime_error((run.folder / "rest").string() + ": level " + std::to_string(level.level) +
+                             " has other triangles than its state; run the experiment again");
+  mesh.uv = rest.uv;
   if (mesh.uv.rows() > 0) return mesh;
   const std::optional<PlanarUv> planar = PlanarUv::of(level.level == 0 ? rest : run.mesh(rest_file(0)));
   if (planar) mesh.uv = planar->at(rest);
@@ -101,23 +96,16 @@ std::string fault_of_snapshots(const MethodRecord& method, const LevelRecord& le
          (others.empty() ? "export it without --frames" : "choose " + joined(others));
 }
 
-/// A level's snapshots. Throws std::runtime_error, for the option --frames, if there are fewer than `least`.
-std::vector<Positions> snapshot_positions(const RunData& run, const MethodRecord& method,
-                                          const LevelRecord& level, Eigen::Index n, std::size_t least) {
+/// A level's snapshots before its final state. Throws std::runtime_error, for the option --frames, if there
+/// are fewer than `least` with that one.
+std::vector<Positions> earlier_states(const RunData& run, const MethodRecord& method,
+                                      const LevelRecord& level, Eigen::Index n, std::size_t least) {
   const SnapshotFile states = run.snapshots(level, n);
   if (states.count() < least)
     throw std::runtime_error("--frames: " + fault_of_snapshots(method, level, states.count(), least));
   std::vector<Positions> all;
-  for (std::size_t k = 0; k < states.count(); ++k) all.push_back(states.positions(k));
+  for (std::size_t k = 0; k + 1 < states.count(); ++k) all.push_back(states.positions(k));
   return all;
-}
-
-/// Adds the snapshots before the final state, `last`. Throws std::runtime_error if the run has none.
-void add_earlier_states(const RunData& run, const MethodRecord& method, const LevelRecord& level,
-                        const TriangleMesh& last, const UvVertices& split, GltfSurface& surface) {
-  std::vector<Positions> snapshots = snapshot_positions(run, method, level, last.vertices.rows(), 2);
-  snapshots.pop_back();
-  for (Positions& x : snapshots) surface.earlier.push_back(gltf_state({std::move(x), last.triangles}, split));
 }
 
 GltfSurface cloth_surface(const RunData& run, const MethodRecord& method, const LevelRecord& level,
@@ -126,7 +114,9 @@ GltfSurface cloth_surface(const RunData& run, const MethodRecord& method, const 
   const UvVertices split = split_at_seams(mesh);
   const std::string cloth = run.experiment.empty() ? "cloth" : run.experiment;
   GltfSurface surface = gltf_surface(cloth + " level " + std::to_string(level.level), mesh, split);
-  if (with_frames) add_earlier_states(run, method, level, mesh, split, surface);
+  if (with_frames)
+    for (Positions& x : earlier_states(run, method, level, mesh.vertices.rows(), 2))
+      surface.earlier.push_back(gltf_state({std::move(x), mesh.triangles}, split));
   return surface;
 }
 
@@ -168,12 +158,9 @@ std::vector<fs::path> export_pictures(const RunData& run, const MethodRecord& me
   std::vector<TriangleMesh> states;
   for (const LevelRecord* level : levels) {
     TriangleMesh last = run.mesh(level->mesh);
-    if (options.frames) {
-      // A level that its first state solved has one snapshot.
-      std::vector<Positions> earlier = snapshot_positions(run, method, *level, last.vertices.rows(), 1);
-      earlier.pop_back();
-      for (Positions& x : earlier) states.push_back({std::move(x), last.triangles});
-    }
+    if (options.frames)  // a level that its first state solved has one snapshot
+      for (Positions& x : earlier_states(run, method, *level, last.vertices.rows(), 1))
+        states.push_back({std::move(x), last.triangles});
     states.push_back(std::move(last));
   }
   std::vector<fs::path> files;

@@ -124,23 +124,24 @@ std::vector<std::string> summary_quantities(const std::vector<ErrorMeasure>& mea
 TableRow row_of(const RunData& run, const MethodRecord& method) {
   const IterationSummary iterations(run, method);
   const bool several = method.levels.size() > 1;
+  const Values none, &first = several ? method.levels.front().values : none,
+                     &last = method.levels.empty() ? none : method.levels.back().values;
   std::string fault, remark;
   for (const LevelRecord& level : method.levels)
     if (!level.message.empty())
       (has_converged(level.status) ? remark : fault) +=
           (several ? "level " + std::to_string(level.level) + ": " : "") + level.message + "\n";
   Json row = {{"method", method.name}, {"pass", false}, {"status", statuses(method)}};
-  row["vertices"] = method.levels.empty() ? Json() : count_of(method.levels.back().values.of("vertices"));
+  row["vertices"] = count_of(last.of("vertices"));
   row["steps"] = count_of(method.cost("steps"));
   row["iterations"] = count_of(method.cost("iterations"));
   row["shortened_steps"] = count_of(iterations.shortened_steps);
   row["seconds"] = json_of(method.cost("seconds"));
   row["flops"] = json_of(method.cost("flops"));
-  row["energy_released"] =
-      method.levels.empty() ? Json() : json_of(method.levels.back().values.of("energy_released"));
+  row["energy_released"] = json_of(last.of("energy_released"));
   row["smallest_gap"] = json_of(iterations.smallest_gap);
   row["intersections"] = count_of(iterations.intersections);
-  row["preview_seconds"] = several ? json_of(method.levels.front().values.of("seconds")) : Json();
+  row["preview_seconds"] = json_of(first.of("seconds"));
   // The error of the reference against itself says nothing.
   const bool is_reference = !run.reference_is_file && run.reference == method.name;
   for (const ErrorMeasure& m : run.error_measures) {
