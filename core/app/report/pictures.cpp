@@ -5,7 +5,6 @@
 #include <cctype>
 #include <cmath>
 
-#include "core/app/picture/outline.h"
 #include "core/app/picture/surface.h"
 #include "core/kernel/files/file.h"
 #include "core/kernel/files/message_text.h"
@@ -135,7 +134,8 @@ PictureSet draw_pictures(const RunData& run, const std::function<bool()>& cancel
     for (const MethodRecord& method : run.methods) {
       for (const LevelRecord& level : method.levels) {
         const std::string name = state_picture(method, level.level);
-        std::filesystem::remove(folder / name);  // an earlier report may have drawn a state whose mesh is gone
+        std::filesystem::remove(folder /
+                                name);  // an earlier report may have drawn a state whose mesh is gone
         if (const TriangleMesh* state = scene.state(method.name, level.level)) keep(name, scene.draw(*state));
       }
       const std::optional<LevelPair> levels = widest_levels(method);

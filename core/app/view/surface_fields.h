@@ -12,8 +12,9 @@ namespace drape {
 /// A scalar field that the viewer can show.
 struct FieldKind {
   std::string name, label, unit;
-  std::string map;   ///< "diverging" about 0, "sequential" from 1, "force" from 0, "near" close to 0
-  std::string note;  ///< below the legend
+  std::string map;           ///< "diverging" about 0, "sequential" from 1, "force" from 0, "near" close to 0
+  std::string note;          ///< below the legend
+  double low = 0, high = 0;  ///< of the colours
 };
 /// The fields that the viewer computes from positions, and the contact forces that runs record.
 const std::vector<FieldKind>& surface_fields();

@@ -1,6 +1,7 @@
 #include "core/app/view/view_document.h"
 
 #include <algorithm>
+#include <tuple>
 
 #include "core/app/view/view_blocks.h"
 #include "core/numerics/elements/green_strain.h"
@@ -40,7 +41,6 @@ ViewDocument::ViewDocument(const std::vector<Level>& levels, const Obstacles& ob
       keep_(std::move(keep)),
       kinds_(surface_fields()) {
   kinds_.insert(kinds_.end(), further.begin(), further.end());
-  ranges_.resize(kinds_.size(), {0, 0});
   for (const Level& level : levels_) {
     const std::string name = "l" + std::to_string(level.index);
     keep_(name, encode_triangles(level.rest.triangles));
@@ -69,12 +69,13 @@ SurfaceFields ViewDocument::fields(int level, const Positions& x, const Obstacle
 }
 
 void ViewDocument::set_ranges(const std::vector<const SurfaceFields*>& states) {
-  for (std::size_t k = 0; k < ranges_.size(); ++k) {
+  for (FieldKind& kind : kinds_) {
     std::vector<const Eigen::VectorXd*> values;
     for (const SurfaceFields* state : states)
-      if (const Eigen::VectorXd* field = find(*state, kinds_[k].name); field && !field->isZero(0))
+      if (const Eigen::VectorXd* field = find(*state, kind.name); field && !field->isZero(0))
         values.push_back(field);  // the finest level's difference from itself is zero
-    if (!values.empty()) ranges_[k] = field_range(kinds_[k], values, shown_gap(levels_.front()));
+    if (!values.empty())
+      std::tie(kind.low, kind.high) = field_range(kind, values, shown_gap(levels_.front()));
   }
 }
 
@@ -83,12 +84,12 @@ ViewDocument::Json ViewDocument::state(const std::string& name, const Positions&
   keep_(name, encode_positions(x));
   rounding_ = std::max(rounding_, position_rounding(x));
   Json entry = {{"x", name}, {"fields", Json::object()}};
-  for (std::size_t k = 0; k < ranges_.size(); ++k) {
-    const Eigen::VectorXd* values = find(fields, kinds_[k].name);
+  for (const FieldKind& kind : kinds_) {
+    const Eigen::VectorXd* values = find(fields, kind.name);
     if (!values) continue;
-    const std::string block = name + "-" + kinds_[k].name;
-    keep_(block, encode_scalars(*values, ranges_[k].first, ranges_[k].second));
-    entry["fields"][kinds_[k].name] = block;
+    const std::string block = name + "-" + kind.name;
+    keep_(block, encode_scalars(*values, kind.low, kind.high));
+    entry["fields"][kind.name] = block;
   }
   for (std::size_t k = 0; moved && k < obstacles_.size(); ++k) {
     if ((*moved)[k].vertices == obstacles_[k].vertices) continue;
@@ -105,17 +106,15 @@ std::size_t ViewDocument::state_bytes(int level) const {
 
 ViewDocument::Json ViewDocument::document(const std::string& title, Json methods) const {
   Json fields = Json::array();
-  for (std::size_t k = 0; k < ranges_.size(); ++k) {
-    if (!(ranges_[k].second > ranges_[k].first)) continue;
-    const FieldKind& kind = kinds_[k];
-    fields.push_back({{"name", kind.name},
-                      {"label", kind.label},
-                      {"unit", kind.unit},
-                      {"map", kind.map},
-                      {"note", kind.note},
-                      {"low", ranges_[k].first},
-                      {"high", ranges_[k].second}});
-  }
+  for (const FieldKind& kind : kinds_)
+    if (kind.high > kind.low)
+      fields.push_back({{"name", kind.name},
+                        {"label", kind.label},
+                        {"unit", kind.unit},
+                        {"map", kind.map},
+                        {"note", kind.note},
+                        {"low", kind.low},
+                        {"high", kind.high}});
   return {{"title", title},   {"levels", level_entries_}, {"obstacles", obstacle_entries_},
           {"fields", fields}, {"rounding", rounding_},    {"methods", std::move(methods)}};
 }

@@ -1,8 +1,8 @@
-#include "core/app/picture/outline.h"
-
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <vector>
+
+#include "core/app/picture/render.h"
 
 using namespace drape;
 
