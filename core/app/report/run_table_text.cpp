@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <boost/algorithm/string/replace.hpp>
 #include <cmath>
 #include <stdexcept>
 
@@ -23,21 +24,17 @@ std::string cell_text(const Json& value, bool rounded) {
   return rounded ? number_text(value.get<double>()) : ConfigNode::of(value.get<double>()).scalar;
 }
 
-std::string replaced(std::string text, const std::string& what, const std::string& by) {
-  for (std::size_t at = 0; (at = text.find(what, at)) != std::string::npos; at += by.size())
-    text.replace(at, what.size(), by);
-  return text;
-}
-
 std::string markdown_cell(const Json& value) {
   const bool counted = value.is_number() && value.get<double>() == std::floor(value.get<double>()) &&
                        std::abs(value.get<double>()) < 1e9;
-  return replaced(replaced(cell_text(value, !counted), "|", "\\|"), "\n", "; ");
+  return boost::replace_all_copy(boost::replace_all_copy(cell_text(value, !counted), "|", "\\|"), "\n", "; ");
 }
 
 std::string csv_cell(const Json& value) {
   const std::string text = cell_text(value, false);
-  return text.find_first_of(",\"\n") == std::string::npos ? text : "\"" + replaced(text, "\"", "\"\"") + "\"";
+  return text.find_first_of(",\"\n") == std::string::npos
+             ? text
+             : "\"" + boost::replace_all_copy(text, "\"", "\"\"") + "\"";
 }
 
 /// Whether the column has words: it is aligned to the left.
