@@ -12,12 +12,6 @@ namespace {
 constexpr double half_angle_tangent = 0.22;  // of the vertical field of view, 25°: little distortion
 constexpr double margin = 1.06;              // of the picture's size to the cloth's
 
-/// What is up in a picture: z, unless the camera looks along it.
-Eigen::Vector3d up_of(const Eigen::Vector3d& towards) {
-  const bool along_z = std::abs(towards.normalized()[2]) > 0.9999;
-  return along_z ? Eigen::Vector3d::UnitY() : Eigen::Vector3d::UnitZ();
-}
-
 }  // namespace
 
 Camera Camera::around(const std::vector<const Positions*>& states, const Eigen::Vector3d& direction,
@@ -25,7 +19,8 @@ Camera Camera::around(const std::vector<const Positions*>& states, const Eigen::
   Camera camera;
   Eigen::Matrix3d& frame = camera.frame;
   frame.row(2) = direction.normalized();
-  frame.row(0) = up_of(direction).cross(frame.row(2).transpose()).normalized();
+  const bool along_z = std::abs(frame(2, 2)) > 0.9999;
+  frame.row(0) = Eigen::Vector3d::Unit(along_z ? 1 : 2).cross(frame.row(2).transpose()).normalized();
   frame.row(1) = frame.row(2).cross(frame.row(0));
   camera.tangent = {half_angle_tangent * aspect, half_angle_tangent};
   const Eigen::Vector2d tangent = camera.tangent / margin;

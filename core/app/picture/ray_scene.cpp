@@ -56,33 +56,34 @@ RayScene::RayScene(const Drawing& drawing)
     // One thread builds, so that equal drawings give equal trees, and the run's other threads are left alone.
     : device_(rtcNewDevice("threads=1,start_threads=0,set_affinity=0"), rtcReleaseDevice) {
   if (!device_) throw std::runtime_error("Embree, which draws pictures, does not start");
-  for (auto* scene : {&all_, &obstacle_alone_}) {
+  for (auto* scene : {&all_, &obstacles_}) {
     scene->reset(rtcNewScene(device_.get()), rtcReleaseScene);
     rtcSetSceneFlags(scene->get(), RTC_SCENE_FLAG_ROBUST);  // no ray slips between two triangles
   }
   Eigen::AlignedBox3d box = bounding_box(drawing.mesh.vertices);
-  if (drawing.obstacle) box.extend(bounding_box(drawing.obstacle->vertices));
+  for (const TriangleMesh* obstacle : drawing.obstacles) box.extend(bounding_box(obstacle->vertices));
   if (box.isEmpty()) box.extend(Eigen::Vector3d::Zero());
   centre_ = box.center();
   radius_ = static_cast<float>(std::max(box.diagonal().norm() / 2, 1e-9));
   if (drawing.floor) floor_ = static_cast<float>(*drawing.floor - centre_[2]);
-  add(0, drawing.mesh, smooth_normals(drawing.mesh));
-  if (drawing.obstacle) {
+  add(drawing.mesh, smooth_normals(drawing.mesh));
+  for (const TriangleMesh* obstacle : drawing.obstacles) {
     Positions normals;
-    const TriangleMesh creased = split_at_creases(*drawing.obstacle, normals);
-    add(1, creased, normals);
+    const TriangleMesh creased = split_at_creases(*obstacle, normals);
+    add(creased, normals);
   }
   rtcCommitScene(all_.get());
-  rtcCommitScene(obstacle_alone_.get());
+  rtcCommitScene(obstacles_.get());
   const RTCError error = rtcGetDeviceError(device_.get());
   if (error == RTC_ERROR_OUT_OF_MEMORY) throw std::runtime_error("no memory is left to draw a picture");
   if (error != RTC_ERROR_NONE)
     throw std::runtime_error("Embree, which draws pictures, fails with error " + std::to_string(error));
 }
 
-void RayScene::add(int id, const TriangleMesh& mesh, const Positions& normals) {
-  surfaces_[id] = {(mesh.vertices.rowwise() - centre_.transpose()).cast<float>(), normals.cast<float>(),
-                   mesh.triangles};
+void RayScene::add(const TriangleMesh& mesh, const Positions& normals) {
+  const auto id = static_cast<unsigned>(surfaces_.size());
+  surfaces_.push_back(
+      {(mesh.vertices.rowwise() - centre_.transpose()).cast<float>(), normals.cast<float>(), mesh.triangles});
   if (mesh.triangles.rows() == 0) return;
   RTCGeometry geometry = rtcNewGeometry(device_.get(), RTC_GEOMETRY_TYPE_TRIANGLE);
   const auto copy = [&](RTCBufferType type, RTCFormat format, const auto& rows) {
@@ -90,11 +91,11 @@ void RayScene::add(int id, const TriangleMesh& mesh, const Positions& normals) {
     if (buffer)
       std::copy_n(rows.data(), rows.size(), static_cast<std::decay_t<decltype(rows(0, 0))>*>(buffer));
   };
-  copy(RTC_BUFFER_TYPE_VERTEX, RTC_FORMAT_FLOAT3, surfaces_[id].x);
+  copy(RTC_BUFFER_TYPE_VERTEX, RTC_FORMAT_FLOAT3, surfaces_.back().x);
   copy(RTC_BUFFER_TYPE_INDEX, RTC_FORMAT_UINT3, mesh.triangles);
   rtcCommitGeometry(geometry);
   rtcAttachGeometryByID(all_.get(), geometry, id);
-  if (id == 1) rtcAttachGeometryByID(obstacle_alone_.get(), geometry, id);
+  if (id > 0) rtcAttachGeometryByID(obstacles_.get(), geometry, id);
   rtcReleaseGeometry(geometry);
 }
 
@@ -179,7 +180,7 @@ std::optional<SurfacePoint> RayScene::nearest(const Ray& ray) const {
 }
 
 std::optional<SurfacePoint> RayScene::nearest_obstacle(const Ray& ray) const {
-  return hit(obstacle_alone_.get(), ray);
+  return hit(obstacles_.get(), ray);
 }
 
 bool RayScene::blocked(const Ray& ray, float length) const {

@@ -5,6 +5,7 @@
 #include <limits>
 #include <memory>
 #include <optional>
+#include <vector>
 
 #include "core/app/picture/render.h"
 
@@ -44,9 +45,9 @@ class RayScene {
   Ray through(const Camera& camera, double right, double up) const;
 
   std::optional<SurfacePoint> nearest(const Ray& ray) const;
-  /// As nearest, as if there were the obstacle alone.
+  /// As nearest, as if there were the obstacles alone.
   std::optional<SurfacePoint> nearest_obstacle(const Ray& ray) const;
-  /// Whether cloth or obstacle is in a ray's way.
+  /// Whether cloth or an obstacle is in a ray's way.
   bool blocked(const Ray& ray, float length = std::numeric_limits<float>::infinity()) const;
 
  private:
@@ -57,14 +58,14 @@ class RayScene {
     SurfacePoint point(int triangle, float u, float v, const Ray& ray) const;
   };
 
-  void add(int id, const TriangleMesh& mesh, const Positions& normals);
+  void add(const TriangleMesh& mesh, const Positions& normals);
   std::optional<SurfacePoint> hit(RTCSceneTy* scene, const Ray& ray) const;
 
   std::shared_ptr<RTCDeviceTy> device_;
-  std::shared_ptr<RTCSceneTy> all_, obstacle_alone_;
-  Surface surfaces_[2];  // cloth, obstacle
+  std::shared_ptr<RTCSceneTy> all_, obstacles_;
+  std::vector<Surface> surfaces_;  // cloth, then obstacles
   Eigen::Vector3d centre_ = Eigen::Vector3d::Zero();
-  float radius_ = 0;  // of a sphere around the centre that holds cloth and obstacle [m]
+  float radius_ = 0;  // of a sphere around the centre that holds cloth and obstacles [m]
   std::optional<float> floor_;
 };
 

@@ -75,7 +75,7 @@ class Painting {
     return sample.share * lighting_.to_eye(sample, ray_through(x, y), sample.arriving);
   }
 
-  /// What cloth's edges and, under X-rays, the obstacle behind it leave of its light.
+  /// What cloth's edges and, under X-rays, obstacles behind it leave of its light.
   float share(const SurfacePoint& point, const Ray& ray) const {
     float taken = 0;
     if (point.surface != Seen::Surface::cloth) return 1;
@@ -84,7 +84,7 @@ class Painting {
       const float distance = point.edge_distance.minCoeff() / sample_size(point.distance);
       taken = edge_opacity * std::clamp((half_width + soft - distance) / (2 * soft), 0.0f, 1.0f);
     }
-    if (drawing_.obstacle && drawing_.xray)
+    if (drawing_.xray)
       if (const auto behind = scene_.nearest_obstacle(ray))
         taken = std::max(taken, show_through(*behind, ray));
     return 1 - taken;

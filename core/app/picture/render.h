@@ -32,10 +32,10 @@ struct Camera {
 /// Contents of a picture. Triangles with a vertex that is not finite are skipped.
 struct Drawing {
   const TriangleMesh& mesh;
-  bool edges = false;                      ///< thin lines along the triangles' edges
-  bool xray = false;                       ///< cloth in front of the obstacle lets it show faintly
-  const TriangleMesh* obstacle = nullptr;  ///< dark
-  std::optional<double> floor = {};        ///< height of a floor that shows shadows only [m]
+  bool edges = false;                               ///< thin lines along the triangles' edges
+  bool xray = false;                                ///< cloth in front of an obstacle lets it show faintly
+  std::vector<const TriangleMesh*> obstacles = {};  ///< dark
+  std::optional<double> floor = {};                 ///< height of a floor that shows shadows only [m]
 };
 
 /// `render` was cancelled before its picture was finished.

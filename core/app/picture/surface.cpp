@@ -1,6 +1,7 @@
 #include "core/app/picture/surface.h"
 
 #include <Eigen/Geometry>
+#include <vector>
 
 namespace drape {
 
@@ -14,23 +15,8 @@ Positions smooth_normals(const TriangleMesh& mesh) {
     if (!n.allFinite()) continue;
     for (int k = 0; k < 3; ++k) normals.row(mesh.triangles(t, k)) += n.transpose();
   }
-  for (Eigen::Index i = 0; i < normals.rows(); ++i) {
-    const double length = normals.row(i).norm();
-    if (length > 0) normals.row(i) /= length;
-  }
+  for (Eigen::Index i = 0; i < normals.rows(); ++i) normals.row(i).normalize();
   return normals;
-}
-
-TriangleMesh merged(const std::vector<TriangleMesh>& meshes) {
-  TriangleMesh all;
-  for (const TriangleMesh& mesh : meshes) {
-    const Eigen::Index n = all.vertices.rows(), m = all.triangles.rows();
-    all.vertices.conservativeResize(n + mesh.vertices.rows(), 3);
-    all.vertices.bottomRows(mesh.vertices.rows()) = mesh.vertices;
-    all.triangles.conservativeResize(m + mesh.triangles.rows(), 3);
-    all.triangles.bottomRows(mesh.triangles.rows()) = mesh.triangles.array() + static_cast<int>(n);
-  }
-  return all;
 }
 
 TriangleMesh split_at_creases(const TriangleMesh& mesh, Positions& normals) {

@@ -1,13 +1,8 @@
 #pragma once
 
-#include <vector>
-
 #include "core/kernel/interfaces/triangle_mesh.h"
 
 namespace drape {
-
-/// All meshes as one.
-TriangleMesh merged(const std::vector<TriangleMesh>& meshes);
 
 /// n×3 unit normals, area-weighted; zero where undefined.
 Positions smooth_normals(const TriangleMesh& mesh);

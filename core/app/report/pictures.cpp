@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
+#include <list>
 
-#include "core/app/picture/surface.h"
 #include "core/kernel/files/file.h"
 #include "core/kernel/files/message_text.h"
 
@@ -64,15 +64,15 @@ PictureScene::PictureScene(const RunData& run, std::vector<std::string>& notes, 
     for (const LevelRecord& level : method.levels)
       if (auto mesh = mesh_or_note(run, level.mesh, notes))
         all.push_back(&states_.insert_or_assign({method.name, level.level}, *mesh).first->second.vertices);
-  std::vector<TriangleMesh> obstacles;
-  for (const std::string& name : run.obstacles)
-    if (auto mesh = mesh_or_note(run, name, notes)) obstacles.push_back(std::move(*mesh));
-  obstacle_ = merged(obstacles);
   Eigen::AlignedBox3d box;
   for (const Positions* x : all) box.extend(bounding_box(*x));
-  const Positions near = near_cloth(obstacle_.vertices, box);
-  if (near.rows() > 0) all.push_back(&near);
-  box.extend(bounding_box(near));
+  std::list<Positions> near;
+  for (const std::string& name : run.obstacles)
+    if (auto mesh = mesh_or_note(run, name, notes)) {
+      all.push_back(&near.emplace_back(near_cloth(mesh->vertices, box)));
+      obstacles_.push_back(std::move(*mesh));
+    }
+  for (const Positions& x : near) box.extend(bounding_box(x));
   if (!box.isEmpty()) floor_ = box.min()[2];
   camera_ = Camera::around(all, frame.direction, double(frame.width) / height_of(frame.width));
 }
@@ -83,12 +83,12 @@ const TriangleMesh* PictureScene::state(const std::string& method, int level) co
 }
 
 Image PictureScene::draw(const TriangleMesh& cloth, bool xray) const {
-  return render({.mesh = cloth,
-                 .edges = cloth.vertices.rows() <= most_vertices_with_edges,
-                 .xray = xray,
-                 .obstacle = obstacle_.triangles.rows() > 0 ? &obstacle_ : nullptr,
-                 .floor = floor_},
-                camera_, width_, height_of(width_), cancelled_);
+  Drawing drawing{.mesh = cloth,
+                  .edges = cloth.vertices.rows() <= most_vertices_with_edges,
+                  .xray = xray,
+                  .floor = floor_};
+  for (const TriangleMesh& obstacle : obstacles_) drawing.obstacles.push_back(&obstacle);
+  return render(drawing, camera_, width_, height_of(width_), cancelled_);
 }
 
 void PictureScene::draw_outline(Image& picture, const TriangleMesh& cloth) const {

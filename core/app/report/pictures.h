@@ -43,7 +43,7 @@ class PictureScene {
 
  private:
   std::map<std::pair<std::string, int>, TriangleMesh> states_;  // by method and level
-  TriangleMesh obstacle_;
+  std::vector<TriangleMesh> obstacles_;
   Camera camera_;
   std::optional<double> floor_;  // height below everything
   int width_;                    // [pixels]

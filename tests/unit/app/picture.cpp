@@ -114,7 +114,7 @@ TEST_CASE("a drawing shows both sides of the cloth") {
 TEST_CASE("a picture has the same bits on any number of threads, and from one drawing to the next") {
   const TriangleMesh cloth = dome(12), block = cube(0.2);
   Drawing drawing{cloth};
-  drawing.obstacle = &block;
+  drawing.obstacles = {&block};
   drawing.floor = -0.2;
   const Camera camera = Camera::around({&cloth.vertices, &block.vertices}, {0.55, -1, 0.68}, 1.25);
   set_thread_count(1);
@@ -181,7 +181,7 @@ TEST_CASE("an obstacle shows through cloth under X-rays alone") {
   const auto taken = [&](bool xray, const Eigen::Vector3d& point) {
     Drawing drawing{.mesh = cloth, .xray = xray};
     const Image alone = render(drawing, camera, 80, 80);
-    drawing.obstacle = &block;
+    drawing.obstacles = {&block};
     const Image both = render(drawing, camera, 80, 80);
     const Eigen::Vector2i p = pixel_of(point, camera, alone);
     return brightness(alone, p[0], p[1]) - brightness(both, p[0], p[1]);
