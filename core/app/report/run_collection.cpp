@@ -97,17 +97,6 @@ std::vector<DeclaredMetric> RunCollection::metrics() const {
   return all;
 }
 
-std::vector<ErrorMeasure> RunCollection::error_measures() const {
-  std::vector<ErrorMeasure> all;
-  for (const RunRecord& run : runs) {
-    if (!run.data) continue;
-    for (const ErrorMeasure& m : run.data->error_measures)
-      if (std::none_of(all.begin(), all.end(), [&](const ErrorMeasure& own) { return own.name == m.name; }))
-        all.push_back(m);
-  }
-  return all.empty() ? drape::error_measures({}) : all;
-}
-
 bool RunRecord::refused() const {
   return status == "failed" && exit_code == exit_bad_input && !fs::exists(folder / "results.json");
 }

@@ -36,7 +36,7 @@ struct RunCollection {
   /// What the metrics of all runs declare, in order of appearance.
   std::vector<DeclaredMetric> metrics() const;
   /// The measures of errors of all runs; without any results, the energy gap.
-  std::vector<ErrorMeasure> error_measures() const;
+  std::vector<ErrorMeasure> error_measures() const { return drape::error_measures(metrics()); }
 };
 
 /// Whether it is a sweep's folder.

@@ -15,23 +15,18 @@ constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 constexpr double shown_part_of_diagonal = 2e-3;
 constexpr double quantile = 0.98;  // of the values inside the colours' range
 
-std::vector<Box> triangle_boxes(const Positions& x, const Triangles& triangles, double margin) {
-  std::vector<Box> boxes(triangles.rows());
-  for (Eigen::Index t = 0; t < triangles.rows(); ++t) {
-    const Eigen::Vector3d a = x.row(triangles(t, 0)), b = x.row(triangles(t, 1)), c = x.row(triangles(t, 2));
-    boxes[t] = Box::around(a, b, margin);
-    boxes[t].include(Box::around(c, c, margin));
-  }
-  return boxes;
-}
-
 /// Lowers gap[i] to the distance of each point i to every triangle within `range` that `counts(i, t)`.
 template <class Counts>
 void lower_to_distance(Eigen::VectorXd& gap, const BoxTree& points, const Positions& x, const Positions& y,
                        const Triangles& triangles, double range, const Counts& counts) {
   if (triangles.rows() == 0) return;
+  std::vector<Box> boxes;
+  for (const auto& v : triangles.rowwise()) {
+    boxes.push_back(Box::around(y.row(v[0]), y.row(v[1]), range));
+    boxes.back().include(Box::around(y.row(v[2]), y.row(v[2]), range));
+  }
   BoxTree tree;
-  tree.build(triangle_boxes(y, triangles, range));
+  tree.build(boxes);
   for (int run = 0; run < points.runs(); ++run)
     points.overlaps(tree, run, [&](int i, int t) {
       if (!counts(i, t)) return;
