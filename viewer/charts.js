@@ -1,14 +1,9 @@
 /// Plots as SVG: lines with marks, bands and ranges on linear or logarithmic axes.
 import {costs, ranking, targets} from './columns.js';
-import {choice, h, known, number, saving, unique} from './text.js';
+import {choice, filled, h, known, number, saving, unique} from './text.js';
 
 const space = 'http://www.w3.org/2000/svg';
-function s(tag, attributes = {}, ...children) {
-  const element = document.createElementNS(space, tag);
-  for (const [name, value] of Object.entries(attributes)) element.setAttribute(name, value);
-  element.append(...children);
-  return element;
-}
+const s = (tag, attributes = {}, ...children) => filled(document.createElementNS(space, tag), attributes, children);
 
 /// The look of a method, the same on every page and in Python: colour and mark are its solver's, dashes tell methods of one
 /// solver apart. `styles` has the index of every method's solver.
@@ -162,7 +157,7 @@ export class Chart {
     });
     const toggle = label => () => { this.hidden[this.hidden.has(label) ? 'delete' : 'add'](label); this.render(); };
     const group = top => s('g', {class: 'legend', fill: 'var(--ink)'}, ...items.map(({label, line, x: at, row: r}) => {
-      const y = top + 18 * r, g = s('g', {role: 'button', tabindex: 0, 'aria-pressed': !this.hidden.has(label), opacity: this.hidden.has(label) ? .4 : 1});
+      const y = top + 18 * r, g = s('g', {role: 'button', tabindex: 0, 'aria-pressed': String(!this.hidden.has(label)), opacity: this.hidden.has(label) ? .4 : 1});
       g.append(s('rect', {x: at, y: y - 11, width: 38 + 7.6 * label.length, height: 17, fill: 'transparent'}),
         s('path', {d: `M${at} ${y - 3}h28`, stroke: line.colour, 'stroke-width': 2, 'stroke-dasharray': line.dash || ''}));
       if (line.mark) g.append(s('path', {d: markPath(line.mark, at + 14, y - 3, 3.5), fill: line.colour}));

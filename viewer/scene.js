@@ -122,7 +122,7 @@ export class Scene {
   }
 
   add(view, {x, index}, material) {
-    const mesh = this.fixed(new THREE.Mesh(this.geometry(x, index), material));
+    const mesh = new THREE.Mesh(this.geometry(x, index), material);
     mesh.userData.x = x;
     view.scene.add(mesh);
     return mesh;
@@ -132,10 +132,6 @@ export class Scene {
     mesh.children.forEach(lines => lines.geometry.dispose());
     mesh.geometry.setIndex(null);  // the index is the document's, and stays
     mesh.geometry.dispose();
-  }
-  fixed(mesh) {
-    mesh.frustumCulled = false;
-    return mesh;
   }
 
   /// Shows a state in a view; null empties it. `tints` is three bytes per vertex, or null for plain cloth.
@@ -148,7 +144,7 @@ export class Scene {
     if (!shape) return;
     if (!view.mesh) {
       view.mesh = this.add(view, shape, this.cloth);
-      if (shape.warp) view.mesh.add(this.fixed(new THREE.LineSegments(arrows(shape.x, shape.warp, .06 * this.home.radius), this.lines)));
+      if (shape.warp) view.mesh.add(new THREE.LineSegments(arrows(shape.x, shape.warp, .06 * this.home.radius), this.lines));
     }
     if (shape.tints) view.mesh.geometry.setAttribute('tint', new THREE.BufferAttribute(shape.tints, 3, true));
     view.mesh.material = shape.tints ? this.painted : this.cloth;
@@ -177,8 +173,7 @@ export class Scene {
   /// In units of a view's height.
   move(right, up) {
     const {azimuth: a, elevation: e, distance} = this.view, size = 2 * distance * Math.tan(14 * Math.PI / 180);
-    const across = [-Math.sin(a), Math.cos(a), 0];
-    const upward = [-Math.cos(a) * Math.sin(e), -Math.sin(a) * Math.sin(e), Math.cos(e)];
+    const across = [-Math.sin(a), Math.cos(a), 0], upward = [-Math.cos(a) * Math.sin(e), -Math.sin(a) * Math.sin(e), Math.cos(e)];
     for (let k = 0; k < 3; ++k) this.view.target[k] -= size * (right * across[k] + up * upward[k]);
     this.draw();
   }

@@ -2,7 +2,7 @@
 import {Chart, distancePlot, methodLook, otherLook} from './charts.js';
 import {columnsOf, describe, ranking} from './columns.js';
 import {dataTable, matcher} from './tables.js';
-import {about, choice, converged, count, counted, explained, fold, h, known, rowsOf, spread, unique, words} from './text.js';
+import {about, choice, converged, count, counted, explained, fold, grouped, h, known, rowsOf, spread, unique, words} from './text.js';
 
 /// Median and extremes over repeats of a curve of error over cost, a step function, at costs in geometric progression from that
 /// at which all have a state to the largest.
@@ -55,12 +55,7 @@ function against(all) {
   const chart = new Chart('parameter', 'Medians over the starts that converged, with the range as a line.');
   const draw = () => {
     const values = all.values(chosen.key), numeric = values.every(known), rest = all.keys.filter(key => key !== chosen.key);
-    const lines = new Map();
-    for (const row of all.shownRows) {
-      const label = [row.method, ...rest.map(key => keyText(key, row[key]))].join(', ');
-      if (!lines.has(label)) lines.set(label, []);
-      lines.get(label).push(row);
-    }
+    const lines = grouped(all.shownRows, row => [row.method, ...rest.map(key => keyText(key, row[key]))].join(', '));
     const plain = lines.size <= all.methods.length, wide = numeric && Math.min(...values) > 0 && Math.max(...values) > 20 * Math.min(...values);
     chart.draw({x: {title: chosen.key, name: chosen.key, log: wide, categories: numeric ? null : values}, y: {title: describe(all.quantity, all.of).text, name: all.quantity},
       absent: 'No run has this value.', series: [...lines].map(([label, rows], k) => ({label, ...(plain ? methodLook(all.styles, rows[0].method) : otherLook(k)),
@@ -92,10 +87,7 @@ function table(all) {
   const names = all.columns.filter(name => !['sweep', 'pass'].includes(name)), frame = h('div');
   const few = ['run', ...keys, 'seed', 'method', 'status', 'converged', 'preview_seconds', 'seconds', 'preview_' + measure, 'error_' + measure, 'energy_released', 'intersections'];
   if (keys.length) few.shift();  // the keys tell the runs apart
-  const medians = () => [...all.shownRows.reduce((groups, row) => {
-    const key = JSON.stringify([row.variation, row.method]);
-    return groups.set(key, [...(groups.get(key) || []), row]);
-  }, new Map()).values()].map(rows => {
+  const medians = () => [...grouped(all.shownRows, row => JSON.stringify([row.variation, row.method])).values()].map(rows => {
     const good = rows.filter(row => converged(row.status)), common = name => keys.includes(name) || ['run', 'method'].includes(name);
     return {physics: rows[0].physics, comparable: good.length > 0, converged: `${good.length} of ${rows.length}`, ...Object.fromEntries(names.filter(name => name !== 'seed' && name !== 'status').map(name =>
       [name, common(name) ? rows[0][name] : rows.some(row => typeof row[name] === 'number') ? spread(good.map(row => row[name])) : null]))};

@@ -1,5 +1,5 @@
 /// Tables that sort, with few columns at first, and filters.
-import {badge, fold, h, number, saving, words} from './text.js';
+import {badge, fold, grouped, h, number, saving, words} from './text.js';
 
 /// The value of a cell: a number, a word, or a spread over repeats.
 const value = cell => cell !== null && typeof cell === 'object' ? cell.median : cell;
@@ -41,8 +41,7 @@ export function dataTable(name, what, columns, rows, rivals = () => '', state = 
   const best = new Map();
   for (const column of filled) {
     if (!column.better) continue;
-    const groups = Map.groupBy ? Map.groupBy(rows, rivals) : rows.reduce((all, row) => all.set(rivals(row), [...(all.get(rivals(row)) || []), row]), new Map());
-    for (const group of groups.values()) {
+    for (const group of grouped(rows, rivals).values()) {
       const known = group.filter(row => typeof value(row[column.name]) === 'number' && row.comparable !== false);
       const text = row => words(value(row[column.name]));
       if (new Set(known.map(text)).size < 2) continue;  // equal as shown

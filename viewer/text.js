@@ -1,8 +1,8 @@
 /// What every part of the page uses: elements, numbers as words, statistics, tables of values as files.
 
-/// An element. Children are nodes or texts, which are never read as HTML; attributes that are functions listen.
-export function h(tag, attributes = {}, ...children) {
-  const element = document.createElement(tag);
+/// The element with attributes and children. Children are nodes or texts, which are never read as HTML; attributes that are
+/// functions listen.
+export function filled(element, attributes, children) {
   for (const [name, value] of Object.entries(attributes)) {
     if (typeof value === 'function') element.addEventListener(name, value);
     else if (value !== false && value !== null && value !== undefined) element.setAttribute(name, value === true ? '' : value);
@@ -10,6 +10,7 @@ export function h(tag, attributes = {}, ...children) {
   element.append(...children.flat().filter(child => child !== null && child !== undefined && child !== ''));
   return element;
 }
+export const h = (tag, attributes = {}, ...children) => filled(document.createElement(tag), attributes, children);
 
 /// Nodes of a text with subscripts and superscripts: of "d_H^fit", H stands below and fit above the line.
 export function formula(text) {
@@ -40,6 +41,8 @@ export const counted = (n, thing) => `${count(n)} ${thing}${n === 1 ? '' : 's'}`
 
 export const known = value => typeof value === 'number' && isFinite(value);
 export const unique = values => [...new Set(values)];
+/// Lists of the values with the same key, in order of appearance.
+export const grouped = (values, key) => values.reduce((all, value) => all.set(key(value), [...(all.get(key(value)) || []), value]), new Map());
 export const fold = (title, ...content) => h('details', {}, h('summary', {}, title), ...content);
 /// The prose of a section, behind a click.
 export const explained = (...text) => fold('What is this?', h('p', {}, ...text));
