@@ -12,7 +12,6 @@ namespace drape {
 
 namespace {
 
-constexpr int tile_size = 32;  // [pixels]
 // Weights, along a row or a column, of the samples around a pixel's middle: a tent.
 constexpr float tent[2 * split] = {0.125f, 0.375f, 0.375f, 0.125f};
 constexpr float edge_width = 1e-3f;  // of the picture's height
@@ -97,16 +96,13 @@ class Painting {
   SampleGrid grid_;
 };
 
-/// Calls body for all pixels, tile by tile, on all threads.
-void for_tiles(int width, int height, const std::function<bool()>& cancelled,
-               const std::function<void(int column, int row)>& body) {
-  const int columns = (width - 1) / tile_size + 1, rows = (height - 1) / tile_size + 1;
+/// Calls body for all pixels, row by row, on all threads.
+void for_pixels(int width, int height, const std::function<bool()>& cancelled,
+                const std::function<void(int column, int row)>& body) {
   const std::thread::id caller = std::this_thread::get_id();
-  parallel_for(columns * rows, 1, [&](int tile, int) {
+  parallel_for(height, 1, [&](int row, int) {
     if (cancelled && std::this_thread::get_id() == caller && cancelled()) throw RenderingCancelled();
-    const int left = tile % columns * tile_size, top = tile / columns * tile_size;
-    for (int row = top; row < std::min(top + tile_size, height); ++row)
-      for (int column = left; column < std::min(left + tile_size, width); ++column) body(column, row);
+    for (int column = 0; column < width; ++column) body(column, row);
   });
 }
 
@@ -128,11 +124,11 @@ std::vector<unsigned char> cover_of(const TriangleMesh& mesh, const Camera& came
 Image render(const Drawing& drawing, const Camera& camera, int width, int height,
              const std::function<bool()>& cancelled) {
   Painting painting(drawing, camera, width, height);
-  for_tiles(width, height, cancelled, [&](int column, int row) { painting.see(column, row); });
+  for_pixels(width, height, cancelled, [&](int column, int row) { painting.see(column, row); });
   painting.smooth();
   Image image{width, height, {}};
   image.pixels.resize(3 * static_cast<std::size_t>(width) * height);
-  for_tiles(width, height, cancelled, [&](int column, int row) {
+  for_pixels(width, height, cancelled, [&](int column, int row) {
     const Rgb colour = painting.colour(column, row);
     const std::size_t first = 3 * (static_cast<std::size_t>(row) * width + column);
     for (int k = 0; k < 3; ++k) image.pixels[first + k] = srgb_byte(colour[k]);

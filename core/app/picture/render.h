@@ -45,7 +45,7 @@ struct RenderingCancelled : std::runtime_error {
 
 /// Traces rays (Embree) on thread_count() threads: a wide key light with soft shadows, a fill light, and sky
 /// light with occlusion. The same drawing gives the same bits with any number of threads. `cancelled`, which
-/// may be empty, is polled between tiles, on the thread that draws. Throws RenderingCancelled once it returns
+/// may be empty, is polled between rows, on the thread that draws. Throws RenderingCancelled once it returns
 /// true, std::runtime_error if Embree fails.
 Image render(const Drawing& drawing, const Camera& camera, int width, int height,
              const std::function<bool()>& cancelled = {});

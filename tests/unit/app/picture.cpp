@@ -208,7 +208,7 @@ TEST_CASE("a picture is left when asked, and triangles that are not finite are l
   TriangleMesh sheet = grid({1, 1}, 5, 5, Diagonals::one_way);
   const Camera camera = Camera::around({&sheet.vertices}, {0, 0, 1}, 1);
   int polls = 0;
-  set_thread_count(1);  // the thread that draws polls; with helpers it may get few tiles
+  set_thread_count(1);  // the thread that draws polls; with helpers it may get few rows
   CHECK_THROWS_AS(render({sheet}, camera, 100, 100, [&] { return ++polls == 3; }), RenderingCancelled);
   set_thread_count(0);
   CHECK(polls == 3);

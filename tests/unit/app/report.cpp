@@ -166,9 +166,9 @@ TEST_CASE("a report that is told to stop skips the remaining pictures, with a no
   const SampleRun run;
   write_file(run.folder / "results.json", run.results.dump());
   int asked = 0;
-  constexpr int most = 3 * 29 * 22;  // a picture of 900×700 asks twice for each of its 29×22 tiles
+  constexpr int most = 3 * 700;  // a picture of 900×700 asks twice for each of its rows
   const auto cancelled = [&] { return ++asked > most; };
-  set_thread_count(1);  // the thread that draws asks; helpers would take tiles from it
+  set_thread_count(1);  // the thread that draws asks; helpers would take rows from it
   const PictureSet set = draw_pictures(read_run(run.folder), cancelled);
   set_thread_count(0);
   CHECK(set.pictures.size() == 1);
