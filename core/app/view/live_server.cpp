@@ -114,7 +114,7 @@ LiveServer::LiveServer(int port, const LiveAnswers& answers, double patience)
 
   const std::string& base = impl_->base;
   server.Get(base, [answers](const Request&, Response& response) {
-    send(response, answers.page(), "text/html; charset=utf-8");
+    send(response, answers.page, "text/html; charset=utf-8");
   });
   server.Get(base + "news", [answers](const Request& request, Response& response) {
     const long version = std::atol(request.get_param_value("version").c_str());

@@ -8,7 +8,7 @@ namespace drape {
 
 /// The live view's answers. Called on the server's threads, several at a time.
 struct LiveAnswers {
-  std::function<std::string()> page;  ///< HTML
+  std::string page;  ///< HTML
   /// JSON of everything newer than that version and that number of rows; empty if there is nothing.
   std::function<std::string(long version, std::size_t rows)> news;
   std::function<std::shared_ptr<const std::string>(const std::string& name)> block;  ///< null if unknown

@@ -33,7 +33,7 @@ LiveView::LiveView(const Experiment& experiment, const Scene& scene, const std::
     if (methods.empty() || std::find(methods.begin(), methods.end(), name) != methods.end())
       methods_.push_back(name), styles_.push_back(solver_style(experiment.solver_type(name)));
   server_ = std::make_unique<LiveServer>(
-      port, LiveAnswers{[this] { return page(); },
+      port, LiveAnswers{page(title_ + ", live", {{"kind", "live"}, {"title", title_}}),
                         [this](long version, std::size_t rows) { return news(version, rows); },
                         [this](const std::string& name) { return block(name); }, [this] { stop_ = true; },
                         [this] { return refine(); }});
@@ -156,10 +156,6 @@ std::string LiveView::news(long version, std::size_t rows) {
   news["rows"] = Json::array();
   for (std::size_t k = rows; k < rows_.size(); ++k) news["rows"].push_back(rows_[k]);
   return ascii_json_text(news);
-}
-
-std::string LiveView::page() const {
-  return drape::page(title_ + ", live", {{"kind", "live"}, {"title", title_}});
 }
 
 }  // namespace drape

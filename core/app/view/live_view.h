@@ -46,7 +46,6 @@ class LiveView : public Observer {
   };
 
   void show(LevelView& view, int level, const Positions& x, const Eigen::VectorXd& pressure = {});
-  std::string page() const;
   std::string news(long version, std::size_t rows);
   std::string refine();
   std::shared_ptr<const std::string> block(const std::string& name);

@@ -21,7 +21,7 @@ struct Served {
 
   int stops = 0;
   std::string body = std::string(100000, 'p');
-  LiveAnswers answers{[this] { return body; }, [](long, std::size_t) { return ""; },
+  LiveAnswers answers{body, [](long, std::size_t) { return ""; },
                       [this](const std::string&) { return std::make_shared<const std::string>(body); },
                       [this] { ++stops; }, [] { return ""; }};
   std::optional<LiveServer> server;
