@@ -88,19 +88,18 @@ Json states_json(const RunData& run, const LevelRecord& level, const State& last
   } catch (const std::exception& error) {
     notes.push_back("3D viewer: " + reason_of(error));
   }
-  const auto number = [](const OptionalNumber& value) { return value ? Json(*value) : Json(); };
   const std::size_t count = snapshots.count() > 0 ? snapshots.count() - 1 : 0,
                     shown = std::min(count, bytes / document.state_bytes(level.level));
   for (std::size_t k = 0; k < shown; ++k) {
     const std::size_t f = k * count / shown;
     const Positions x = snapshots.positions(f);
     Json state = document.state(name + "f" + std::to_string(f), x, document.fields(level.level, x));
-    state["iteration"] = number(level.snapshots.iterations[f]);
-    state["seconds"] = number(level.snapshots.seconds[f]);
+    state["iteration"] = level.snapshots["iterations"][f];
+    state["seconds"] = level.snapshots["seconds"][f];
     states.push_back(std::move(state));
   }
   Json state = document.state(name, last.x, last.fields);
-  state["iteration"] = number(level.values.of("iterations"));
+  if (const auto iterations = level.values.of("iterations")) state["iteration"] = *iterations;
   states.push_back(std::move(state));
   return states;
 }

@@ -15,9 +15,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-OptionalNumber number(const Json& json) {
-  return json.is_number() ? finite(json.get<double>()) : std::nullopt;
-}
 bool is_true(const Json& json) { return json.is_boolean() && json.get<bool>(); }
 
 /// The members of a list; none where it has something else.
@@ -33,16 +30,10 @@ std::vector<std::string> texts(const Json& json) {
   return all;
 }
 
-std::vector<OptionalNumber> numbers(const Json& json) {
-  std::vector<OptionalNumber> all;
-  for (const Json& value : list(json)) all.push_back(number(value));
-  return all;
-}
-
 Values values_of(const Json& json) {
   Values values;
   for (const auto& [name, value] : json.items())
-    if (const OptionalNumber known = number(value)) values[name] = *known;
+    if (value.is_number() && std::isfinite(value.get<double>())) values[name] = value.get<double>();
   return values;
 }
 
@@ -54,13 +45,7 @@ LevelRecord level_of(const Json& json, std::size_t position, const JsonFile& fil
   r.mesh = text_member(json, "mesh");
   r.from_initial_state = is_true(member_of(json, "from_initial_state"));
   r.values = values_of(json);
-  const Json& snapshots = member_of(json, "snapshots");
-  r.snapshots = {text_member(snapshots, "file"),
-                 numbers(member_of(snapshots, "iterations")),
-                 numbers(member_of(snapshots, "seconds")),
-                 {}};
-  if (const Json& checksum = member_of(snapshots, "checksum"); checksum.is_number_unsigned())
-    r.snapshots.checksum = checksum.get<std::uint32_t>();
+  r.snapshots = member_of(json, "snapshots");
   return r;
 }
 
@@ -130,12 +115,16 @@ TriangleMesh RunData::mesh(const std::string& name) const {
 }
 
 SnapshotFile RunData::snapshots(const LevelRecord& level, Eigen::Index n) const {
-  const SnapshotRecord& record = level.snapshots;
-  if (record.file.empty()) return {};
-  const std::filesystem::path file = folder / record.file;
-  if (record.iterations.size() != record.seconds.size())
-    throw std::runtime_error(file.string() + ": results.json has other numbers of iterations and seconds");
-  return {file, record.iterations.size(), n, record.checksum};
+  const std::string name = text_member(level.snapshots, "file");
+  if (name.empty()) return {};
+  const Json &iterations = list(member_of(level.snapshots, "iterations")),
+             &seconds = list(member_of(level.snapshots, "seconds")),
+             &checksum = member_of(level.snapshots, "checksum");
+  if (iterations.size() != seconds.size())
+    throw std::runtime_error((folder / name).string() +
+                             ": results.json has other numbers of iterations and seconds");
+  return {folder / name, iterations.size(), n,
+          checksum.is_number_unsigned() ? std::optional(checksum.get<std::uint32_t>()) : std::nullopt};
 }
 
 std::string rest_file(int level) { return "rest/l" + std::to_string(level) + ".ply"; }

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <cstdint>
 #include <filesystem>
 #include <map>
 #include <nlohmann/json.hpp>
@@ -24,21 +23,14 @@ struct Values : std::map<std::string, double> {
   }
 };
 
-/// States of a level on the way; the last one is its final state.
-struct SnapshotRecord {
-  std::string file;  ///< relative to the run's folder; empty without any
-  std::vector<OptionalNumber> iterations, seconds;
-  std::optional<std::uint32_t> checksum;
-};
-
 /// One level of one method.
 struct LevelRecord {
   int level = 0;
   std::string status, message;
-  std::string mesh;                 ///< relative to the run's folder; may be empty
-  bool from_initial_state = false;  ///< earlier levels do not contribute
-  Values values;                    ///< costs, quantities and state metrics
-  SnapshotRecord snapshots;
+  std::string mesh;                  ///< relative to the run's folder; may be empty
+  bool from_initial_state = false;   ///< earlier levels do not contribute
+  Values values;                     ///< costs, quantities and state metrics
+  nlohmann::ordered_json snapshots;  ///< states on the way; the last one is the final state
 };
 
 /// Pair metrics of a coarse state, prolonged, against a finer one.
@@ -80,10 +72,6 @@ struct RunData {
 
   /// Whether the run had contact: otherwise it has no gaps and intersections.
   bool has_contact() const;
-  /// Declared columns that are at least so widely shown, in order.
-  std::vector<MetricColumn> columns(MetricScope scope, Shown least) const {
-    return columns_of(metrics, scope, least);
-  }
   int finest_level() const;  ///< over all methods; -1 without levels
 
   /// A mesh of the run's folder. Throws std::runtime_error if it cannot be read, or if a triangle names a

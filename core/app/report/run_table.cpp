@@ -151,7 +151,7 @@ TableRow row_of(const RunData& run, const MethodRecord& method) {
     row["preview_" + m.name] = json_of(last_error(run, method, true, "own_" + m.name));
   }
   for (const MetricScope scope : {MetricScope::state, MetricScope::pair})
-    for (const MetricColumn& column : run.columns(scope, Shown::summary))
+    for (const MetricColumn& column : columns_of(run.metrics, scope, Shown::summary))
       row[column.name] = json_of(metric_value(column, scope, method));
   row["message"] = first_line(fault + remark);
   return row;
