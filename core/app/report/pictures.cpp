@@ -105,19 +105,15 @@ std::string state_picture(const MethodRecord& method, int level) {
   return file_part(method.name) + "_l" + std::to_string(level) + ".png";
 }
 
-std::string outline_picture(const MethodRecord& method, const LevelPair& levels) {
-  return file_part(method.name) + "_l" + std::to_string(levels.coarse) + "_on_l" +
-         std::to_string(levels.fine) + ".png";
+std::string outline_picture(const MethodRecord& method, int coarse, int fine) {
+  return file_part(method.name) + "_l" + std::to_string(coarse) + "_on_l" + std::to_string(fine) + ".png";
 }
 
-std::optional<LevelPair> widest_levels(const MethodRecord& method) {
-  std::optional<LevelPair> widest;
-  for (const LevelRecord& level : method.levels) {
-    if (level.mesh.empty()) continue;
-    if (!widest) widest = {level.level, level.level};
-    widest->fine = level.level;
-  }
-  return widest && widest->fine > widest->coarse ? widest : std::nullopt;
+std::vector<int> drawn_levels(const MethodRecord& method) {
+  std::vector<int> levels;
+  for (const LevelRecord& level : method.levels)
+    if (!level.mesh.empty()) levels.push_back(level.level);
+  return levels;
 }
 
 PictureSet draw_pictures(const RunData& run, const std::function<bool()>& cancelled,
@@ -138,15 +134,16 @@ PictureSet draw_pictures(const RunData& run, const std::function<bool()>& cancel
                                 name);  // an earlier report may have drawn a state whose mesh is gone
         if (const TriangleMesh* state = scene.state(method.name, level.level)) keep(name, scene.draw(*state));
       }
-      const std::optional<LevelPair> levels = widest_levels(method);
-      if (!levels) continue;
-      std::filesystem::remove(folder / outline_picture(method, *levels));
-      const TriangleMesh* coarse = scene.state(method.name, levels->coarse);
-      const Image* fine = set.find(state_picture(method, levels->fine));
+      const std::vector<int> levels = drawn_levels(method);
+      if (levels.size() < 2) continue;
+      const std::string name = outline_picture(method, levels.front(), levels.back());
+      std::filesystem::remove(folder / name);
+      const TriangleMesh* coarse = scene.state(method.name, levels.front());
+      const Image* fine = set.find(state_picture(method, levels.back()));
       if (!coarse || !fine) continue;
       Image outlined = *fine;
       scene.draw_outline(outlined, *coarse);
-      keep(outline_picture(method, *levels), std::move(outlined));
+      keep(name, std::move(outlined));
     }
   } catch (const RenderingCancelled&) {
     set.notes.push_back("The run was stopped before all pictures were drawn; drape report " +

@@ -59,16 +59,11 @@ struct PictureSet {
   const Image* find(const std::string& name) const;
 };
 
-/// Two levels of a method.
-struct LevelPair {
-  int coarse = 0, fine = 0;
-};
-
 std::string state_picture(const MethodRecord& method, int level);
-std::string outline_picture(const MethodRecord& method, const LevelPair& levels);
+std::string outline_picture(const MethodRecord& method, int coarse, int fine);
 
-/// The coarsest and the finest level with a final state; none for fewer than two.
-std::optional<LevelPair> widest_levels(const MethodRecord& method);
+/// The levels with a final state, coarse to fine.
+std::vector<int> drawn_levels(const MethodRecord& method);
 
 /// Draws all pictures of a run, `width` (default: 900) pixels wide, and writes them to DIR/pictures: each
 /// state, and each method's finest with the outline of its coarsest. A missing or unreadable mesh becomes a

@@ -69,15 +69,16 @@ Json styles_json(const RunCollection& collection) {
 Json pictures_json(const RunData& run, const PictureSet& set) {
   Json pictures = Json::array();
   for (const MethodRecord& method : run.methods) {
-    const std::optional<LevelPair> levels = widest_levels(method);
-    if (method.levels.empty()) continue;
-    const Image* picture = set.find(levels ? outline_picture(method, *levels)
-                                           : state_picture(method, method.levels.back().level));
+    const std::vector<int> levels = drawn_levels(method);
+    if (levels.empty()) continue;
+    const int coarse = levels.front(), fine = levels.back();
+    const Image* picture =
+        set.find(coarse < fine ? outline_picture(method, coarse, fine) : state_picture(method, fine));
     if (!picture) continue;
     Json entry = {
         {"method", method.name}, {"png", base64(encode_png(*picture))}, {"alt", method.name + ": the cloth"}};
-    if (levels) {
-      entry["coarse"] = levels->coarse, entry["fine"] = levels->fine;
+    if (coarse < fine) {
+      entry["coarse"] = coarse, entry["fine"] = fine;
       entry["alt"] = method.name + ": the end, with the outline of the preview";
     }
     pictures.push_back(std::move(entry));

@@ -6,7 +6,6 @@
 #include <set>
 #include <stdexcept>
 
-#include "core/app/experiment/exit_codes.h"
 #include "core/app/files/json_file.h"
 #include "core/app/files/yaml_file.h"
 #include "core/kernel/files/file.h"
@@ -95,10 +94,6 @@ std::vector<DeclaredMetric> RunCollection::metrics() const {
   for (const RunRecord& run : runs)
     if (run.data) merge(all, run.data->metrics);
   return all;
-}
-
-bool RunRecord::refused() const {
-  return status == "failed" && exit_code == exit_bad_input && !fs::exists(folder / "results.json");
 }
 
 bool is_sweep(const fs::path& folder) { return fs::is_regular_file(folder / "sweep.json"); }

@@ -23,8 +23,6 @@ struct RunRecord {
   std::string expected = "converged", expected_message;  ///< expected outcome, and a part of the message
   std::filesystem::path folder;                          ///< relative to the current folder
   std::optional<RunData> data;                           ///< empty without results
-
-  bool refused() const;  ///< refused before any computation
 };
 
 /// Runs that are reported together: those of a sweep, or of several folders.

@@ -15,8 +15,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-bool is_true(const Json& json) { return json.is_boolean() && json.get<bool>(); }
-
 /// The members of a list; none where it has something else.
 const Json& list(const Json& json) {
   static const Json none = Json::array();
@@ -43,7 +41,7 @@ LevelRecord level_of(const Json& json, std::size_t position, const JsonFile& fil
   r.status = text_member(json, "status");
   r.message = text_member(json, "message");
   r.mesh = text_member(json, "mesh");
-  r.from_initial_state = is_true(member_of(json, "from_initial_state"));
+  r.from_initial_state = member_of(json, "from_initial_state") == true;
   r.values = values_of(json);
   r.snapshots = member_of(json, "snapshots");
   return r;
@@ -140,7 +138,7 @@ RunData read_run(const std::filesystem::path& folder) {
   if (!json.is_object()) throw std::runtime_error(path.string() + ": not a JSON object; is it cut short?");
 
   run.experiment = text_member(json, "experiment");
-  run.complete = is_true(member_of(json, "complete"));
+  run.complete = member_of(json, "complete") == true;
   run.obstacles = texts(member_of(json, "obstacles"));
   run.obstacle_names = texts(member_of(json, "obstacle_names"));
   run.obstacle_names.resize(run.obstacles.size());

@@ -68,8 +68,6 @@ std::string statuses(const MethodRecord& method) {
   return same ? method.status : joined(words);
 }
 
-std::string first_line(const std::string& text) { return text.substr(0, text.find('\n')); }
-
 /// A metric's value of one method: of a state metric, the worst of its levels'; of a pair metric, that of the
 /// coarsest level against the finest.
 OptionalNumber metric_value(const MetricColumn& column, MetricScope scope, const MethodRecord& method) {
@@ -83,10 +81,11 @@ OptionalNumber metric_value(const MetricColumn& column, MetricScope scope, const
 
 std::string status_without_results(const RunRecord& run) {
   if (run.status != "failed") return run.status;
-  return run.refused()                    ? "refused"
-         : run.exit_code == exit_too_slow ? "timeout"
-         : run.exit_code > exit_by_signal ? "crash"
-                                          : "failed";
+  const bool has_begun = std::filesystem::exists(run.folder / "results.json");
+  return run.exit_code == exit_bad_input && !has_begun ? "refused"
+         : run.exit_code == exit_too_slow              ? "timeout"
+         : run.exit_code > exit_by_signal              ? "crash"
+                                                       : "failed";
 }
 
 bool passes(const RunRecord& run, const std::string& status, const TableRow& row) {
@@ -153,7 +152,8 @@ TableRow row_of(const RunData& run, const MethodRecord& method) {
   for (const MetricScope scope : {MetricScope::state, MetricScope::pair})
     for (const MetricColumn& column : columns_of(run.metrics, scope, Shown::summary))
       row[column.name] = json_of(metric_value(column, scope, method));
-  row["message"] = first_line(fault + remark);
+  fault += remark;
+  row["message"] = fault.substr(0, fault.find('\n'));
   return row;
 }
 

@@ -274,7 +274,7 @@ TEST_CASE("methods of different names have different pictures") {
   const auto pictures = [](const std::string& name) {
     MethodRecord method;
     method.name = name;
-    return std::vector<std::string>{state_picture(method, 0), outline_picture(method, {0, 1})};
+    return std::vector<std::string>{state_picture(method, 0), outline_picture(method, 0, 1)};
   };
   CHECK(pictures("a.b")[0] == "a.b_l0.png");
   const std::vector<std::string> names = {"a.b", "a_b", "a-b", "方法一", "方法二"};
