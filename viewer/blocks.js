@@ -12,6 +12,7 @@ export async function embedded(name) {
   return new Response(stream).arrayBuffer();
 }
 
+/// `rounding` is the most by which a coordinate differs from the state's.
 export function positions(buffer, count) {
   const box = new Float32Array(buffer, 0, 6), steps = new Uint16Array(buffer, 24, 3 * count);
   const x = new Float32Array(3 * count);
@@ -22,6 +23,7 @@ export function positions(buffer, count) {
       x[3 * i + k] = lower + q * scale;
     }
   }
+  x.rounding = Math.max(...box.slice(3)) / 65535 / 2;
   return x;
 }
 

@@ -62,8 +62,6 @@ export class View {
     if (this.live) this.forget();
     this.listFields();
     this.listMethods();
-    this.rounding.textContent = view.rounding > 0
-      ? `Positions are rounded to ${Number((view.rounding * 1e6).toPrecision(2))} µm here; the files in levels/ are exact.` : '';
     if (!this.stops.length) return null;
     // The preview at first, beside the end; without that the end.
     const begin = this.beside && this.stops.some(s => s.level > this.stops[0].level) ? this.stops.findIndex(s => s.last) : this.stops.length - 1;
@@ -177,6 +175,8 @@ export class View {
       this.label(this.labels.children[k], panel);
     });
     this.scrubber.setAttribute('aria-valuetext', `level ${stop.level}, ${Math.round(100 * stop.share)} % of it`);
+    const rounding = Math.max(0, ...panels.map(({shape}) => shape ? shape.x.rounding : 0));
+    this.rounding.textContent = !rounding ? '' : `Positions are rounded to ${Number((rounding * 1e6).toPrecision(2))} µm here; the files in levels/ are exact.`;
     this.panels = panels;
     this.scene.draw();
   }
@@ -192,15 +192,14 @@ export class View {
 
   /// Points the camera at the cloth's bounding box.
   aim(panels) {
-    const shapes = panels.filter(panel => panel.shape).map(panel => panel.shape.x), lower = [Infinity, Infinity, Infinity], upper = lower.map(v => -v);
-    for (const x of shapes)
-      x.forEach((v, i) => { lower[i % 3] = Math.min(lower[i % 3], v); upper[i % 3] = Math.max(upper[i % 3], v); });
-    if (!(upper[0] >= lower[0])) return;
-    const centre = lower.map((v, k) => (v + upper[k]) / 2);
+    const shapes = panels.filter(panel => panel.shape).map(({shape}) => shape.x), box = new THREE.Box3(), point = new THREE.Vector3();
+    shapes.forEach(x => box.union(new THREE.Box3().setFromArray(x)));
+    if (box.isEmpty()) return;
+    const centre = box.getCenter(new THREE.Vector3());
     let radius = 0;
     for (const x of shapes)
-      for (let i = 0; i < x.length; i += 3) radius = Math.max(radius, Math.hypot(x[i] - centre[0], x[i + 1] - centre[1], x[i + 2] - centre[2]));
-    this.scene.lookAt(centre, radius || 1);
+      for (let i = 0; i < x.length; i += 3) radius = Math.max(radius, centre.distanceTo(point.fromArray(x, i)));
+    this.scene.lookAt(centre.toArray(), radius || 1);
     this.aimed = true;
   }
 

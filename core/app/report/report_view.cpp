@@ -50,11 +50,11 @@ void add_declared(const RunData& run, const MethodRecord& method, int level, Sta
       const bool difference = colours.other_field.empty();
       const std::string& name = difference || is_finest ? colours.field : colours.other_field;
       if (difference && is_finest)
-        state.fields.emplace_back(colours.field, Eigen::VectorXd::Zero(state.x.rows()));
+        state.fields.emplace(colours.field, Eigen::VectorXd::Zero(state.x.rows()));
       else
         for (const VertexField& field : fields)
           if (field.name == name && field.values.size() >= state.x.rows())
-            state.fields.emplace_back(colours.field, field.values.head(state.x.rows()));
+            state.fields.emplace(colours.field, field.values.head(state.x.rows()));
     }
 }
 

@@ -120,11 +120,10 @@ LiveServer::LiveServer(int port, const LiveAnswers& answers, double patience)
     const long version = std::atol(request.get_param_value("version").c_str());
     const long rows = std::atol(request.get_param_value("rows").c_str());
     std::string news = answers.news(version, static_cast<std::size_t>(std::max(rows, 0L)));
-    if (news.empty()) {
+    if (news.empty())
       response.status = 204;
-    } else {
+    else
       send(response, std::move(news), "application/json");
-    }
   });
   server.Get(base + "block/([a-zA-Z0-9_-]+)", [answers](const Request& request, Response& response) {
     if (const auto block = answers.block(request.matches[1]))

@@ -89,8 +89,7 @@ Eigen::VectorXd contact_gap(const Level& level, const Positions& x,
 }
 
 void add_contact_pressure(SurfaceFields& fields, const Eigen::VectorXd& pressure) {
-  if (pressure.size() > 0)
-    fields.emplace_back("contact_pressure", (pressure.array() > 0).select(pressure, nan));
+  if (pressure.size() > 0) fields.emplace("contact_pressure", (pressure.array() > 0).select(pressure, nan));
 }
 
 double shown_gap(const Level& level) {

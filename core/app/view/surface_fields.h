@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <map>
 #include <string>
 #include <utility>
 #include <vector>
@@ -20,7 +21,7 @@ struct FieldKind {
 const std::vector<FieldKind>& surface_fields();
 
 /// Values by the name of their kind.
-using SurfaceFields = std::vector<std::pair<std::string, Eigen::VectorXd>>;
+using SurfaceFields = std::map<std::string, Eigen::VectorXd>;
 
 /// n distances to the nearest triangle of the obstacles, or of the cloth itself farther away than three
 /// ranges at rest [m]; NaN beyond `range`. For an obstacle in closed form, the distance to its displayed

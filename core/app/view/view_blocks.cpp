@@ -20,15 +20,12 @@ void append(std::string& bytes, T value) {
   bytes.append(reinterpret_cast<const char*>(&value), sizeof value);
 }
 
-Eigen::AlignedBox3f box_of(const Positions& x) {
-  Eigen::AlignedBox3d box = bounding_box(x);
-  return (box.isEmpty() ? box.extend(Eigen::Vector3d::Zero()) : box).cast<float>();
-}
-
 }  // namespace
 
 std::string encode_positions(const Positions& x) {
-  const Eigen::AlignedBox3f box = box_of(x);
+  Eigen::AlignedBox3d bounds = bounding_box(x);
+  if (bounds.isEmpty()) bounds.extend(Eigen::Vector3d::Zero());
+  const Eigen::AlignedBox3f box = bounds.cast<float>();
   std::string bytes;
   bytes.reserve(24 + 6 * x.rows());
   for (int k = 0; k < 3; ++k) append(bytes, box.min()[k]);
@@ -45,8 +42,6 @@ std::string encode_positions(const Positions& x) {
   }
   return bytes;
 }
-
-double position_rounding(const Positions& x) { return box_of(x).sizes().maxCoeff() / steps / 2; }
 
 std::string encode_triangles(const Triangles& triangles) {
   std::string bytes;

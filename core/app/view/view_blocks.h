@@ -13,8 +13,6 @@ namespace drape {
 /// Six float32, lower corner and size of the box, then x, y and z plane by plane as uint16 within it, each
 /// the difference from the vertex before modulo 2^16. What is not finite becomes the lower corner.
 std::string encode_positions(const Positions& x);
-/// The most that encode_positions moves a coordinate by [m].
-double position_rounding(const Positions& x);
 
 /// Plane by plane, each corner as an int32 difference from the triangle before.
 std::string encode_triangles(const Triangles& triangles);

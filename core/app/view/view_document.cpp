@@ -12,12 +12,6 @@ namespace drape {
 
 namespace {
 
-const Eigen::VectorXd* find(const SurfaceFields& fields, const std::string& name) {
-  const auto found =
-      std::find_if(fields.begin(), fields.end(), [&](const auto& field) { return field.first == name; });
-  return found == fields.end() ? nullptr : &found->second;
-}
-
 /// Where arrows along warp are, on some 150 triangles: the corners' indices, then a and b [1/m] of warp's
 /// image a e₁ + b e₂ by the triangle's edges.
 ViewDocument::Json warp_arrows(const Level& level) {
@@ -64,7 +58,7 @@ SurfaceFields ViewDocument::fields(int level, const Positions& x, const Obstacle
   SurfaceFields all = {{"mean_curvature", mean_curvature(x, l.rest.triangles, l.hinges)},
                        {"stretch", largest_stretch(l, x)}};
   if (with_gaps_)
-    all.emplace_back("gap", contact_gap(l, x, moved ? *moved : obstacles_, shown_gap(levels_.front())));
+    all.emplace("gap", contact_gap(l, x, moved ? *moved : obstacles_, shown_gap(levels_.front())));
   return all;
 }
 
@@ -72,8 +66,8 @@ void ViewDocument::set_ranges(const std::vector<const SurfaceFields*>& states) {
   for (FieldKind& kind : kinds_) {
     std::vector<const Eigen::VectorXd*> values;
     for (const SurfaceFields* state : states)
-      if (const Eigen::VectorXd* field = find(*state, kind.name); field && !field->isZero(0))
-        values.push_back(field);  // the finest level's difference from itself is zero
+      if (const auto field = state->find(kind.name); field != state->end() && !field->second.isZero(0))
+        values.push_back(&field->second);  // the finest level's difference from itself is zero
     if (!values.empty())
       std::tie(kind.low, kind.high) = field_range(kind, values, shown_gap(levels_.front()));
   }
@@ -82,13 +76,12 @@ void ViewDocument::set_ranges(const std::vector<const SurfaceFields*>& states) {
 ViewDocument::Json ViewDocument::state(const std::string& name, const Positions& x,
                                        const SurfaceFields& fields, const Obstacles* moved) {
   keep_(name, encode_positions(x));
-  rounding_ = std::max(rounding_, position_rounding(x));
   Json entry = {{"x", name}, {"fields", Json::object()}};
   for (const FieldKind& kind : kinds_) {
-    const Eigen::VectorXd* values = find(fields, kind.name);
-    if (!values) continue;
+    const auto values = fields.find(kind.name);
+    if (values == fields.end()) continue;
     const std::string block = name + "-" + kind.name;
-    keep_(block, encode_scalars(*values, kind.low, kind.high));
+    keep_(block, encode_scalars(values->second, kind.low, kind.high));
     entry["fields"][kind.name] = block;
   }
   for (std::size_t k = 0; moved && k < obstacles_.size(); ++k) {
@@ -115,8 +108,11 @@ ViewDocument::Json ViewDocument::document(const std::string& title, Json methods
                         {"note", kind.note},
                         {"low", kind.low},
                         {"high", kind.high}});
-  return {{"title", title},   {"levels", level_entries_}, {"obstacles", obstacle_entries_},
-          {"fields", fields}, {"rounding", rounding_},    {"methods", std::move(methods)}};
+  return {{"title", title},
+          {"levels", level_entries_},
+          {"obstacles", obstacle_entries_},
+          {"fields", fields},
+          {"methods", std::move(methods)}};
 }
 
 std::string block_element(const std::string& name, const std::string& bytes) {

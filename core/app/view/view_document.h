@@ -45,7 +45,6 @@ class ViewDocument {
   const Obstacles& obstacles_;
   Keep keep_;
   std::vector<FieldKind> kinds_;
-  double rounding_ = 0;
   Json level_entries_ = Json::array(), obstacle_entries_ = Json::array();
 };
 

@@ -51,9 +51,8 @@ TEST_CASE("positions come back within the rounding that is stated") {
   REQUIRE(bytes.size() == 24 + 6 * 64);
   const double error = (decoded(bytes, 64) - x).cwiseAbs().maxCoeff();
   CHECK(error > 0);
-  CHECK(error <= position_rounding(x) + 2e-6);  // and the box's float32
   const Eigen::RowVector3d size = x.colwise().maxCoeff() - x.colwise().minCoeff();
-  CHECK(position_rounding(x) == Approx(size.maxCoeff() / 65535 / 2));
+  CHECK(error <= size.maxCoeff() / 65535 / 2 + 2e-6);  // and the box's float32
 
   x(3, 1) = none;
   CHECK(decoded(encode_positions(x), 64).allFinite());
@@ -152,7 +151,6 @@ TEST_CASE("the document names what can be coloured, and blocks of every state") 
   REQUIRE(document["fields"].size() == 2);  // no contact, no difference from a finest level
   CHECK(document["fields"][0]["low"].get<double>() == -document["fields"][0]["high"].get<double>());
   CHECK(document["fields"][1]["low"] == 1.0);
-  CHECK(document["rounding"].get<double>() == position_rounding(x));
   CHECK(blocks.at(state["x"]).size() == 24 + 6 * 25);
   CHECK(blocks.at(state["fields"]["stretch"]).size() == 8 + 25);
   CHECK(blocks.at(document["levels"][0]["block"]).size() == 12 * 32);
