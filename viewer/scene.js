@@ -46,8 +46,7 @@ export class Scene {
   static material(painted) {
     return new THREE.ShaderMaterial({
       side: THREE.DoubleSide,
-      uniforms: {opacity: {value: 1}, front: {value: new THREE.Vector3(.83, .76, .66)}, back: {value: new THREE.Vector3(.62, .70, .77)}},
-      defines: painted ? {PAINTED: 1} : {},
+      uniforms: {painted: {value: painted ? 1 : 0}, opacity: {value: 1}, front: {value: new THREE.Vector3(.83, .76, .66)}, back: {value: new THREE.Vector3(.62, .70, .77)}},
       vertexShader: `
         attribute vec3 tint;
         varying vec3 eyeNormal, eyePosition, colour;
@@ -55,34 +54,24 @@ export class Scene {
           vec4 p = modelViewMatrix * vec4(position, 1.0);
           eyePosition = p.xyz;
           eyeNormal = mat3(viewMatrix) * normal;
-          #ifdef PAINTED
           colour = tint;
-          #else
-          colour = vec3(0.0);
-          #endif
           gl_Position = projectionMatrix * p;
         }`,
       fragmentShader: `
         uniform vec3 front, back;
-        uniform float opacity;
+        uniform float painted, opacity;
         varying vec3 eyeNormal, eyePosition, colour;
         void main() {
           float side = gl_FrontFacing ? 1.0 : -1.0;
           vec3 n = normalize(eyeNormal + vec3(0.0, 0.0, 1e-9)) * side;
           vec3 up = mat3(viewMatrix) * vec3(0.0, 0.0, 1.0);
           vec3 key = normalize(vec3(-0.75, 0.25, 0.25) + 0.62 * up), fill = normalize(vec3(0.8, 0.1, 0.5));
-          #ifdef PAINTED
-          vec3 base = colour * (gl_FrontFacing ? 1.0 : 0.94);
-          #else
-          vec3 base = gl_FrontFacing ? front : back;
-          #endif
+          vec3 base = mix(gl_FrontFacing ? front : back, colour * (gl_FrontFacing ? 1.0 : 0.94), painted);
           float lambert = dot(n, key), direct = max(0.0, (lambert + 0.2) / 1.2);
           float open = 0.5 + 0.5 * dot(n, up);
           vec3 light = vec3(0.98, 0.92, 0.82) * direct * direct + vec3(0.12, 0.14, 0.18) * max(dot(n, fill), 0.0)
                      + vec3(0.34, 0.38, 0.44) * (0.5 + 0.6 * open);
-          #ifdef PAINTED
-          light = mix(light, vec3(0.95), 0.5);
-          #endif
+          light = mix(light, vec3(0.95), 0.5 * painted);
           float edge = 1.0 - max(dot(n, normalize(-eyePosition)), 0.0), sheen = edge * edge * edge * edge;
           gl_FragColor = vec4(sqrt(min(base * base * light + vec3(0.07) * sheen, vec3(1.0))), opacity);  // with a gamma of 2
         }`,
@@ -97,14 +86,6 @@ export class Scene {
       material.depthWrite = !on;
     }
     this.draw();
-  }
-
-  geometry(x, index) {
-    const geometry = new THREE.BufferGeometry();
-    geometry.setIndex(index);
-    geometry.setAttribute('position', new THREE.BufferAttribute(x, 3));
-    geometry.computeVertexNormals();
-    return geometry;
   }
 
   /// Sets the number of views.
@@ -122,7 +103,10 @@ export class Scene {
   }
 
   add(view, {x, index}, material) {
-    const mesh = new THREE.Mesh(this.geometry(x, index), material);
+    const geometry = new THREE.BufferGeometry(), mesh = new THREE.Mesh(geometry, material);
+    geometry.setIndex(index);
+    geometry.setAttribute('position', new THREE.BufferAttribute(x, 3));
+    geometry.computeVertexNormals();
     mesh.userData.x = x;
     view.scene.add(mesh);
     return mesh;

@@ -14,9 +14,8 @@ std::string encode_png(const Image& image) {
   header.format = PNG_FORMAT_RGB;
   std::string bytes(PNG_IMAGE_PNG_SIZE_MAX(header), 0);
   png_alloc_size_t size = bytes.size();
-  if (!png_image_write_to_memory(&header, bytes.data(), &size, 0, image.pixels.data(), 0, nullptr)) {
+  if (!png_image_write_to_memory(&header, bytes.data(), &size, 0, image.pixels.data(), 0, nullptr))
     throw std::runtime_error(std::string("cannot encode a picture: ") + header.message);
-  }
   bytes.resize(size);
   return bytes;
 }

@@ -40,10 +40,8 @@ Eigen::Vector3f around(const Eigen::Vector3f& n, float radius, const Eigen::Vect
 }  // namespace
 
 Rgb linear_of_srgb(const Eigen::Vector3f& colour) {
-  const auto linear = [](float c) {
-    return c <= 0.04045f ? c / 12.92f : std::pow((c + 0.055f) / 1.055f, 2.4f);
-  };
-  return {linear(colour[0]), linear(colour[1]), linear(colour[2])};
+  return colour.array().unaryExpr(
+      [](float c) { return c <= 0.04045f ? c / 12.92f : std::pow((c + 0.055f) / 1.055f, 2.4f); });
 }
 
 unsigned char srgb_byte(float linear) {

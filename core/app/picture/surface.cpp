@@ -8,12 +8,11 @@ namespace drape {
 Positions smooth_normals(const TriangleMesh& mesh) {
   Positions normals = Positions::Zero(mesh.vertices.rows(), 3);
   for (Eigen::Index t = 0; t < mesh.triangles.rows(); ++t) {
-    const Eigen::Vector3d a = mesh.vertices.row(mesh.triangles(t, 0));
-    const Eigen::Vector3d b = mesh.vertices.row(mesh.triangles(t, 1));
-    const Eigen::Vector3d c = mesh.vertices.row(mesh.triangles(t, 2));
-    const Eigen::Vector3d n = (b - a).cross(c - a);
+    const auto v = mesh.triangles.row(t);
+    const Eigen::RowVector3d a = mesh.vertices.row(v[0]);
+    const Eigen::RowVector3d n = (mesh.vertices.row(v[1]) - a).cross(mesh.vertices.row(v[2]) - a);
     if (!n.allFinite()) continue;
-    for (int k = 0; k < 3; ++k) normals.row(mesh.triangles(t, k)) += n.transpose();
+    for (int k = 0; k < 3; ++k) normals.row(v[k]) += n;
   }
   for (Eigen::Index i = 0; i < normals.rows(); ++i) normals.row(i).normalize();
   return normals;
