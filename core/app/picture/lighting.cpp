@@ -56,7 +56,7 @@ Lighting::Lighting(const RayScene& scene, const Camera& camera) : scene_(scene) 
   fill_ = (to_world * Eigen::Vector3f(0.8f, 0.1f, 0.45f)).normalized();
 }
 
-Rgb Lighting::to_eye(const Seen& seen, const Ray& ray, const Arriving& arriving) const {
+Rgb Lighting::to_eye(const Seen& seen, const Arriving& arriving) const {
   if (seen.surface == Seen::Surface::nothing) return backdrop;
   if (seen.surface == Seen::Surface::floor)
     return (floor_key_share * arriving[0] + (1 - floor_key_share) * arriving[1]) * backdrop;
@@ -65,7 +65,7 @@ Rgb Lighting::to_eye(const Seen& seen, const Ray& ray, const Arriving& arriving)
                                                            : back_colour;
   const float key = std::max(seen.normal.dot(key_), 0.0f), side = std::max(seen.normal.dot(fill_), 0.0f);
   // A faint sheen where cloth turns away separates a fold from what lies behind it.
-  const float grazing = 1 - std::clamp(-seen.normal.dot(ray.direction()), 0.0f, 1.0f);
+  const float grazing = 1 - seen.facing;
   const float sheen = 0.1f * grazing * grazing * grazing * grazing;
   return base * (arriving[0] * key * key_light + arriving[1] * (sky_light + 0.7f * side * fill_light) +
                  0.3f * side * fill_light) +

@@ -23,7 +23,7 @@ class Lighting {
   Lighting(const RayScene& scene, const Camera& camera);
 
   /// From what a ray from the eye meets back to the eye; nothing and the lit floor are one backdrop.
-  Rgb to_eye(const Seen& seen, const Ray& ray, const Arriving& arriving) const;
+  Rgb to_eye(const Seen& seen, const Arriving& arriving) const;
   /// By one random ray to each light, for a place in the grid of samples.
   Arriving arriving(const SurfacePoint& point, int column, int row) const;
 

@@ -121,6 +121,7 @@ SurfacePoint RayScene::Surface::point(int triangle, float u, float v, const Ray&
   // Interpolated normals may turn away from the eye near a silhouette: they are bent back.
   const float away = point.normal.dot(ray.direction());
   if (away > -0.02f) point.normal = (point.normal - (away + 0.02f) * ray.direction()).normalized();
+  point.facing = std::clamp(-point.normal.dot(ray.direction()), 0.0f, 1.0f);
   // Flat triangles shadow the smooth surface that their normals suggest, in steps along the shadow's border.
   // Rays therefore start on that surface where it bulges out (J. Hanika, Hacking the Shadow Terminator, Ray
   // Tracing Gems II, 2021).

@@ -23,6 +23,7 @@ struct Seen {
   bool front = true;  ///< whether the ray meets the side where the triangle runs counter-clockwise
   Eigen::Vector3f position = Eigen::Vector3f::Zero();  ///< relative to the scene's centre [m]
   Eigen::Vector3f normal = Eigen::Vector3f::Zero();    ///< interpolated between the vertices
+  float facing = 1;  ///< cosine of the angle between the normal and the way back
 };
 
 /// Where a ray first meets a surface.

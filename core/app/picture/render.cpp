@@ -21,9 +21,8 @@ constexpr float least_outline_width = 1.5f;  // [pixels]
 constexpr float softness = 0.5f;             // half the width over which the line fades out [pixels]
 
 /// What is seen of an obstacle through cloth: its outline more than its middle.
-float show_through(const SurfacePoint& obstacle, const Ray& ray) {
-  const float facing = std::clamp(-obstacle.normal.dot(ray.direction()), 0.0f, 1.0f);
-  return 0.05f + 0.3f * (1 - facing) * (1 - facing);
+float show_through(const SurfacePoint& obstacle) {
+  return 0.05f + 0.3f * (1 - obstacle.facing) * (1 - obstacle.facing);
 }
 
 /// One picture: what is seen through a grid of samples, with random rays to the lights; the light that
@@ -40,7 +39,8 @@ class Painting {
   void see(int column, int row) {
     for (int y = split * row; y < split * (row + 1); ++y)
       for (int x = split * column; x < split * (column + 1); ++x) {
-        const Ray ray = ray_through(x, y);
+        const Ray ray =
+            scene_.through(camera_, (2 * x + 1.0) / grid_.width - 1, 1 - (2 * y + 1.0) / grid_.height);
         const std::optional<SurfacePoint> point = scene_.nearest(ray);
         if (point) grid_.at(x, y) = {*point, share(*point, ray), lighting_.arriving(*point, x, y)};
       }
@@ -60,10 +60,6 @@ class Painting {
   }
 
  private:
-  Ray ray_through(int x, int y) const {
-    return scene_.through(camera_, (2 * x + 1.0) / grid_.width - 1, 1 - (2 * y + 1.0) / grid_.height);
-  }
-
   /// The distance between samples on a surface that faces the eye, that far away [m].
   float sample_size(double distance) const {
     return static_cast<float>(2 * camera_.tangent[1] / grid_.height * distance);
@@ -71,7 +67,7 @@ class Painting {
 
   Rgb light(int x, int y) const {
     const Sample& sample = grid_.at(x, y);
-    return sample.share * lighting_.to_eye(sample, ray_through(x, y), sample.arriving);
+    return sample.share * lighting_.to_eye(sample, sample.arriving);
   }
 
   /// What cloth's edges and, under X-rays, obstacles behind it leave of its light.
@@ -84,8 +80,7 @@ class Painting {
       taken = edge_opacity * std::clamp((half_width + soft - distance) / (2 * soft), 0.0f, 1.0f);
     }
     if (drawing_.xray)
-      if (const auto behind = scene_.nearest_obstacle(ray))
-        taken = std::max(taken, show_through(*behind, ray));
+      if (const auto behind = scene_.nearest_obstacle(ray)) taken = std::max(taken, show_through(*behind));
     return 1 - taken;
   }
 
