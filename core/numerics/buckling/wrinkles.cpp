@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "core/numerics/buckling/buckling_membrane.h"
+#include "core/numerics/elements/jet_functions.h"
 
 namespace drape {
 namespace {
