@@ -24,7 +24,7 @@ async function reportPart(results, selector, name, margin = 12) {
   execFileSync('cwebp', ['-quiet', '-q', '88', file, '-o', path.join(here, `${name}.webp`)]);
 }
 
-const plot = () => reportPart(sphere, '#distance .plot', 'speed_against_error');
+const plot = () => reportPart(sphere, '#distance .plot', 'speed_against_error', 0);
 const viewer = () => reportPart(path.join(runs, 'tablecloth'), '#in-3d', 'viewer');
 
 /// A state as `drape export` draws it, half as wide, so that edges are smooth.
