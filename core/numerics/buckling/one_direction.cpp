@@ -16,18 +16,18 @@ OneDirection::Forces::Forces(const State& at, double s) {
   const Strains n(xx, yy, xy), turned(-2.0 * xy, 2.0 * xy, xx - yy),
       first(at.w.first[0], at.w.first[1], at.w.first[2]);
   for (int i = 0; i < 3; ++i) {
-    changes_by_q[i] = changes_by_way[i] = 0.0;
+    coupling_q[i] = coupling_arc[i] = 0.0;
     for (int j = 0; j < 3; ++j) {
-      changes_by_q[i] += at.w.second_by(i, j) * n[j];
-      changes_by_way[i] += at.w.second_by(i, j) * turned[j];
+      coupling_q[i] += at.w.second_by(i, j) * n[j];
+      coupling_arc[i] += at.w.second_by(i, j) * turned[j];
     }
   }
-  by_q = -(first.dot(n) + s);
-  by_way = -first.dot(turned);
+  force_q = -(first.dot(n) + s);
+  force_arc = -first.dot(turned);
   const P bent = 2.0 * ((first[1] - first[0]) * turned[2] + first[2] * turned[0]), inverse_q = 1.0 / at.q;
-  curvature_q = n.dot(changes_by_q);
-  curvature_way = bent * inverse_q + turned.dot(changes_by_way);
-  mixed = turned.dot(changes_by_q) - by_way * inverse_q;
+  curvature_q = n.dot(coupling_q);
+  curvature_arc = bent * inverse_q + turned.dot(coupling_arc);
+  mixed = turned.dot(coupling_q) - force_arc * inverse_q;
 }
 
 Jet<3, OneDirection::P> OneDirection::energy(bool derivatives) const {
@@ -35,12 +35,12 @@ Jet<3, OneDirection::P> OneDirection::energy(bool derivatives) const {
   w.value += s_ * now_.q;
   if (!derivatives) return w;
   const Forces f(now_, s_);
-  const P inverse_q = 1.0 / f.curvature_q, inverse_alone = 1.0 / f.curvature_alone();
-  const Strains across = f.changes_by_way - f.changes_by_q * (f.mixed * inverse_q);
+  const P inverse_q = 1.0 / f.curvature_q, inverse_reduced = 1.0 / f.reduced_curvature();
+  const Strains across = f.coupling_arc - f.coupling_q * (f.mixed * inverse_q);
   for (int j = 0; j < 3; ++j)
     for (int i = 0; i <= j; ++i)
       w.second[w.index(i, j)] -=
-          f.changes_by_q[i] * f.changes_by_q[j] * inverse_q + across[i] * across[j] * inverse_alone;
+          f.coupling_q[i] * f.coupling_q[j] * inverse_q + across[i] * across[j] * inverse_reduced;
   return w;
 }
 
@@ -77,19 +77,19 @@ OneDirection::P OneDirection::largest_q() const {
   constexpr int max_evaluations = 40;
   constexpr double largest_turn = 0.3, last_step = 1e-7;
   const auto value = [&](const State& at) { return at.w.value + s_ * at.q; };
-  const auto unbalanced = [](const Forces& f) { return f.by_q * f.by_q + f.by_way * f.by_way; };
+  const auto unbalanced = [](const Forces& f) { return f.force_q * f.force_q + f.force_arc * f.force_arc; };
   now_ = at(now_.q, now_.x, now_.y);
   P fraction = 1.0;
   Mask ended = {};
   for (int i = 0; i < max_evaluations && any(active); ++i) {
     const Forces f(now_, s_);
-    const P inverse_q = 1.0 / f.curvature_q, curvature = f.curvature_alone();
+    const P inverse_q = 1.0 / f.curvature_q, curvature = f.reduced_curvature();
     // Where the energy is not convex in the angle the curvature's absolute value still leads downhill.
-    P way = (f.by_way - f.mixed * inverse_q * f.by_q) / abs(curvature);
-    way = max(min(way, largest_turn * now_.q), -largest_turn * now_.q);
-    const P dq = (f.by_q - f.mixed * way) * inverse_q;
-    const Mask last = (abs(dq) + abs(way) < last_step) & (curvature > 0.0);
-    const P turn = fraction * way / now_.q, x = now_.x - turn * now_.y, y = now_.y + turn * now_.x,
+    P arc = (f.force_arc - f.mixed * inverse_q * f.force_q) / abs(curvature);
+    arc = max(min(arc, largest_turn * now_.q), -largest_turn * now_.q);
+    const P dq = (f.force_q - f.mixed * arc) * inverse_q;
+    const Mask last = (abs(dq) + abs(arc) < last_step) & (curvature > 0.0);
+    const P turn = fraction * arc / now_.q, x = now_.x - turn * now_.y, y = now_.y + turn * now_.x,
             inverse = 1.0 / sqrt(x * x + y * y);
     const State next = at(now_.q + max(fraction * dq, -0.9 * now_.q), x * inverse, y * inverse);
     const P now_value = value(now_), next_value = value(next), noise = 1e-14 * (abs(now_value) + s_);

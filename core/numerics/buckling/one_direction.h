@@ -30,24 +30,25 @@ class OneDirection {
     P q, x, y;
     Jet<3, P> w;  ///< the law at G + A
   };
-  /// Forces by q and by the way q dφ of n's angle φ, and their curvatures.
+  /// Forces along q and along the arc q dφ, φ the angle of n, and second derivatives of the energy.
   struct Forces {
-    P by_q, by_way;
-    Strains changes_by_q, changes_by_way;  ///< what the strains change in the forces' negatives
-    P curvature_q, curvature_way, mixed;
+    P force_q, force_arc;
+    Strains coupling_q, coupling_arc;  ///< by q or the arc, and by G
+    P curvature_q, curvature_arc, mixed;
 
     Forces(const State& at, double s);
-    /// What is left of the curvature by the way if q follows.
-    P curvature_alone() const { return curvature_way - mixed * mixed / curvature_q; }
+    /// The curvature along the arc if q follows, a Schur complement.
+    P reduced_curvature() const { return curvature_arc - mixed * mixed / curvature_q; }
   };
 
   State at(const P& q, const P& x, const P& y) const;
   /// The first q and n, by the law's derivatives at g.
   void start(const Jet<3, P>& plain);
-  /// The q that shortens by κ.
+  /// The q at which the cloth is shortened by κ.
   P largest_q() const;
   /// Newton's method, each triangle with its own fractions of steps; the triangles that end at a minimum.
   Mask minimise(Mask active);
+
   const StrainLaw& law_;
   const Strains& g_;
   const P* place_;
