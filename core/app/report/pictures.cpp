@@ -130,8 +130,8 @@ PictureSet draw_pictures(const RunData& run, const std::function<bool()>& cancel
     for (const MethodRecord& method : run.methods) {
       for (const LevelRecord& level : method.levels) {
         const std::string name = state_picture(method, level.level);
-        std::filesystem::remove(folder /
-                                name);  // an earlier report may have drawn a state whose mesh is gone
+        // An earlier report may have drawn a state whose mesh is gone.
+        std::filesystem::remove(folder / name);
         if (const TriangleMesh* state = scene.state(method.name, level.level)) keep(name, scene.draw(*state));
       }
       const std::vector<int> levels = drawn_levels(method);
