@@ -246,14 +246,14 @@ def blender():
         found.setdefault(r["scene"], []).append(r)
     rows = []
     for scene, starts in found.items():
-        for program in ("drape", "blender"):
+        for program, name in (("drape", "drape"), ("blender", "Blender")):
             of_program = [r[program] for r in starts]
-            rows.append([scene, program.capitalize() if program == "blender" else program, seconds_text([r["seconds"] for r in of_program]),
+            rows.append([scene, name, seconds_text([r["seconds"] for r in of_program]),
                          f"{sum(r.get('at_rest', True) for r in of_program)} of {len(starts)}",
                          with_range([r["force_residual"] for r in of_program], two), str(sum(r["intersections"] > 0 for r in of_program)),
                          with_range([r["largest_stretch"] for r in of_program])])
-    # No comment for docs_figures: a row for each of two programs in one entry of the record.
-    return table(["scene", "program", "CPU time [s]", "starts at rest", "force residual at the end", "starts with intersections", "largest stretch"], rows, [], "llrrrrr")[1:]
+    return table(["scene", "program", "CPU time [s]", "starts at rest", "force residual at the end", "starts with intersections", "largest stretch"], rows, ["blender.json"],
+                 "llrrrrr")
 
 
 def scale():

@@ -1,6 +1,7 @@
 """Plots of the records, as SVG that fits light and dark pages: PLOTS, by the name of the picture in docs/pictures, give its text.
 
-Colours and marks are those of the report (viewer/page.css). A function of a record that is not stored raises FileNotFoundError."""
+Colours and marks are those of the report (viewer/page.css); pcs_loop, whose solver is that of pcs, has its mark in a lighter
+blue. A function of a record that is not stored raises FileNotFoundError."""
 
 import math
 from html import escape
@@ -9,8 +10,8 @@ from figures import best_in_table1, named_ablations, plain_name
 from records import figure, median
 
 COLOURS = {"pcs": "#0072b2", "pcs_loop": "#56a0d8", "cascadic": "#d55e00", "newton": "#009e73"}
-MARKS = {"pcs": "M-5 0a5 5 0 1 0 10 0a5 5 0 1 0-10 0z", "pcs_loop": "M-5 0a5 5 0 1 0 10 0a5 5 0 1 0-10 0z", "cascadic": "M-4-4h8v8h-8z",
-         "newton": "M0-5L5 4H-5z"}
+CIRCLE, SQUARE, TRIANGLE = "M-5 0a5 5 0 1 0 10 0a5 5 0 1 0-10 0z", "M-4-4h8v8h-8z", "M0-5L5 4H-5z"
+MARKS = {"pcs": CIRCLE, "pcs_loop": CIRCLE, "cascadic": SQUARE, "newton": TRIANGLE}
 STYLE = """text { font: 13px sans-serif; fill: #1b2027 } line { stroke: #c9ced6 }
 @media (prefers-color-scheme: dark) { text { fill: #e6e9ee } line { stroke: #4a515c } }"""
 WIDTH, LABELS, ROW, TOP = 860, 256, 24, 52

@@ -2,8 +2,9 @@
 
     blender --background --factory-startup --python simulate.py -- SCENE.npz OUT.npz
 
-SCENE has `rest`, `start` and `triangles` of the cloth, the vertices that are `pinned`, the `gap` that contact keeps [m], `ball` and `ball_triangles` (empty without one), and `frames`, how many at most. OUT has of each frame the CPU seconds up
-to it (`seconds`) and the net force on the free vertices over their weight (`residuals`), and the last frame's positions (`x`).
+SCENE has `rest`, `start` and `triangles` of the cloth, the vertices that are `pinned`, the `gap` that contact keeps [m], `ball` and
+`ball_triangles` (empty without one), and `frames`, how many at most. OUT has of each frame the CPU seconds up to it (`seconds`) and
+the net force on the free vertices over their weight (`residuals`), and the last frame's positions (`x`).
 """
 
 import sys
@@ -79,8 +80,8 @@ def main(scene_file, out):
         acceleration = (last[2] - 2 * last[1] + last[0])[free] * view.render.fps**2
         residuals.append(float(numpy.linalg.norm(acceleration) / (9.81 * len(free) ** 0.5)))
         velocity = (last[2] - last[1])[free] * view.render.fps
-        moves = numpy.linalg.norm(velocity) / len(free) ** 0.5
-        if residuals[-1] < AT_REST and moves < 1e-3:
+        speed = numpy.linalg.norm(velocity) / len(free) ** 0.5
+        if residuals[-1] < AT_REST and speed < 1e-3:
             break
     numpy.savez(out, seconds=seconds, residuals=residuals, x=last[-1])
 
