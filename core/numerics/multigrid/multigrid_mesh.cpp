@@ -12,53 +12,76 @@ namespace {
 
 /// Coarse rows that one piece of a Galerkin product makes.
 constexpr int product_piece = 512;
-constexpr double no_block[12] = {};
 
 /// Three numbers in double precision and one of padding.
 using Double4 = double __attribute__((vector_size(32)));
 
-/// The blocks of some rows by column.
-struct Blocks {
-  std::vector<int> row_start, columns;  // row_start counts from 0
-  std::vector<double> values;           // 9 a block, row-major
-};
-
-/// Sums of blocks by column. Each row of a block is padded by a number of no meaning.
-class BlockSums {
+/// A row of blocks, at given columns. Each row of a block is padded by a number of no meaning.
+class BlockRow {
  public:
-  explicit BlockSums(int columns) : place_(static_cast<std::size_t>(columns), -1) {}
+  explicit BlockRow(int columns) : place_(static_cast<std::size_t>(columns)) {}
 
+  /// Zeros at `count` columns.
+  void clear(const int* columns, int count) {
+    rows_.assign(3 * static_cast<std::size_t>(count), Double4{});
+    for (int k = 0; k < count; ++k) place_[columns[k]] = 3 * k;
+  }
   /// Adds w times the block, whose rows of three numbers are `stride` apart and may be read beyond their end.
   template <int stride>
   [[gnu::always_inline]] void add(int column, double w, const double* block) {
-    int& place = place_[static_cast<std::size_t>(column)];
-    const bool is_new = place < 0;
-    if (is_new) {
-      place = static_cast<int>(touched.size());
-      touched.push_back(column);
-      if (rows_.size() < 3 * touched.size()) rows_.resize(2 * rows_.size() + 768);
-    }
-    Double4* rows = &rows_[3 * static_cast<std::size_t>(place)];
+    Double4* rows = &rows_[static_cast<std::size_t>(place_[column])];
     for (int r = 0; r < 3; ++r) {
       Double4 v;
       std::memcpy(&v, block + stride * r, sizeof v);
-      rows[r] = is_new ? w * v : rows[r] + w * v;
+      rows[r] += w * v;
     }
   }
-  const double* operator[](int column) const {
-    const int place = place_[static_cast<std::size_t>(column)];
-    return reinterpret_cast<const double*>(&rows_[3 * static_cast<std::size_t>(place)]);
-  }
-  void clear() {
-    for (const int c : touched) place_[static_cast<std::size_t>(c)] = -1;
-    touched.clear();
-  }
-
-  std::vector<int> touched;  ///< columns
+  /// The block at the k-th of the columns, its rows 4 apart.
+  const double* block(int k) const { return reinterpret_cast<const double*>(&rows_[3 * k]); }
 
  private:
   std::vector<int> place_;
   std::vector<Double4> rows_;
+};
+
+/// Sets of columns, one for each row of a matrix, which are found piece by piece.
+class ColumnSets {
+ public:
+  explicit ColumnSets(int rows) : rows_(rows), pieces_((rows + product_piece - 1) / product_piece) {}
+
+  /// find(i, add) calls add(column) for each column of row i, also repeatedly.
+  template <class Find>
+  void collect(int columns, const Find& find) {
+    parallel_for(rows_, product_piece, [&](int begin, int end) {
+      Piece& piece = pieces_[static_cast<std::size_t>(begin / product_piece)];
+      std::vector<int> last_row(static_cast<std::size_t>(columns), -1);  // that has the column
+      for (int i = begin; i < end; ++i) {
+        const auto first = static_cast<std::ptrdiff_t>(piece.columns.size());
+        find(i, [&](int column) {
+          if (std::exchange(last_row[column], i) != i) piece.columns.push_back(column);
+        });
+        std::sort(piece.columns.begin() + first, piece.columns.end());
+        piece.ends.push_back(static_cast<int>(piece.columns.size()));
+      }
+    });
+  }
+  /// The sets one after another.
+  void join(std::vector<int>& start, std::vector<int>& columns) const {
+    start.assign(1, 0);
+    columns.clear();
+    for (const Piece& piece : pieces_) {
+      const int before = static_cast<int>(columns.size());
+      for (const int end : piece.ends) start.push_back(before + end);
+      columns.insert(columns.end(), piece.columns.begin(), piece.columns.end());
+    }
+  }
+
+ private:
+  struct Piece {
+    std::vector<int> columns, ends;
+  };
+  int rows_;
+  std::vector<Piece> pieces_;
 };
 
 /// A row-major block as one of SmoothedMatrix.
@@ -105,8 +128,7 @@ void MultigridMesh::set_pattern(const std::shared_ptr<const BlockPattern>& given
   if (pattern_ == given) return;
   pattern_ = given;
   const int n = size();
-  auto& start = matrix.row_start;
-  start.assign(static_cast<std::size_t>(n) + 1, 0);
+  std::vector<int> start(static_cast<std::size_t>(n) + 1);
   const auto visit = [&](const auto& each) {
     for (int i = 0; i < n; ++i)
       for (int k = given->row_start[i]; k < given->row_start[i + 1]; ++k) {
@@ -121,31 +143,36 @@ void MultigridMesh::set_pattern(const std::shared_ptr<const BlockPattern>& given
     int column, source;
   };
   std::vector<Entry> entries(static_cast<std::size_t>(start[n]));
-  std::vector<int> next(start.begin(), start.end() - 1);
+  std::vector<int> next(start.begin(), start.end() - 1), columns(entries.size());
   visit([&](int row, int column, int block) { entries[next[row]++] = {column, block}; });
-  matrix.columns.resize(entries.size());
   source_.resize(entries.size());
   parallel_for(n, 4096, [&](int begin, int end) {
     for (int i = begin; i < end; ++i)
       std::sort(entries.begin() + start[i], entries.begin() + start[i + 1],
                 [](const Entry& a, const Entry& b) { return a.column < b.column; });
     for (int k = start[begin]; k < start[end]; ++k)
-      matrix.columns[k] = entries[k].column, source_[k] = entries[k].source;
+      columns[k] = entries[k].column, source_[k] = entries[k].source;
   });
-  matrix.allocate();
-  values_.resize(9 * entries.size() + 1);
+  set_pattern(std::move(start), std::move(columns));
+}
+
+void MultigridMesh::set_pattern(std::vector<int> row_start, std::vector<int> columns) {
+  values_.resize(9 * columns.size() + 1);
+  half_start_.clear();
+  matrix.set_pattern(std::move(row_start), std::move(columns));
 }
 
 void MultigridMesh::fill(const BlockMatrix& given, const Eigen::VectorXd& shift,
                          const std::vector<char>& fixed) {
   set_pattern(given.pattern);
+  const std::vector<int>&start = matrix.row_start(), &columns = matrix.columns();
   parallel_for(size(), SmoothedMatrix::piece, [&](int begin, int end) {
     for (int i = begin; i < end; ++i) {
       const int vertex = order[i];
-      for (int k = matrix.row_start[i]; k < matrix.row_start[i + 1]; ++k) {
+      for (int k = start[i]; k < start[i + 1]; ++k) {
         double* to = &values_[9 * static_cast<std::size_t>(k)];
-        const bool is_diagonal = matrix.columns[k] == i;
-        if (fixed[vertex] || fixed[order[matrix.columns[k]]]) {
+        const bool is_diagonal = columns[k] == i;
+        if (fixed[vertex] || fixed[order[columns[k]]]) {
           std::fill(to, to + 9, 0.0);
         } else {
           const bool turned = source_[k] < 0;
@@ -155,7 +182,7 @@ void MultigridMesh::fill(const BlockMatrix& given, const Eigen::VectorXd& shift,
           if (is_diagonal)
             for (int e = 0; e < 9; e += 4) to[e] += shift[vertex];
         }
-        float* copy = matrix.block(static_cast<std::size_t>(k));
+        float* copy = matrix.block(k);
         round_to(copy, to);
         if (is_diagonal && fixed[vertex])
           for (int e = 0; e < 9; e += 4) copy[e] = 1;
@@ -164,74 +191,69 @@ void MultigridMesh::fill(const BlockMatrix& given, const Eigen::VectorXd& shift,
   });
 }
 
-double MultigridMesh::make_product(MultigridMesh& coarse) const {
-  const int pieces = (coarse.size() + product_piece - 1) / product_piece;
-  std::vector<Blocks> parts(static_cast<std::size_t>(pieces));
-  const double terms = parallel_sum(coarse.size(), product_piece, [&](int begin, int end) {
-    Blocks& part = parts[static_cast<std::size_t>(begin / product_piece)];
-    BlockSums half(size()), sums(coarse.size());
+void MultigridMesh::find_product_pattern(MultigridMesh& coarse) {
+  const std::vector<int>&start = matrix.row_start(), &columns = matrix.columns();
+  ColumnSets half(coarse.size()), whole(coarse.size());
+  half.collect(size(), [&](int i, const auto& add) {
+    for (Weights::InnerIterator child(children, i); child; ++child)
+      for (int k = start[child.col()]; k < start[child.col() + 1]; ++k) add(columns[k]);
+  });
+  std::vector<int> half_start, coarse_start, coarse_columns;
+  half.join(half_start, half_columns_);
+  whole.collect(coarse.size(), [&](int i, const auto& add) {
+    for (int k = half_start[i]; k < half_start[i + 1]; ++k)
+      for (Weights::InnerIterator parent(parents, half_columns_[k]); parent; ++parent)
+        add(static_cast<int>(parent.col()));
+    add(i);  // also where no child of the vertex has a block
+  });
+  whole.join(coarse_start, coarse_columns);
+  coarse.set_pattern(std::move(coarse_start), std::move(coarse_columns));
+  half_start_ = std::move(half_start);
+}
+
+double MultigridMesh::make_product(MultigridMesh& coarse) {
+  if (half_start_.empty()) find_product_pattern(coarse);
+  SmoothedMatrix& to = coarse.matrix;
+  const std::vector<int>&start = matrix.row_start(), &columns = matrix.columns();
+  const std::vector<int>&to_start = to.row_start(), &to_columns = to.columns();
+  return parallel_sum(coarse.size(), product_piece, [&](int begin, int end) {
+    BlockRow half(size()), sums(coarse.size());
     double count = 0;
     for (int i = begin; i < end; ++i) {
-      part.row_start.push_back(static_cast<int>(part.columns.size()));
+      const int* half_columns = half_columns_.data() + half_start_[i];
+      const int half_count = half_start_[i + 1] - half_start_[i];
+      half.clear(half_columns, half_count);
       for (Weights::InnerIterator child(children, i); child; ++child) {
-        const int first = matrix.row_start[child.col()], last = matrix.row_start[child.col() + 1];
+        const int first = start[child.col()], last = start[child.col() + 1];
         for (int k = first; k < last; ++k)
-          half.add<3>(matrix.columns[k], child.value(), &values_[9 * static_cast<std::size_t>(k)]);
+          half.add<3>(columns[k], child.value(), &values_[9 * static_cast<std::size_t>(k)]);
         count += last - first;
       }
-      for (const int j : half.touched)
-        for (Weights::InnerIterator parent(parents, j); parent; ++parent, ++count)
-          sums.add<4>(static_cast<int>(parent.col()), parent.value(), half[j]);
-      sums.add<4>(i, 0, no_block);  // the diagonal, also of a vertex whose children are all fixed
-      std::sort(sums.touched.begin(), sums.touched.end());
-      for (const int j : sums.touched) {
-        part.columns.push_back(j);
-        for (int r = 0; r < 3; ++r)
-          part.values.insert(part.values.end(), sums[j] + 4 * r, sums[j] + 4 * r + 3);
+      sums.clear(&to_columns[to_start[i]], to_start[i + 1] - to_start[i]);
+      for (int k = 0; k < half_count; ++k)
+        for (Weights::InnerIterator parent(parents, half_columns[k]); parent; ++parent, ++count)
+          sums.add<4>(static_cast<int>(parent.col()), parent.value(), half.block(k));
+      for (int k = to_start[i]; k < to_start[i + 1]; ++k) {
+        const double* sum = sums.block(k - to_start[i]);
+        double* value = &coarse.values_[9 * static_cast<std::size_t>(k)];
+        for (int r = 0; r < 3; ++r) std::copy_n(sum + 4 * r, 3, value + 3 * r);
+        // Of a vertex whose children are all fixed.
+        if (to_columns[k] == i && std::all_of(value, value + 9, [](double e) { return e == 0; }))
+          for (int e = 0; e < 9; e += 4) value[e] = 1;
+        round_to(to.block(k), value);
       }
-      half.clear();
-      sums.clear();
     }
     return count;
   });
-  SmoothedMatrix& to = coarse.matrix;
-  to.row_start.clear();
-  std::vector<int> first;
-  int blocks = 0;
-  for (const Blocks& part : parts) {
-    first.push_back(blocks);
-    for (const int start : part.row_start) to.row_start.push_back(blocks + start);
-    blocks += static_cast<int>(part.columns.size());
-  }
-  to.row_start.push_back(blocks);
-  to.columns.resize(static_cast<std::size_t>(blocks));
-  coarse.values_.resize(9 * static_cast<std::size_t>(blocks) + 1);
-  to.values.resize(9 * static_cast<std::size_t>(blocks) + 4);
-  parallel_for(pieces, 1, [&](int begin, int) {
-    const Blocks& part = parts[static_cast<std::size_t>(begin)];
-    std::copy(part.columns.begin(), part.columns.end(), to.columns.begin() + first[begin]);
-    std::copy(part.values.begin(), part.values.end(),
-              coarse.values_.begin() + 9 * static_cast<std::ptrdiff_t>(first[begin]));
-  });
-  parallel_for(coarse.size(), product_piece, [&](int begin, int end) {
-    for (int i = begin; i < end; ++i)
-      for (int k = to.row_start[i]; k < to.row_start[i + 1]; ++k) {
-        double* from = &coarse.values_[9 * static_cast<std::size_t>(k)];
-        if (to.columns[k] == i && std::all_of(from, from + 9, [](double e) { return e == 0; }))
-          for (int e = 0; e < 9; e += 4) from[e] = 1;
-        round_to(to.block(static_cast<std::size_t>(k)), from);
-      }
-  });
-  return terms;
 }
 
 bool MultigridMesh::copy_to(BlockMatrix& to) const {
   std::vector<int> start = {0}, columns;
   std::vector<double> upper;
   for (int i = 0; i < size(); ++i) {
-    for (int k = matrix.row_start[i]; k < matrix.row_start[i + 1]; ++k) {
-      if (matrix.columns[k] < i) continue;
-      columns.push_back(matrix.columns[k]);
+    for (int k = matrix.row_start()[i]; k < matrix.row_start()[i + 1]; ++k) {
+      if (matrix.columns()[k] < i) continue;
+      columns.push_back(matrix.columns()[k]);
       const double* block = &values_[9 * static_cast<std::size_t>(k)];
       upper.insert(upper.end(), block, block + 9);
     }

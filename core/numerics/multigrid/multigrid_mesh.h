@@ -32,7 +32,7 @@ struct MultigridMesh {
   /// Takes over a given matrix plus diag(shift_i I₃), with identities for fixed vertices (one flag a vertex).
   void fill(const BlockMatrix& given, const Eigen::VectorXd& shift, const std::vector<char>& fixed);
   /// Makes the coarser mesh's matrix Pᵀ A P. Returns the number of multiplications of blocks.
-  double make_product(MultigridMesh& coarse) const;
+  double make_product(MultigridMesh& coarse);
   /// The matrix by vertices. Keeps its pattern object while the pattern is the same; returns whether it is
   /// not.
   bool copy_to(BlockMatrix& matrix) const;
@@ -45,11 +45,16 @@ struct MultigridMesh {
  private:
   void resize();
   void set_pattern(const std::shared_ptr<const BlockPattern>& given);
+  void set_pattern(std::vector<int> row_start, std::vector<int> columns);
+  /// Finds which blocks Pᵀ A and Pᵀ A P have.
+  void find_product_pattern(MultigridMesh& coarse);
 
   std::vector<double> values_;  // of the matrix's blocks, row-major, and one of padding
   // The block of a given matrix that each block is, complemented if transposed; of this pattern.
   std::vector<int> source_;
   std::shared_ptr<const BlockPattern> pattern_;
+  // The columns of each row of Pᵀ A; none if the matrix has another pattern by now.
+  std::vector<int> half_start_, half_columns_;
 };
 
 }  // namespace drape

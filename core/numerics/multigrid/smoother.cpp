@@ -2,9 +2,9 @@
 
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
-#include <algorithm>
 #include <atomic>
 #include <cstring>
+#include <utility>
 
 #include "core/kernel/threads/parallel.h"
 
@@ -17,38 +17,61 @@ Float4 load(const float* p) {
   return v;
 }
 
-/// Σ A_ik x_k over the blocks first … last - 1. The fourth number is of no meaning.
-[[gnu::always_inline]] inline Float4 sum(const SmoothedMatrix& a, int first, int last, const Float4* x) {
+/// Sums of blocks times vectors. The fourth number is of no meaning.
+struct Products {
   Float4 s0 = {}, s1 = {}, s2 = {};
-  for (int k = first; k < last; ++k) {
-    const float* b = a.block(static_cast<std::size_t>(k));
-    const Float4 v = x[a.columns[static_cast<std::size_t>(k)]];
-    s0 += load(b) * v[0];
-    s1 += load(b + 3) * v[1];
-    s2 += load(b + 6) * v[2];
+
+  [[gnu::always_inline]] void add(const float* block, Float4 x) {
+    s0 += load(block) * x[0];
+    s1 += load(block + 3) * x[1];
+    s2 += load(block + 6) * x[2];
   }
-  return s0 + s1 + s2;
-}
+  Float4 total() const { return s0 + s1 + s2; }
+};
 
 }  // namespace
 
+void SmoothedMatrix::set_pattern(std::vector<int> row_start, std::vector<int> columns) {
+  row_start_ = std::move(row_start);
+  columns_ = std::move(columns);
+  place_.resize(columns_.size());
+  stored_columns_.clear();
+  stored_columns_.reserve(columns_.size());
+  const auto store = [&](Part& part, const auto& belongs) {
+    part.resize(row_start_.size());
+    for (int i = 0; i < rows(); ++i) {
+      part[i] = static_cast<int>(stored_columns_.size());
+      for (int k = row_start_[i]; k < row_start_[i + 1]; ++k) {
+        if (!belongs(i, columns_[k])) continue;
+        place_[k] = static_cast<int>(stored_columns_.size());
+        stored_columns_.push_back(columns_[k]);
+      }
+    }
+    part.back() = static_cast<int>(stored_columns_.size());
+  };
+  store(below_, [](int i, int j) { return j < i && j / piece == i / piece; });
+  store(above_, [](int i, int j) { return j > i && j / piece == i / piece; });
+  store(elsewhere_, [](int i, int j) { return j / piece != i / piece; });
+  Part diagonal;
+  store(diagonal, [](int i, int j) { return j == i; });
+  values_.resize(9 * columns_.size() + 4);
+}
+
 bool SmoothedMatrix::finish() {
-  parts_.resize(static_cast<std::size_t>(rows()));
+  raise_.resize(static_cast<std::size_t>(rows()));
   inverse_.resize(3 * static_cast<std::size_t>(rows()));
   std::atomic<bool> definite = true;
+  const auto stored = [&](int k) {
+    return Eigen::Map<const Eigen::Matrix3f>(values_.data() + 9 * static_cast<std::size_t>(k));
+  };
   parallel_for(rows(), piece, [&](int begin, int end) {
     for (int i = begin; i < end; ++i) {
-      const auto place = [&](int column) {
-        return static_cast<int>(
-            std::lower_bound(columns.begin() + row_start[i], columns.begin() + row_start[i + 1], column) -
-            columns.begin());
-      };
-      Row& row = parts_[i] = {place(begin), place(i), place(end), 0};
-      for (int k = row_start[i]; k < row_start[i + 1]; ++k)
-        if (k < row.own || k >= row.own_end) row.raise += Eigen::Map<const Eigen::Matrix3f>(block(k)).norm();
-      Eigen::Matrix3d d = Eigen::Map<const Eigen::Matrix3f>(block(row.diagonal)).cast<double>();
+      float raise = 0;
+      for (int k = elsewhere_[i]; k < elsewhere_[i + 1]; ++k) raise += stored(k).norm();
+      raise_[i] = raise;
+      Eigen::Matrix3d d = stored(elsewhere_.back() + i).cast<double>();
       if (Eigen::LLT<Eigen::Matrix3d>(d).info() != Eigen::Success) definite = false;
-      d.diagonal().array() += row.raise;
+      d.diagonal().array() += raise;
       const Eigen::Matrix3f inverse = d.inverse().cast<float>();
       for (int c = 0; c < 3; ++c)
         inverse_[3 * static_cast<std::size_t>(i) + c] =
@@ -58,17 +81,30 @@ bool SmoothedMatrix::finish() {
   return definite;
 }
 
+[[gnu::always_inline]] inline Float4 SmoothedMatrix::sum(const Part& part, int row,
+                                                         const std::vector<Float4>& x) const {
+  Products sum;
+  for (int k = part[row]; k < part[row + 1]; ++k)
+    sum.add(values_.data() + 9 * static_cast<std::size_t>(k), x[stored_columns_[k]]);
+  return sum.total();
+}
+
+[[gnu::always_inline]] inline Float4 SmoothedMatrix::sum_backward(const Part& part, int row,
+                                                                  const std::vector<Float4>& x) const {
+  Products sum;
+  for (int k = part[row + 1]; k-- > part[row];)
+    sum.add(values_.data() + 9 * static_cast<std::size_t>(k), x[stored_columns_[k]]);
+  return sum.total();
+}
+
 void SmoothedMatrix::presmooth(const std::vector<Float4>& b, std::vector<Float4>& x,
                                std::vector<Float4>& r) const {
   parallel_for(rows(), piece, [&](int begin, int end) {
-    for (int i = begin; i < end; ++i)
-      x[i] = solve_diagonal(i, b[i] - sum(*this, parts_[i].own, parts_[i].diagonal, x.data()));
+    for (int i = begin; i < end; ++i) x[i] = solve_diagonal(i, b[i] - sum(below_, i, x));
   });
   // The sweep has solved each row with its own piece up to the raised diagonal: the rest is the residual.
   parallel_for(rows(), piece, [&](int begin, int end) {
-    for (int i = begin; i < end; ++i)
-      r[i] = parts_[i].raise * x[i] - sum(*this, row_start[i], parts_[i].own, x.data()) -
-             sum(*this, parts_[i].diagonal + 1, row_start[i + 1], x.data());
+    for (int i = begin; i < end; ++i) r[i] = raise_[i] * x[i] - sum(elsewhere_, i, x) - sum(above_, i, x);
   });
 }
 
@@ -76,12 +112,9 @@ void SmoothedMatrix::postsmooth(const std::vector<Float4>& b, std::vector<Float4
                                 std::vector<Float4>& old) const {
   old = x;
   parallel_for(rows(), piece, [&](int begin, int end) {
-    for (int i = end - 1; i >= begin; --i) {
-      const Row& row = parts_[i];
-      x[i] += solve_diagonal(i, b[i] - sum(*this, row_start[i], row.own, old.data()) -
-                                    sum(*this, row.own, row.own_end, x.data()) -
-                                    sum(*this, row.own_end, row_start[i + 1], old.data()));
-    }
+    for (int i = end - 1; i >= begin; --i)
+      x[i] = solve_diagonal(i, b[i] + raise_[i] * x[i] - sum_backward(elsewhere_, i, old) -
+                                   sum_backward(above_, i, x) - sum_backward(below_, i, x));
   });
 }
 
