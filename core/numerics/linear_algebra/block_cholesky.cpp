@@ -212,7 +212,7 @@ bool BlockCholesky::solve(const Positions& right_hand_side, Positions& solution)
         apply_factor(r / scale, z);
         z *= scale;
       },
-      mixed_tolerance, mixed_iterations, solution);
+      {mixed_tolerance, mixed_iterations, mixed_tolerance}, solution);
   return end == ConjugateGradients::End::converged;
 }
 

@@ -27,17 +27,19 @@ void for_each_vertex(const Positions& x, const Body& body) {
 
 ConjugateGradients::End ConjugateGradients::solve(const BlockMatrix& matrix, const Eigen::VectorXd& shift,
                                                   const std::vector<char>& fixed, const Positions& b,
-                                                  const Precondition& precondition, double tolerance,
-                                                  int max_iterations, Positions& x) {
+                                                  const Precondition& precondition, const Accuracy& accuracy,
+                                                  Positions& x) {
   r_ = b;
   for_each_vertex(r_, [&](int i) {
     if (fixed[i]) r_.row(i).setZero();
   });
   x.setZero(b.rows(), 3);
   double norm = std::sqrt(dot(r_, r_)), rz = 0;
-  const double target = tolerance * norm;
-  for (int k = 0; norm > target; ++k) {
-    if (k == max_iterations || !std::isfinite(norm)) return End::not_converged;
+  const double whole = norm;
+  for (int k = 0; norm > accuracy.tolerance * whole; ++k) {
+    if (!std::isfinite(norm)) return End::not_converged;
+    if (k == accuracy.max_iterations)
+      return norm <= accuracy.sufficient * whole ? End::converged : End::not_converged;
     precondition(r_, z_);
     const double next = dot(r_, z_);
     if (!(next > 0)) return std::isnan(next) ? End::not_converged : End::not_definite;

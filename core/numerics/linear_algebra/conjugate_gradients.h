@@ -19,14 +19,20 @@ class ConjugateGradients {
     not_converged
   };
 
+  /// When a solve ends, by the relative residual ‖b − A x‖ / ‖b‖.
+  struct Accuracy {
+    double tolerance;    ///< the residual that is wanted
+    int max_iterations;  ///< for it
+    double sufficient;   ///< the residual that counts as converged after so many, ≥ tolerance
+  };
+
   /// z = M⁻¹ r for n×3 r and z, whose fixed rows are zero.
   using Precondition = std::function<void(const Positions& r, Positions& z)>;
 
-  /// Solves (A + diag(shift_i I₃)) x = b on the vertices that are not `fixed` (one flag a vertex) until ‖b −
-  /// A x‖ ≤ tolerance ‖b‖, in at most max_iterations. Rows of x for fixed vertices are zero.
+  /// Solves (A + diag(shift_i I₃)) x = b on the vertices that are not `fixed` (one flag a vertex). Rows of x
+  /// for fixed vertices are zero.
   End solve(const BlockMatrix& matrix, const Eigen::VectorXd& shift, const std::vector<char>& fixed,
-            const Positions& b, const Precondition& precondition, double tolerance, int max_iterations,
-            Positions& x);
+            const Positions& b, const Precondition& precondition, const Accuracy& accuracy, Positions& x);
 
  private:
   Positions r_, z_, p_, ap_;

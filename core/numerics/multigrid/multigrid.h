@@ -33,8 +33,8 @@ class Multigrid {
   bool is_set() const { return is_set_; }
 
   /// Solves to a relative residual of 0.1, with which Newton takes about as many iterations as with exact
-  /// directions. Gives up, as not converged, where the cycles would take longer than a factorisation. n×3
-  /// right-hand side and solution, whose fixed rows are zero.
+  /// directions, or of 0.4 where cycles would take longer than a factorisation; not converged if that is not
+  /// reached either. n×3 right-hand side and solution, whose fixed rows are zero.
   ConjugateGradients::End solve(const Positions& right_hand_side, Positions& solution);
 
   /// Floating-point operations since the last call.

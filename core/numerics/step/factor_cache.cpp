@@ -9,7 +9,7 @@ namespace {
 /// Updates of the Hessian for which another solver stays in use after the preferred one has failed.
 constexpr int fallback_updates = 10;
 /// Vertices from which on multigrid takes less time than a factorisation.
-constexpr int multigrid_from = 50'000;
+constexpr int multigrid_from = 20'000;
 
 std::unique_ptr<Multigrid> multigrid_for(const Level& level, const NewtonParameters& p,
                                          const Hierarchy* hierarchy) {

@@ -72,10 +72,11 @@ void NewtonParameters::declare(Declaration<NewtonParameters>& d) {
                 {"supernodal", LinearSolver::supernodal},
                 {"cholmod", LinearSolver::cholmod}})
       .description(
-          "automatic: multigrid on levels of 50,000 vertices and more below which there are coarser ones, "
+          "automatic: multigrid on levels of 20,000 vertices and more below which there are coarser ones, "
           "mixed on others. multigrid: conjugate "
           "gradients that are preconditioned by V-cycles over the hierarchy's meshes and end at a relative "
-          "residual of 0.1; where that fails, mixed. mixed: drape's Cholesky factorisation in single "
+          "residual of 0.1, or of 0.4 where that takes long; where it fails, mixed. mixed: drape's Cholesky "
+          "factorisation in single "
           "precision, as preconditioner of conjugate "
           "gradients in double precision; the static form, ill-conditioned matrices and moved pins have it "
           "in double precision. supernodal: that in double precision throughout. Both are parallel and give "

@@ -92,6 +92,23 @@ TEST_CASE("Cycles of multigrid solve a cloth's system, and leave fixed vertices 
   CHECK(m.take_flops() == 0);
 }
 
+TEST_CASE("Conjugate gradients that run out of iterations end with what suffices, or not converged") {
+  const Hanging h;
+  ConjugateGradients gradients;
+  Positions x;
+  const auto end = [&](double sufficient) {
+    return gradients.solve(
+        h.matrix, h.shift, h.s.model().fixed(), h.b, [](const Positions& r, Positions& z) { z = r; },
+        {1e-9, 20, sufficient}, x);
+  };
+  using End = ConjugateGradients::End;
+  REQUIRE(end(1e9) == End::converged);
+  const double reached = h.residual(x);
+  REQUIRE(reached > 1e-6);
+  CHECK(end(1.01 * reached) == End::converged);
+  CHECK(end(0.99 * reached) == End::not_converged);
+}
+
 TEST_CASE("Multigrid has the same bits with any number of threads") {
   const Hanging h;
   Positions first, x;
