@@ -9,8 +9,8 @@
 #include "core/app/scene/following_pins.h"
 #include "core/app/scene/load_schedule.h"
 #include "core/kernel/files/message_text.h"
-#include "core/numerics/linear_algebra/same_entries.h"
 #include "core/numerics/mesh/check.h"
+#include "core/numerics/mesh/same_entries.h"
 #include "core/numerics/mesh_files/io.h"
 
 namespace drape {

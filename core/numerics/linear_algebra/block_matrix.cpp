@@ -5,6 +5,7 @@
 #include <string>
 
 #include "core/kernel/threads/parallel.h"
+#include "core/numerics/linear_algebra/column_sets.h"
 
 namespace drape {
 namespace {
@@ -40,34 +41,6 @@ void require_vertices(int vertex_count, const Stencils& stencils) {
     }
 }
 
-/// Columns j ≥ i of some rows, and the end of each row among them.
-struct RowColumns {
-  std::vector<int> columns, ends;
-};
-
-RowColumns collect_rows(int begin, int end, int vertex_count, const std::vector<Stencils>& stencils,
-                        const std::vector<VertexElements>& elements) {
-  RowColumns out;
-  std::vector<int> last_row(vertex_count, -1);  // the last row that has the column
-  for (int i = begin; i < end; ++i) {
-    const std::size_t first = out.columns.size();
-    out.columns.push_back(i);
-    last_row[i] = i;
-    for (std::size_t s = 0; s < stencils.size(); ++s)
-      for (int r = elements[s].start[i]; r < elements[s].start[i + 1]; ++r) {
-        const int* row = stencils[s].data() + elements[s].rows[r] * stencils[s].cols();
-        for (Eigen::Index k = 0; k < stencils[s].cols(); ++k) {
-          if (row[k] <= i || last_row[row[k]] == i) continue;
-          last_row[row[k]] = i;
-          out.columns.push_back(row[k]);
-        }
-      }
-    std::sort(out.columns.begin() + first, out.columns.end());
-    out.ends.push_back(static_cast<int>(out.columns.size()));
-  }
-  return out;
-}
-
 }  // namespace
 
 std::shared_ptr<const BlockPattern> BlockPattern::of(int vertex_count,
@@ -77,18 +50,16 @@ std::shared_ptr<const BlockPattern> BlockPattern::of(int vertex_count,
     require_vertices(vertex_count, s);
     elements.emplace_back(vertex_count, s);
   }
-  const int grain = std::max(4096, vertex_count / 16 + 1);
-  std::vector<RowColumns> parts((vertex_count + grain - 1) / grain);
-  parallel_for(vertex_count, grain, [&](int begin, int end) {
-    parts[begin / grain] = collect_rows(begin, end, vertex_count, stencils, elements);
+  ColumnSets sets = ColumnSets::collect(vertex_count, vertex_count, [&](int i, const auto& add) {
+    add(i);
+    for (std::size_t s = 0; s < stencils.size(); ++s)
+      for (int r = elements[s].start[i]; r < elements[s].start[i + 1]; ++r) {
+        const int* row = stencils[s].data() + elements[s].rows[r] * stencils[s].cols();
+        for (Eigen::Index k = 0; k < stencils[s].cols(); ++k)
+          if (row[k] > i) add(row[k]);
+      }
   });
-  std::vector<int> row_start = {0}, columns;
-  for (const RowColumns& part : parts) {
-    const int offset = static_cast<int>(columns.size());
-    for (const int end : part.ends) row_start.push_back(offset + end);
-    columns.insert(columns.end(), part.columns.begin(), part.columns.end());
-  }
-  return std::make_shared<const BlockPattern>(std::move(row_start), std::move(columns));
+  return std::make_shared<const BlockPattern>(std::move(sets.row_start), std::move(sets.columns));
 }
 
 BlockPattern::BlockPattern(std::vector<int> row_start_in, std::vector<int> columns_in)

@@ -6,7 +6,7 @@
 #include <stdexcept>
 
 #include "core/numerics/contact_forces/contact_stiffness.h"
-#include "core/numerics/linear_algebra/same_entries.h"
+#include "core/numerics/mesh/same_entries.h"
 
 namespace drape {
 

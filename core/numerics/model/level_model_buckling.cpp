@@ -4,7 +4,7 @@
 #include <numbers>
 #include <stdexcept>
 
-#include "core/numerics/linear_algebra/same_entries.h"
+#include "core/numerics/mesh/same_entries.h"
 #include "core/numerics/model/level_model.h"
 
 namespace drape {

@@ -44,46 +44,6 @@ class BlockRow {
   std::vector<Double4> rows_;
 };
 
-/// Sets of columns, one for each row of a matrix, which are found piece by piece.
-class ColumnSets {
- public:
-  explicit ColumnSets(int rows) : rows_(rows), pieces_((rows + product_piece - 1) / product_piece) {}
-
-  /// find(i, add) calls add(column) for each column of row i, also repeatedly.
-  template <class Find>
-  void collect(int columns, const Find& find) {
-    parallel_for(rows_, product_piece, [&](int begin, int end) {
-      Piece& piece = pieces_[static_cast<std::size_t>(begin / product_piece)];
-      std::vector<int> last_row(static_cast<std::size_t>(columns), -1);  // that has the column
-      for (int i = begin; i < end; ++i) {
-        const auto first = static_cast<std::ptrdiff_t>(piece.columns.size());
-        find(i, [&](int column) {
-          if (std::exchange(last_row[column], i) != i) piece.columns.push_back(column);
-        });
-        std::sort(piece.columns.begin() + first, piece.columns.end());
-        piece.ends.push_back(static_cast<int>(piece.columns.size()));
-      }
-    });
-  }
-  /// The sets one after another.
-  void join(std::vector<int>& start, std::vector<int>& columns) const {
-    start.assign(1, 0);
-    columns.clear();
-    for (const Piece& piece : pieces_) {
-      const int before = static_cast<int>(columns.size());
-      for (const int end : piece.ends) start.push_back(before + end);
-      columns.insert(columns.end(), piece.columns.begin(), piece.columns.end());
-    }
-  }
-
- private:
-  struct Piece {
-    std::vector<int> columns, ends;
-  };
-  int rows_;
-  std::vector<Piece> pieces_;
-};
-
 /// A row-major block as one of SmoothedMatrix.
 void round_to(float* block, const double* row_major) {
   for (int r = 0; r < 3; ++r)
@@ -158,7 +118,7 @@ void MultigridMesh::set_pattern(const std::shared_ptr<const BlockPattern>& given
 
 void MultigridMesh::set_pattern(std::vector<int> row_start, std::vector<int> columns) {
   values_.resize(9 * columns.size() + 1);
-  half_start_.clear();
+  half_ = {};
   matrix.set_pattern(std::move(row_start), std::move(columns));
 }
 
@@ -193,26 +153,21 @@ void MultigridMesh::fill(const BlockMatrix& given, const Eigen::VectorXd& shift,
 
 void MultigridMesh::find_product_pattern(MultigridMesh& coarse) {
   const std::vector<int>&start = matrix.row_start(), &columns = matrix.columns();
-  ColumnSets half(coarse.size()), whole(coarse.size());
-  half.collect(size(), [&](int i, const auto& add) {
+  half_ = ColumnSets::collect(coarse.size(), size(), [&](int i, const auto& add) {
     for (Weights::InnerIterator child(children, i); child; ++child)
       for (int k = start[child.col()]; k < start[child.col() + 1]; ++k) add(columns[k]);
   });
-  std::vector<int> half_start, coarse_start, coarse_columns;
-  half.join(half_start, half_columns_);
-  whole.collect(coarse.size(), [&](int i, const auto& add) {
-    for (int k = half_start[i]; k < half_start[i + 1]; ++k)
-      for (Weights::InnerIterator parent(parents, half_columns_[k]); parent; ++parent)
+  ColumnSets whole = ColumnSets::collect(coarse.size(), coarse.size(), [&](int i, const auto& add) {
+    for (int k = half_.row_start[i]; k < half_.row_start[i + 1]; ++k)
+      for (Weights::InnerIterator parent(parents, half_.columns[k]); parent; ++parent)
         add(static_cast<int>(parent.col()));
     add(i);  // also where no child of the vertex has a block
   });
-  whole.join(coarse_start, coarse_columns);
-  coarse.set_pattern(std::move(coarse_start), std::move(coarse_columns));
-  half_start_ = std::move(half_start);
+  coarse.set_pattern(std::move(whole.row_start), std::move(whole.columns));
 }
 
 double MultigridMesh::make_product(MultigridMesh& coarse) {
-  if (half_start_.empty()) find_product_pattern(coarse);
+  if (half_.row_start.empty()) find_product_pattern(coarse);
   SmoothedMatrix& to = coarse.matrix;
   const std::vector<int>&start = matrix.row_start(), &columns = matrix.columns();
   const std::vector<int>&to_start = to.row_start(), &to_columns = to.columns();
@@ -220,8 +175,8 @@ double MultigridMesh::make_product(MultigridMesh& coarse) {
     BlockRow half(size()), sums(coarse.size());
     double count = 0;
     for (int i = begin; i < end; ++i) {
-      const int* half_columns = half_columns_.data() + half_start_[i];
-      const int half_count = half_start_[i + 1] - half_start_[i];
+      const int* half_columns = half_.columns.data() + half_.row_start[i];
+      const int half_count = half_.row_start[i + 1] - half_.row_start[i];
       half.clear(half_columns, half_count);
       for (Weights::InnerIterator child(children, i); child; ++child) {
         const int first = start[child.col()], last = start[child.col() + 1];

@@ -5,6 +5,7 @@
 
 #include "core/kernel/interfaces/prolongation_matrix.h"
 #include "core/numerics/linear_algebra/block_matrix.h"
+#include "core/numerics/linear_algebra/column_sets.h"
 #include "core/numerics/multigrid/smoother.h"
 
 namespace drape {
@@ -53,8 +54,7 @@ struct MultigridMesh {
   // The block of a given matrix that each block is, complemented if transposed; of this pattern.
   std::vector<int> source_;
   std::shared_ptr<const BlockPattern> pattern_;
-  // The columns of each row of Pᵀ A; none if the matrix has another pattern by now.
-  std::vector<int> half_start_, half_columns_;
+  ColumnSets half_;  // of Pᵀ A; without rows if the matrix has another pattern by now
 };
 
 }  // namespace drape

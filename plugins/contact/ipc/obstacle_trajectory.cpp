@@ -8,8 +8,8 @@
 #include "core/kernel/threads/parallel.h"
 #include "core/numerics/contact/pair_geometry.h"
 #include "core/numerics/linear_algebra/interpolate.h"
-#include "core/numerics/linear_algebra/same_entries.h"
 #include "core/numerics/mesh/rotation.h"
+#include "core/numerics/mesh/same_entries.h"
 #include "plugins/contact/ipc/pair_on_segment.h"
 
 namespace drape::ipc {

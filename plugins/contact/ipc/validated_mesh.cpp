@@ -4,8 +4,8 @@
 #include <stdexcept>
 
 #include "core/kernel/plugin/refused_parameters.h"
-#include "core/numerics/linear_algebra/same_entries.h"
 #include "core/numerics/mesh/check.h"
+#include "core/numerics/mesh/same_entries.h"
 #include "core/numerics/mesh_files/io.h"
 #include "core/numerics/patterns/primitives.h"
 

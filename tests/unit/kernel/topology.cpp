@@ -4,7 +4,7 @@
 #include <set>
 #include <utility>
 
-#include "core/numerics/linear_algebra/same_entries.h"
+#include "core/numerics/mesh/same_entries.h"
 #include "core/numerics/patterns/generate.h"
 
 using namespace drape;
