@@ -2,13 +2,11 @@
 
 A study: `what` it is; the `minutes` that it may take, over all calls, on two cores (at most eight hours in sum); whether its
 times are compared (`timed`: one process at a time, all cores, on an idle machine) or only its iterations and flops (one thread a
-run, a run a core); the `threads` of a timed one that does not take all cores;
-`starts`; the commands that `run` it in {out}, which go on where they were cut; those that `gather` its records, a first word
-">FILE" storing what the rest prints; its `records` in benchmarks/results; `meshes` of data/ that it needs; what else it
-`needs` in {build}, and how to get it; a command that is to `check` what others have built, and says what is missing; commands
-to `attempt`, whose failure is what is recorded; whether a run that is refused, or exceeds its sweep's time limit, is one of
-the `failures` that it records; whether its record may be `partial`, of the scenes that have run; whether what `gather` prints
-is a table of `scenes`.
+run, a run a core); the `threads` of a timed one that does not take all cores; `starts`; the commands that `run` it in {out}, which
+go on where they were cut; those that `gather` its records, a first word ">FILE" storing what the rest prints; its `records` in
+benchmarks/results; `meshes` of data/ that it needs; what else it `needs` in {build}, and how to get it; a command that is to `check`
+what others have built, and says what is missing; whether a run that is refused, or exceeds its sweep's time limit, is one of the
+`failures` that it records; whether its record may be `partial`, of the scenes that have run; whether what `gather` prints is a table of `scenes`.
 """
 
 MESHES = ["bunny.ply", "armadillo.ply"]
@@ -54,8 +52,8 @@ STUDIES = {
         "run": [["env", "PYTHONPATH={build}/python", "benchmarks/blender/compare", "{out}/blender.json"]],
         "gather": [["cp", "{out}/blender.json", "{results}/"]], "records": ["blender.json"]},
     "scale": {
-        "what": "an iteration by the number of vertices, 6K to 371K, and with a million", "minutes": 30, "timed": True, "starts": 3,
-        "run": [sweep("scale")], "attempt": [sweep("scale_million", "{out}/million") + ["--allow-memory"]],
+        "what": "an iteration by the number of vertices, 16K to a million", "minutes": 30, "timed": True, "starts": 1,
+        "run": [sweep("scale") + ["--allow-memory"]],
         "gather": [["benchmarks/scale", "{out}", "{results}/scale.json"]], "records": ["scale.json"]},
     "previews": previews("previews", "six scenes to 5.9K vertices", 35, meshes=MESHES),
     "four_levels": previews("four_levels", "six scenes with a fourth level", 60, meshes=MESHES),
