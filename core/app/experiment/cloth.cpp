@@ -92,8 +92,8 @@ constexpr double max_finest_vertices = 4e7;
 constexpr double max_vertex_ratio = 2;
 
 // Peak memory is 0.1 GB for the program and then grows as n log₂ n, as factors of plane meshes do. The
-// constant is the largest of the runs in benchmarks/results/table1.json (peak_memory_bytes) and scale.json
-// (peak_bytes), of 98K to a million vertices: 2000 bytes around the cube, 920 to 1740 elsewhere.
+// constant is that of the cube with a factor in double precision, which any solve may fall back on. The runs
+// in benchmarks/results/table1.json (peak_memory_bytes) and scale.json (peak_bytes) take 500 to 1300 bytes.
 constexpr double program = 1e8, bytes_each = 2000;
 
 std::string about(double number) {
