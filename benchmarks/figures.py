@@ -263,7 +263,7 @@ def blender():
 
 def scale():
     record = read("scale.json")
-    rows = [[str(r["vertices"]), figure(r["iterations"]), figure(r["seconds"], 2), figure(r["total_seconds"], 2), figure(r["peak_bytes"] / 1e9, 2)]
+    rows = [[str(r["vertices"]), figure(r["iterations"]), figure(r["seconds"], 2), figure(r["total_seconds"], 3), figure(r["peak_bytes"] / 1e9, 2)]
             for r in record["rows"]]
     exponents = record["exponents"]
     rows.append(["exponent", "", figure(exponents["seconds"], 3), "", figure(exponents["peak_bytes"], 3)])

@@ -77,7 +77,8 @@ TEST_CASE("A forward sweep leaves the residual of what it found") {
     for (int c = 0; c < 3; ++c) expected.push_back(v[c]);
   e.each_block([&](int i, int j, int) {
     for (int row = 0; row < 3; ++row)
-      for (int c = 0; c < 3; ++c) expected[3 * i + row] -= double{PiecewiseMatrix::entry(i, j, row, c)} * x[j][c];
+      for (int c = 0; c < 3; ++c)
+        expected[3 * i + row] -= double{PiecewiseMatrix::entry(i, j, row, c)} * x[j][c];
   });
   double largest = 0;
   for (int i = 0; i < PiecewiseMatrix::n; ++i)
