@@ -153,17 +153,13 @@ def ablations():
 
 def decrements():
     """PCS and the direct solve of the dragon, levels ended at a decrement."""
-    direct = {r["seed"]: r for r in runs("dragon_decrements", "newton")}
-    # What a direct solve that was ended early took is a bound.
-    ended = lambda x: x["status"] not in CONVERGED  # noqa: E731
+    direct = {r["seed"]: r["seconds"] for r in runs("dragon_decrements", "newton")}
     rows = []
     for method in ("pcs", "newton"):
         r = runs("dragon_decrements", method)
-        rows.append([method + (", ended early" if any(map(ended, r)) else ""), ", ".join(figure(n) for n in iterations(r)),
-                     seconds_text([x["seconds_of_preview"] for x in r]),
-                     ("> " if any(map(ended, r)) else "") + seconds_text([x["seconds"] for x in r]),
-                     ("< " if method == "pcs" and any(map(ended, direct.values())) else "")
-                     + with_range([x["seconds"] / direct[x["seed"]]["seconds"] for x in r], lambda v: figure(v, 2)),
+        name = method if all(x["status"] in CONVERGED for x in r) else f"{method}, ended early"
+        rows.append([name, ", ".join(figure(n) for n in iterations(r)), seconds_text([x["seconds_of_preview"] for x in r]),
+                     seconds_text([x["seconds"] for x in r]), with_range([x["seconds"] / direct[x["seed"]] for x in r], lambda v: figure(v, 2)),
                      with_range([x["energy"] for x in r], lambda v: figure(v, 4)),
                      with_range([x["force_residual"] for x in r], lambda v: figure(v, 2))])
     # No comment for docs_figures: ratios start by start stand in no record.
