@@ -113,19 +113,19 @@ void MultigridMesh::set_pattern(const std::shared_ptr<const BlockPattern>& given
     for (int k = start[begin]; k < start[end]; ++k)
       columns[k] = entries[k].column, source_[k] = entries[k].source;
   });
-  set_pattern(std::move(start), std::move(columns));
+  set_pattern({std::move(start), std::move(columns)});
 }
 
-void MultigridMesh::set_pattern(std::vector<int> row_start, std::vector<int> columns) {
-  values_.resize(9 * columns.size() + 1);
+void MultigridMesh::set_pattern(ColumnSets pattern) {
+  values_.resize(9 * pattern.columns.size() + 1);
   half_ = {};
-  matrix.set_pattern(std::move(row_start), std::move(columns));
+  matrix.set_pattern(std::move(pattern));
 }
 
 void MultigridMesh::fill(const BlockMatrix& given, const Eigen::VectorXd& shift,
                          const std::vector<char>& fixed) {
   set_pattern(given.pattern);
-  const std::vector<int>&start = matrix.row_start(), &columns = matrix.columns();
+  const std::vector<int>&start = matrix.pattern().row_start, &columns = matrix.pattern().columns;
   parallel_for(size(), SmoothedMatrix::piece, [&](int begin, int end) {
     for (int i = begin; i < end; ++i) {
       const int vertex = order[i];
@@ -152,25 +152,24 @@ void MultigridMesh::fill(const BlockMatrix& given, const Eigen::VectorXd& shift,
 }
 
 void MultigridMesh::find_product_pattern(MultigridMesh& coarse) {
-  const std::vector<int>&start = matrix.row_start(), &columns = matrix.columns();
+  const std::vector<int>&start = matrix.pattern().row_start, &columns = matrix.pattern().columns;
   half_ = ColumnSets::collect(coarse.size(), size(), [&](int i, const auto& add) {
     for (Weights::InnerIterator child(children, i); child; ++child)
       for (int k = start[child.col()]; k < start[child.col() + 1]; ++k) add(columns[k]);
   });
-  ColumnSets whole = ColumnSets::collect(coarse.size(), coarse.size(), [&](int i, const auto& add) {
+  coarse.set_pattern(ColumnSets::collect(coarse.size(), coarse.size(), [&](int i, const auto& add) {
     for (int k = half_.row_start[i]; k < half_.row_start[i + 1]; ++k)
       for (Weights::InnerIterator parent(parents, half_.columns[k]); parent; ++parent)
         add(static_cast<int>(parent.col()));
     add(i);  // also where no child of the vertex has a block
-  });
-  coarse.set_pattern(std::move(whole.row_start), std::move(whole.columns));
+  }));
 }
 
 double MultigridMesh::make_product(MultigridMesh& coarse) {
   if (half_.row_start.empty()) find_product_pattern(coarse);
   SmoothedMatrix& to = coarse.matrix;
-  const std::vector<int>&start = matrix.row_start(), &columns = matrix.columns();
-  const std::vector<int>&to_start = to.row_start(), &to_columns = to.columns();
+  const std::vector<int>&start = matrix.pattern().row_start, &columns = matrix.pattern().columns;
+  const std::vector<int>&to_start = to.pattern().row_start, &to_columns = to.pattern().columns;
   return parallel_sum(coarse.size(), product_piece, [&](int begin, int end) {
     BlockRow half(size()), sums(coarse.size());
     double count = 0;
@@ -206,9 +205,9 @@ bool MultigridMesh::copy_to(BlockMatrix& to) const {
   std::vector<int> start = {0}, columns;
   std::vector<double> upper;
   for (int i = 0; i < size(); ++i) {
-    for (int k = matrix.row_start()[i]; k < matrix.row_start()[i + 1]; ++k) {
-      if (matrix.columns()[k] < i) continue;
-      columns.push_back(matrix.columns()[k]);
+    for (int k = matrix.pattern().row_start[i]; k < matrix.pattern().row_start[i + 1]; ++k) {
+      if (matrix.pattern().columns[k] < i) continue;
+      columns.push_back(matrix.pattern().columns[k]);
       const double* block = &values_[9 * static_cast<std::size_t>(k)];
       upper.insert(upper.end(), block, block + 9);
     }

@@ -46,7 +46,7 @@ struct MultigridMesh {
  private:
   void resize();
   void set_pattern(const std::shared_ptr<const BlockPattern>& given);
-  void set_pattern(std::vector<int> row_start, std::vector<int> columns);
+  void set_pattern(ColumnSets pattern);
   /// Finds which blocks Pᵀ A and Pᵀ A P have.
   void find_product_pattern(MultigridMesh& coarse);
 

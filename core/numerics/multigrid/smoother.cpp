@@ -31,20 +31,20 @@ struct Products {
 
 }  // namespace
 
-void SmoothedMatrix::set_pattern(std::vector<int> row_start, std::vector<int> columns) {
-  row_start_ = std::move(row_start);
-  columns_ = std::move(columns);
-  place_.resize(columns_.size());
+void SmoothedMatrix::set_pattern(ColumnSets pattern) {
+  pattern_ = std::move(pattern);
+  const std::vector<int>&row_start = pattern_.row_start, &columns = pattern_.columns;
+  place_.resize(columns.size());
   stored_columns_.clear();
-  stored_columns_.reserve(columns_.size());
+  stored_columns_.reserve(columns.size());
   const auto store = [&](Part& part, const auto& belongs) {
-    part.resize(row_start_.size());
+    part.resize(row_start.size());
     for (int i = 0; i < rows(); ++i) {
       part[i] = static_cast<int>(stored_columns_.size());
-      for (int k = row_start_[i]; k < row_start_[i + 1]; ++k) {
-        if (!belongs(i, columns_[k])) continue;
+      for (int k = row_start[i]; k < row_start[i + 1]; ++k) {
+        if (!belongs(i, columns[k])) continue;
         place_[k] = static_cast<int>(stored_columns_.size());
-        stored_columns_.push_back(columns_[k]);
+        stored_columns_.push_back(columns[k]);
       }
     }
     part.back() = static_cast<int>(stored_columns_.size());
@@ -54,7 +54,7 @@ void SmoothedMatrix::set_pattern(std::vector<int> row_start, std::vector<int> co
   store(elsewhere_, [](int i, int j) { return j / piece != i / piece; });
   Part diagonal;
   store(diagonal, [](int i, int j) { return j == i; });
-  values_.resize(9 * columns_.size() + 4);
+  values_.resize(9 * columns.size() + 4);
 }
 
 bool SmoothedMatrix::finish() {

@@ -2,6 +2,8 @@
 
 #include <vector>
 
+#include "core/numerics/linear_algebra/column_sets.h"
+
 namespace drape {
 
 /// Four numbers in single precision: a vertex's three and one of padding.
@@ -17,16 +19,14 @@ class SmoothedMatrix {
  public:
   static constexpr int piece = 4096;  ///< rows
 
-  /// Takes the columns of the blocks of each row, ascending, with the diagonal; row i has those from
-  /// row_start[i] to row_start[i + 1]. Makes room for the values.
-  void set_pattern(std::vector<int> row_start, std::vector<int> columns);
+  /// Takes the columns of each row's blocks, the diagonal among them, and makes room for their values.
+  void set_pattern(ColumnSets pattern);
+  const ColumnSets& pattern() const { return pattern_; }
 
-  int rows() const { return static_cast<int>(row_start_.size()) - 1; }
-  const std::vector<int>& row_start() const { return row_start_; }  ///< rows + 1
-  const std::vector<int>& columns() const { return columns_; }
-  /// The 9 numbers of the k-th block of columns(), column by column.
+  int rows() const { return static_cast<int>(pattern_.row_start.size()) - 1; }
+  /// The 9 numbers of the k-th block of the pattern, column by column.
   float* block(int k) { return values_.data() + 9 * static_cast<std::size_t>(place_[k]); }
-  double flops_of_product() const { return 18.0 * static_cast<double>(columns_.size()); }
+  double flops_of_product() const { return 18.0 * static_cast<double>(pattern_.columns.size()); }
 
   /// Inverts the diagonal blocks. Returns false if one is not positive definite.
   bool finish();
@@ -37,8 +37,8 @@ class SmoothedMatrix {
   void postsmooth(const std::vector<Float4>& b, std::vector<Float4>& x, std::vector<Float4>& old) const;
 
  private:
-  /// Blocks of one kind, by rows as in row_start_, but counted in the order in which they are stored: a sweep
-  /// reads memory from one end to the other. That takes a third of the time that leaps take.
+  /// Where the stored blocks of one kind begin, row by row, and end. A sweep reads them in the order in which
+  /// they are stored, which takes a third of the time of leaps through memory.
   using Part = std::vector<int>;
 
   Float4 sum(const Part& part, int row, const std::vector<Float4>& x) const;
@@ -48,9 +48,9 @@ class SmoothedMatrix {
     return inverse[0] * b[0] + inverse[1] * b[1] + inverse[2] * b[2];
   }
 
-  std::vector<int> row_start_, columns_;
+  ColumnSets pattern_;
   std::vector<int> place_;           // where each block is stored, in blocks
-  Part below_, above_, elsewhere_;   // blocks of the row's own piece before and behind the diagonal; others
+  Part below_, above_, elsewhere_;   // blocks of the row's own piece before and after the diagonal; others
   std::vector<int> stored_columns_;  // in the order of the values, the diagonal last
   std::vector<float> values_;        // 9 a block, and some padding at the end
   std::vector<float> raise_;         // of each row's diagonal

@@ -30,7 +30,7 @@ struct PiecewiseMatrix {
         if (j >= 0 && j < n) columns.push_back(j);
       start.push_back(static_cast<int>(columns.size()));
     }
-    matrix.set_pattern(start, columns);
+    matrix.set_pattern({start, columns});
     each_block([&](int i, int j, int k) {
       for (int c = 0; c < 3; ++c)
         for (int r = 0; r < 3; ++r) matrix.block(k)[3 * c + r] = entry(i, j, r, c);
@@ -40,8 +40,8 @@ struct PiecewiseMatrix {
   template <class Visit>
   void each_block(const Visit& visit) const {
     for (int i = 0; i < n; ++i)
-      for (int k = matrix.row_start()[i]; k < matrix.row_start()[i + 1]; ++k)
-        visit(i, matrix.columns()[k], k);
+      for (int k = matrix.pattern().row_start[i]; k < matrix.pattern().row_start[i + 1]; ++k)
+        visit(i, matrix.pattern().columns[k], k);
   }
   std::vector<Float4> vectors() {
     std::uniform_real_distribution<float> uniform(-1, 1);
