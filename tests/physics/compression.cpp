@@ -110,7 +110,7 @@ TEST_CASE("A coarse strip between clamps has about the energy of the buckled clo
       const LevelModel plain = strip.model(0, membrane);
       const double finest = strip.solved(strip.model(levels_below, membrane)) / strip.euler(),
                    coarse = strip.solved(plain) / strip.euler(),
-                   buckling = strip.solved(plain.with_buckling_membranes(levels_below)) / strip.euler();
+                   buckling = strip.solved(plain.with_effective_membranes(levels_below)) / strip.euler();
       row("%12s %10d %10.3f %14.3f %14.3f", membrane.c_str(), cells, finest, coarse, buckling);
       INFO(membrane << ", " << cells << " coarse edges");
       // Hinges bend over half a cell on either side, so a strip with clamps is longer by a cell: 1/8 of h on
@@ -129,7 +129,7 @@ TEST_CASE("A membrane that buckles on coarse levels is the plain one in tension"
     stretchy.poisson_ratio = 0.3;
     const Level level = Level::of(0, random_triangulation({0.6, 0.5}, 200, 3));
     const LevelModel plain(level, stretchy, energies(membrane), {}),
-        buckling = plain.with_buckling_membranes(1);
+        buckling = plain.with_effective_membranes(1);
     Positions x = level.rest.vertices;
     for (Eigen::Index i = 0; i < x.rows(); ++i) {
       x(i, 0) *= 1.05 + 0.03 * x(i, 1);
@@ -161,7 +161,7 @@ TEST_CASE("A strip that hangs or bends under its weight is the same with a membr
     for (int i = 0; i < level.vertex_count(); ++i)
       if (level.rest.vertices(i, 0) < (hangs ? 1e-9 : 0.051))
         clamped.push_back({i, level.rest.vertices.row(i).transpose()});
-    const LevelModel plain(level, m, all, clamped), buckling = plain.with_buckling_membranes(2);
+    const LevelModel plain(level, m, all, clamped), buckling = plain.with_effective_membranes(2);
     const auto end = [&](const LevelModel& model) {
       PlainObjective objective(model);
       NewtonParameters newton;
@@ -201,7 +201,7 @@ TEST_CASE("The membrane energy of a rolled sheet falls with h as of chords, up t
       return model.value(x, Roles{EnergyRole::membrane}) / (side * side);
     };
     const LevelModel model(level, fabric, energies("stvk"), {});
-    const double plain = density(model), buckling = density(model.with_buckling_membranes(levels_below));
+    const double plain = density(model), buckling = density(model.with_effective_membranes(levels_below));
     const double elastic = stiffness * strain * strain / 2;
     const double wrinkled =
         bound >= stiffness * strain ? elastic : bound * strain - bound * bound / (2 * stiffness);
@@ -225,7 +225,7 @@ TEST_CASE("A sheared panel carries the stress of a tension field", "[physics]") 
       m.poisson_ratio = nu;
       const Level level = Level::of(0, grid({0.4, 0.2}, 9, 5, Diagonals::one_way));
       const LevelModel plain(level, m, energies(membrane), {}),
-          buckling = plain.with_buckling_membranes(levels_below);
+          buckling = plain.with_effective_membranes(levels_below);
       const auto stress = [&](const LevelModel& model) {
         const auto energy = [&](double gamma) {
           Positions x = level.rest.vertices;

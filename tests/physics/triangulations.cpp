@@ -9,7 +9,7 @@ using namespace drape;
 
 namespace {
 
-constexpr double density = 1000, strip_thickness = 0.01;
+constexpr double strip_density = 1000, strip_thickness = 0.01;
 
 /// A strip of cells × across square cells' size along x, clamped where x is up to one cell. On grids the
 /// clamp is in the middle of that cell (see BeamStrip), on others somewhere in it: L = (cells - 1/2) cells is
@@ -32,7 +32,7 @@ struct Strip {
     Solved s = solve_yaml(
         "name: strip\ncloth: {shape: rectangle, triangulation: " + triangulation + ", size: [" +
         text(length()) + ", " + text(width()) + "]" + counts +
-        "}\nlevels: 1\nmaterial: {density: " + text(density) + ", thickness: " + text(strip_thickness) +
+        "}\nlevels: 1\nmaterial: {density: " + text(strip_density) + ", thickness: " + text(strip_thickness) +
         ", membrane_modulus: 1e8, bending_modulus: " + text(modulus) +
         ", poisson_ratio: 0}\npins: [{region: box, lower: [-1, -1, -1], upper: [" + text(1.01 * cell()) +
         ", 1, 1]}]\nenergies: [neo_hookean, " + bending + ", " + load +
@@ -98,7 +98,7 @@ TEST_CASE(
     std::vector<double> errors;
     for (const int cells : {10, 20, 40}) {
       const Strip strip{triangulation, cells, cells / 5};
-      const double stiffness = density * standard_gravity * strip_thickness / gamma;
+      const double stiffness = strip_density * standard_gravity * strip_thickness / gamma;
       const Solved by_hinge = strip.solved("hinge", stiffness, "gravity"),
                    by_midedge = strip.solved("midedge_bending", stiffness, "gravity");
       const double twist = strip.twist(by_midedge);

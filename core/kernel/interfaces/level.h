@@ -17,6 +17,9 @@ struct Level {
   Stencils hinges;              ///< h×4, topology.hinges
   ElementOrder triangle_order;  ///< summation order for energies of triangles
   ElementOrder hinge_order;     ///< summation order for energies of hinges
+  /// m, factors on the stiffness of a membrane's triangles [1], as a coarse level has them at lone pins
+  /// (Energy::bind_buckling); empty: all are 1.
+  Eigen::VectorXd softening;
 
   /// Builds a level from `rest`, which must have passed check_mesh.
   static Level of(int index, TriangleMesh rest);

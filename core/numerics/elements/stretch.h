@@ -46,7 +46,7 @@ struct PrincipalStretch {
 /// Deformation gradient of a triangle: F = [a e₁, b e₁ + c e₂] (3×2), e₁ = x₁ - x₀, e₂ = x₂ - x₀.
 struct RestTriangle {
   double a, b, c;  ///< inverse rest edges in the triangle's own plane [1/m]
-  double area;     ///< [m²]
+  double area;     ///< [m²]; of a level's triangle, times its softening
 
   /// From the rest edge vectors [m]; not finite if they span no area.
   static RestTriangle of(const Eigen::Vector3d& e1, const Eigen::Vector3d& e2) {

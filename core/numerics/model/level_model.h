@@ -71,9 +71,10 @@ class LevelModel {
   /// Root mean square of the external forces per area over the free vertices at x [Pa].
   double load_pressure(const Positions& x) const;
 
-  /// The model with membranes that buckle below the mesh (Energy::bind_buckling), for a level `levels_below`
-  /// ≥ 1 below the finest. Its contacts and other energies are shared with this model.
-  LevelModel with_buckling_membranes(int levels_below) const;
+  /// The model with membranes that buckle below the mesh (Energy::bind_buckling) and give way at lone pins
+  /// (softening_at_pins), for a level `levels_below` ≥ 1 below the finest. Its contacts and other energies
+  /// are shared with this model.
+  LevelModel with_effective_membranes(int levels_below, const std::vector<int>& lone_pins = {}) const;
 
   /// The energies of role `limit`, S_l.
   const std::vector<const BoundEnergy*>& limits() const { return limits_; }

@@ -10,8 +10,8 @@ struct PcsSolver : Progression {
   ProxyInterpolation seen_by;
   ProxyMatrix hessian = ProxyMatrix::galerkin;
   int depth = 2;
-  bool buckles = true;  ///< membranes of coarse levels, under compression
-  bool relaxes = true;  ///< a coarse level, after its proxy
+  bool effective = true;  ///< membranes of coarse levels
+  bool relaxes = true;    ///< a coarse level, after its proxy
 
   static void declare(Declaration<PcsSolver>& d) {
     d.add_section("interpolation", &PcsSolver::seen_by)
@@ -27,11 +27,11 @@ struct PcsSolver : Progression {
         .description(
             "how many levels above a coarse level the Hessian is that the Galerkin product restricts, at "
             "most the finest; for energies that are evaluated on the finest level");
-    d.add_choice("compression", &PcsSolver::buckles, {{"elastic", false}, {"buckling", true}})
+    d.add_choice("membranes", &PcsSolver::effective, {{"plain", false}, {"effective", true}})
         .description(
-            "how membranes of coarse levels answer compression, unless they are seen by the refiner: by "
-            "their law, or at the stress at which the cloth buckles below the mesh")
-        .source("PCS section 4 for elastic; buckling is a departure (docs/theory/locking.md)");
+            "laws of membranes on coarse levels, unless they are seen by the refiner: their own, or what the "
+            "finest level's amount to there, which buckle below the mesh and give way at lone pins")
+        .source("PCS section 4 for plain; effective is a departure (docs/theory/locking.md)");
     d.add_choice("relaxation", &PcsSolver::relaxes, {{"plain", true}, {"none", false}})
         .description(
             "what a coarse level minimises after its proxy: its own energy, which makes folds as "
@@ -46,7 +46,7 @@ struct PcsSolver : Progression {
     if (level == problem.finest()) return Progression::objective(problem, level);
     return std::make_unique<ProxyObjective>(
         problem, level, proxy_parts(problem, level, depth, seen_by),
-        ProxyOptions{hessian, relaxes, buckles && seen_by.membrane == Interpolation::midpoint});
+        ProxyOptions{hessian, relaxes, effective && seen_by.membrane == Interpolation::midpoint});
   }
 };
 

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "core/numerics/model/lone_pins.h"
+
 namespace drape {
 
 namespace {
@@ -73,9 +75,9 @@ ProxyObjective::ProxyObjective(const Problem& problem, int level, const std::vec
 }
 
 void ProxyObjective::model_changed() {
-  if (options_.buckles)
-    buckling_ =
-        std::make_shared<const LevelModel>(model().with_buckling_membranes(problem_.finest() - level_));
+  if (options_.effective)
+    effective_ = std::make_shared<const LevelModel>(model().with_effective_membranes(
+        problem_.finest() - level_, lone_pins(model(), *problem_.model(problem_.finest()))));
   for (FinerPart& finer : finer_) {
     finer.model = problem_.model(level_ + finer.part.above);
     finer.matrix_model =

@@ -29,8 +29,8 @@ enum class ProxyMatrix {
 /// Choices of a proxy beside its parts.
 struct ProxyOptions {
   ProxyMatrix matrix = ProxyMatrix::galerkin;
-  bool relaxes = false;  ///< switch_to_plain() replaces the parts by the level's own energies
-  bool buckles = false;  ///< the level's own membranes buckle below its mesh (Energy::bind_buckling)
+  bool relaxes = false;    ///< switch_to_plain() replaces the parts by the level's own energies
+  bool effective = false;  ///< the level's own membranes are LevelModel::with_effective_membranes
 };
 
 /// Proxy F_l(x) = Σ parts(x) + B_l(x) + D_l(x) + S_l(x): shell energies and loads of finer levels as
@@ -41,7 +41,7 @@ class ProxyObjective : public Objective {
   /// Refers to `problem`.
   ProxyObjective(const Problem& problem, int level, const std::vector<ProxyPart>& parts,
                  const ProxyOptions& options);
-  bool is_proxy() const override { return !is_plain_ || options_.buckles; }
+  bool is_proxy() const override { return !is_plain_ || options_.effective; }
   bool switch_to_plain() override;
 
  protected:
@@ -64,7 +64,7 @@ class ProxyObjective : public Objective {
   };
 
   /// The level's own energies.
-  const LevelModel& own_model() const { return buckling_ ? *buckling_ : model(); }
+  const LevelModel& own_model() const { return effective_ ? *effective_ : model(); }
   void build_pattern(const std::vector<std::shared_ptr<const BlockPattern>>& patterns);
   void add_own_hessians(const Positions& x, Projection projection, BlockMatrix& matrix) const;
 
@@ -72,8 +72,8 @@ class ProxyObjective : public Objective {
   int level_;
   ProxyOptions options_;
   bool is_plain_ = false;
-  std::shared_ptr<const LevelModel> buckling_;  // the level's model with membranes that buckle, or null
-  std::vector<ProxyPart> own_;                  // parts of the level's own model
+  std::shared_ptr<const LevelModel> effective_;  // the level's model with effective membranes, or null
+  std::vector<ProxyPart> own_;                   // parts of the level's own model
   std::vector<FinerPart> finer_;
   BlockMatrix own_matrix_, matrix_;  // of own_, if its pattern differs from the sum's; the sum
   std::vector<int> own_slots_;       // index in matrix_ of each block of own_matrix_

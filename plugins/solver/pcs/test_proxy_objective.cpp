@@ -231,7 +231,7 @@ TEST_CASE("Membranes of coarse levels buckle below the mesh, before the proxy re
           "[proxy_objective]") {
   const Fixture f("1e4");
   const LevelModel& plain = *f.problem.models[0];
-  const LevelModel buckling = plain.with_buckling_membranes(2);
+  const LevelModel buckling = plain.with_effective_membranes(2);
   Positions x = f.state(0);
   x.col(0) *= 0.6;
   REQUIRE(buckling.value(x, {EnergyRole::membrane}) < 0.5 * plain.value(x, {EnergyRole::membrane}));

@@ -3,6 +3,7 @@
 #include <catch2/catch.hpp>
 
 #include "core/numerics/elements/linear_energy.h"
+#include "core/numerics/model/lone_pins.h"
 #include "core/numerics/patterns/generate.h"
 #include "tests/support/refusal.h"
 
@@ -180,6 +181,34 @@ TEST_CASE("A model refuses an energy whose stencils differ from those of the mod
     }
 }
 
+TEST_CASE("A pin is lone if it holds single vertices on the coarse level and as many on the finest",
+          "[level_model]") {
+  const Level coarse = Level::of(0, grid({2, 2}, 3, 3, Diagonals::one_way)),
+              finest = Level::of(1, grid({2, 2}, 5, 5, Diagonals::one_way));
+  const auto model = [](const Level& level, const std::vector<std::pair<int, int>>& vertices) {
+    std::vector<DirichletVertex> held;
+    for (const auto& [vertex, pin] : vertices)
+      held.push_back({vertex, level.rest.vertices.row(vertex).transpose(), pin});
+    return LevelModel(level, Material(), {}, held);
+  };
+  const auto lone = [&](const std::vector<std::pair<int, int>>& here,
+                        const std::vector<std::pair<int, int>>& there) {
+    return lone_pins(model(coarse, here), model(finest, there));
+  };
+  CHECK(lone({{0, 0}, {8, 1}}, {{0, 0}, {24, 1}}) == std::vector<int>{0, 8});
+  CHECK(lone({{0, 0}, {8, 0}}, {{0, 0}, {24, 0}}) == std::vector<int>{0, 8});
+  CHECK(lone({{0, 0}, {1, 1}, {8, 2}}, {{0, 0}, {2, 1}, {24, 2}}) == std::vector<int>{8});
+  CHECK(lone({{0, 0}, {8, 1}}, {{0, 0}, {1, 0}, {24, 1}}) == std::vector<int>{8});
+  CHECK(lone({}, {}).empty());
+
+  const Eigen::VectorXd softening = softening_at_pins(coarse, {0}, 0.3, 1);
+  REQUIRE(softening.size() == 8);
+  for (int t = 0; t < 8; ++t) {
+    const bool at_pin = (coarse.rest.triangles.row(t).array() == 0).any();
+    CHECK((at_pin ? softening[t] < 0.8 && softening[t] > 0.3 : softening[t] == 1));
+  }
+}
+
 TEST_CASE("Membranes of coarse levels buckle at the stress of a clamped column of the mesh's size",
           "[level_model]") {
   const Level level = Level::of(0, grid({2, 1}, 4, 3, Diagonals::one_way));
@@ -192,11 +221,11 @@ TEST_CASE("Membranes of coarse levels buckle at the stress of a clamped column o
   // s = σ d A with σ d = 4 π² D / (h² - h_L²), h² = 2 A, h_L = h 2^-k.
   const double area = 1.0 / 6, h2 = 2 * area, pi = std::acos(-1);
   for (const int k : {1, 2, 3}) {
-    const LevelModel buckling = model.with_buckling_membranes(k);
+    const LevelModel buckling = model.with_effective_membranes(k);
     CHECK(membrane->bound == Approx(4 * pi * pi * 3 / (h2 - h2 / std::pow(4, k)) * area));
     CHECK(buckling.pattern() == model.pattern());
     CHECK(buckling.value(level.rest.vertices) == model.value(level.rest.vertices));
   }
-  LevelModel(level, Material(), {{"membrane", membrane}}, {}).with_buckling_membranes(1);
+  LevelModel(level, Material(), {{"membrane", membrane}}, {}).with_effective_membranes(1);
   CHECK(membrane->bound == 0);
 }

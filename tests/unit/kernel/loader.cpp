@@ -58,7 +58,7 @@ TEST_CASE("whoever changes a class that plugins see is told of the ABI number") 
   CHECK(sizeof(Parameter) == 560);
   CHECK(sizeof(TriangleMesh) == 64);
   CHECK(sizeof(Topology) == 168);
-  CHECK(sizeof(Level) == 424);
+  CHECK(sizeof(Level) == 440);
   CHECK(sizeof(Material) == 144);
   CHECK(sizeof(BlockMatrix) == 40);
   CHECK(sizeof(NewtonParameters) == 64);

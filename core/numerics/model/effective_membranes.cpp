@@ -1,4 +1,5 @@
-// Membranes of coarse levels, below whose mesh the cloth buckles.
+// Membranes of coarse levels that answer as the finest level's do: they buckle below the mesh, and give way
+// at lone pins.
 
 #include <cmath>
 #include <numbers>
@@ -6,6 +7,7 @@
 
 #include "core/numerics/mesh/same_entries.h"
 #include "core/numerics/model/level_model.h"
+#include "core/numerics/model/lone_pins.h"
 
 namespace drape {
 
@@ -22,16 +24,19 @@ double buckling_bound(double plate_stiffness, int levels_below) {
 
 }  // namespace
 
-LevelModel LevelModel::with_buckling_membranes(int levels_below) const {
+LevelModel LevelModel::with_effective_membranes(int levels_below, const std::vector<int>& lone_pins) const {
   double stiffness = 0;
   for (const Term& term : terms_)
     if (term.role == EnergyRole::bending) stiffness += term.kind->plate_stiffness(material_);
   const double s = buckling_bound(stiffness, levels_below);
+  Level softened = *level_;
+  if (!lone_pins.empty())
+    softened.softening = softening_at_pins(*level_, lone_pins, material_.poisson_ratio, levels_below);
   LevelModel model = *this;
   for (Term& term : model.terms_) {
     if (term.role != EnergyRole::membrane) continue;
     const Stencils plain = term.energy->stencils();
-    term.energy = term.kind->bind_buckling(*level_, material_, s);
+    term.energy = term.kind->bind_buckling(softened, material_, s);
     if (!term.energy || !same_entries(term.energy->stencils(), plain))
       throw std::runtime_error("energy " + term.name +
                                ": bind_buckling must return an energy with the stencils of bind");
