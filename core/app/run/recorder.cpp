@@ -5,9 +5,9 @@
 #include <utility>
 
 #include "core/app/experiment/declared_metrics.h"
-#include "core/app/files/iterations_file.h"
 #include "core/app/files/json_file.h"
 #include "core/app/files/machine.h"
+#include "core/app/run/iteration_columns.h"
 #include "core/app/run/recorder_files.h"
 #include "core/kernel/files/file.h"
 #include "core/kernel/files/number_text.h"
