@@ -138,7 +138,7 @@ pictures: benchmarks data
 	@[ -e $(SPHERE)/results.json ] || { echo "pictures: no run of the study sphere; make results STUDIES=sphere" >&2; exit 1; }
 	$(BUILD)/bin/drape report $(SPHERE)
 	rm -rf results/pictures && mkdir -p results/pictures
-	set -e; $(foreach s,$(SCENES),$(call draw,configs/$(s).yaml --levels 3 --method pcs --threads 1,$(notdir $(s)));)
+	set -e; $(foreach s,$(SCENES),$(call draw,configs/$(s).yaml --levels 3 --method pcs,$(notdir $(s)));)
 	$(BUILD)/bin/drape report results/pictures/tablecloth
 	set -e; $(foreach s,ribbon handkerchief,$(call draw,configs/$(s).yaml --method pcs,$(s));)
 	sed -n '/^```yaml my_curtain/,/^```$$/{/^```/!p}' README.md >results/my_curtain.yaml
