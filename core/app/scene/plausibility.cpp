@@ -5,6 +5,7 @@
 #include <tuple>
 
 #include "core/app/scene/scene_summary.h"
+#include "core/numerics/patterns/generate.h"
 #include "core/numerics/solve/start_fault.h"
 
 namespace drape {
@@ -24,9 +25,8 @@ constexpr double largest_stretch = 2;                           // of the start,
 class Warnings {
  public:
   Warnings(const Experiment& e, ConfigErrors& all) : e_(e), all_(all) {}
-  void add(const std::string& key, const std::string& message) {
-    all_.push_back({e_.location_of(key), message});
-  }
+  void add(const std::string& key, const std::string& message) { add(e_.location_of(key), message); }
+  void add(const Location& where, const std::string& message) { all_.push_back({where, message}); }
 
  private:
   const Experiment& e_;
@@ -71,6 +71,55 @@ void check_material(const ExperimentParameters& p, const SceneSummary& s, Warnin
                               ", so no fold of the cloth can form; 2 to 20 are usual; take more vertices or "
                               "levels, or check " +
                               moduli);
+}
+
+/// The membranes' and bending energies' values for a piece of cloth that is stretched, sheared and bent in
+/// every direction.
+std::vector<double> energies_of_a_piece(const Experiment& e, const Material& material, const Level& piece) {
+  Positions x = piece.rest.vertices;
+  const double size = x.col(0).maxCoeff();
+  for (Eigen::Index i = 0; i < x.rows(); ++i) {
+    const double u = x(i, 0) / size, v = x(i, 1) / size;
+    x.row(i) =
+        size * Eigen::RowVector3d(1.02 * u + 0.02 * v, 1.01 * v, 0.2 * u * u + 0.1 * v * v + 0.1 * u * v);
+  }
+  std::vector<double> values;
+  for (const NamedEnergy& named : e.energies)
+    if (Roles{EnergyRole::membrane, EnergyRole::bending}.has(named.energy->role()))
+      values.push_back(named.energy->bind(piece, material)->value(x));
+  return values;
+}
+
+/// A measured stiffness that no energy of the scene reads is a mistake in the energies.
+void check_measured(const Experiment& e, double edge, Warnings& warnings) {
+  struct Measured {
+    const char* key;
+    std::optional<double> Material::*value;
+    const char* read_by;
+  };
+  static constexpr Measured all[] = {{"warp_stiffness", &Material::warp_stiffness, "woven"},
+                                     {"weft_stiffness", &Material::weft_stiffness, "woven"},
+                                     {"shear_stiffness", &Material::shear_stiffness, "woven"},
+                                     {"warp_bending", &Material::warp_bending, "midedge_bending"},
+                                     {"weft_bending", &Material::weft_bending, "midedge_bending"},
+                                     {"bias_bending", &Material::bias_bending, "midedge_bending"},
+                                     {"bending_hysteresis", nullptr, "midedge_bending"}};
+  const Material& material = e.parameters.material;
+  const ConfigNode* written = e.source.find("material");
+  const Level piece = Level::of(0, grid({4 * edge, 4 * edge}, 5, 5, Diagonals::criss_cross));
+  for (const Measured& measured : all) {
+    const ConfigNode* node = written ? written->find(measured.key) : nullptr;
+    if (!node) continue;
+    Material other = material;
+    if (measured.value && !(other.*measured.value)) continue;
+    double& value = measured.value ? *(other.*measured.value) : other.bending_hysteresis;
+    if (value == 0) continue;
+    value *= 1.01;
+    if (energies_of_a_piece(e, material, piece) == energies_of_a_piece(e, other, piece))
+      warnings.add(node->where, std::string("no energy of this scene reads \"") + measured.key + "\"; add " +
+                                    measured.read_by +
+                                    ", which does, in place of its like, or leave the key out");
+  }
 }
 
 void check_contact(const SceneSummary& s, Warnings& warnings) {
@@ -166,6 +215,7 @@ ConfigErrors plausibility_warnings(const Experiment& e, const Scene& scene, cons
   check_size(e.parameters, s, warnings);
   check_welded(e, scene.hierarchy.levels[0], s.median_edge, warnings);
   check_material(e.parameters, s, warnings);
+  check_measured(e, s.median_edge, warnings);
   check_start(e, scene, warnings);
   check_contact(s, warnings);
   return all;

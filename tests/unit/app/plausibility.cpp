@@ -112,6 +112,22 @@ TEST_CASE("What no fabric has gets a warning that says what is usual, before a r
              Contains("of level 0; 2 to 20 are usual"));
   CHECK_THAT(warnings_of(scene_yaml("{shape: square, side: 30, vertices: 25}")),
              Contains("2: the bending length of 5.4 mm is 0.00072 edges of level 0"));
+  // Measured stiffness that the energies do not read.
+  const auto measured = [&](const std::string& keys, const std::string& energies) {
+    return warnings_of(replaced(replaced(scene_yaml(square), "0.243}", "0.243, " + keys + "}"),
+                                "neo_hookean, hinge", energies));
+  };
+  const std::string all =
+      "warp_stiffness: 30, weft_stiffness: 20, shear_stiffness: 2, warp_bending: 1e-6, weft_bending: 2e-6, "
+      "bias_bending: 1e-6, bending_hysteresis: 1e-4";
+  CHECK(measured(all, "woven, midedge_bending") == "");
+  CHECK(measured("warp_stiffness: 30, warp_bending: 2e-6", "neo_hookean, hinge") == "");
+  CHECK(
+      measured("bending_hysteresis: 1e-4", "neo_hookean, hinge") ==
+      "4: no energy of this scene reads \"bending_hysteresis\"; add midedge_bending, which does, in place of "
+      "its like, or leave the key out\n");
+  CHECK_THAT(measured(all, "stvk, quadratic_bending"),
+             Contains("shear_stiffness") && Contains("bias_bending") && !Contains("weft"));
   // d̂ above an edge.
   CHECK_THAT(warnings_of(scene_yaml(square, "", 3.18e-4, "[{type: ipc, dhat: 0.1}]")),
              Contains("contact distance dhat of 0.1 m is longer than most edges of level 0 (53 mm)"));
