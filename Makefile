@@ -132,6 +132,7 @@ FROM ?= $(patsubst %sphere,%,$(shell ls -td results/studies/*/sphere 2>/dev/null
 # The start whose PCS preview has the median distance from its final state.
 SPHERE = $(FROM)sphere/runs/base/seed_1
 LOCKING = configs/sphere.yaml --levels 3 --method pcs,pcs_loop,unrelaxed,cascadic --set 'methods.unrelaxed={type: pcs, relaxation: none}'
+LONE_PINS = configs/pinned_square.yaml --set cloth.columns=20 --set cloth.rows=20 --method pcs,plain --set 'methods.plain={type: pcs, membranes: plain}'
 SCENES = tablecloth bunny_shawl armadillo cube materials_6 pinned_square tests/cusick
 draw = $(BUILD)/bin/drape run $(1) -o results/pictures/$(2) --overwrite --no-report
 pictures: benchmarks data
@@ -145,6 +146,7 @@ pictures: benchmarks data
 	$(call draw,results/my_curtain.yaml,curtain)
 	$(call draw,configs/hard/folded.yaml --method newton,folded)
 	$(call draw,$(LOCKING),locking)
+	$(call draw,$(LONE_PINS),lone_pins)
 	@tests/browser/install $(BUILD)/tests/browser
 	DRAPE_BIN=$(abspath $(BUILD))/bin DRAPE_NODE_MODULES=$(abspath $(BUILD))/tests/browser node docs/pictures/make.mjs $(SPHERE) results/pictures
 

@@ -37,18 +37,20 @@ async function still(results, name, width, ...options) {
 /// The finest states of the gallery, some from a side that shows more than the report's.
 async function gallery() {
   const views = {bunny_shawl: '--view=-0.5,-1,0.6', ribbon: '--view=0.3,-1,0.5'};
-  for (const name of fs.readdirSync(runs).filter(name => !['tablecloth', 'locking'].includes(name)))
+  for (const name of fs.readdirSync(runs).filter(name => !['tablecloth', 'locking', 'lone_pins'].includes(name)))
     await still(path.join(runs, name), name, name === 'bunny_shawl' ? 640 : 480, ...(views[name] ? [views[name]] : []));
   await still(path.join(runs, 'bunny_shawl'), 'bunny_shawl_l0', 640, views.bunny_shawl, '--level', '0');
 }
 
-/// Levels beside each other in pages: the coarsest and the finest of the sphere, all of the locking's.
+/// Levels beside each other in pages: the coarsest and the finest of the sphere, all of the locking's, previews at lone pins and their end.
 async function levels() {
   for (const method of ['pcs', 'cascadic', 'newton'])
     for (const level of ['0', '3']) await still(sphere, `sphere_${method}_l${level}`, 480, '--method', method, '--level', level);
   for (const method of ['pcs', 'pcs_loop', 'unrelaxed', 'cascadic'])
     for (const level of ['0', '1', '2'])
       await still(path.join(runs, 'locking'), `locking_${method}_l${level}`, 480, '--method', method, '--level', level);
+  for (const [method, level] of [['plain', '0'], ['pcs', '0'], ['pcs', '3']])
+    await still(path.join(runs, 'lone_pins'), `lone_pins_${method}_l${level}`, 480, '--method', method, '--level', level, '--view=1,-2,0.15');
 }
 
 const seconds = s => s < 9.95 ? s.toFixed(1) : s.toFixed(0);
