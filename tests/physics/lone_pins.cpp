@@ -68,16 +68,19 @@ TEST_CASE("A coarse cloth hangs from a lone pin as low as the finest one", "[phy
   for (const std::string& cells : all_triangulations)
     for (const auto& [where, near] :
          {std::pair("corner", Eigen::RowVector2d(0, 0)), std::pair("other corner", Eigen::RowVector2d(1, 0)),
-          std::pair("side", Eigen::RowVector2d(0.5, 0))})
+          std::pair("side", Eigen::RowVector2d(0.5, 0)), std::pair("inside", Eigen::RowVector2d(0.25, 0.25))})
       for (const int k : {1, 2, 3}) {
         const HungSquare square(triangulated(cells, {1, 1}, 0.125), k + 1, near);
         const LevelModel coarse = square.model(0), finest = square.model(k);
-        const std::vector<int> lone = lone_pins(coarse, finest);
+        const std::vector<int> lone =
+            lone_pins(coarse, [&] { return std::make_shared<const LevelModel>(finest); });
         REQUIRE(lone.size() == 1);
         const double sag = square.sag(finest), plain = square.sag(coarse) / sag,
                      effective = square.sag(coarse.with_effective_membranes(k, lone)) / sag;
         row("%12s %14s %4d %8.3f %11.3f", cells.c_str(), where, k, plain, effective);
         INFO(cells << ", " << where << ", " << k);
-        CHECK(std::abs(effective - 1) < 0.25 * std::abs(plain - 1));
+        // Inside a one-way grid the stiffness depends on the direction, and its mean is taken.
+        CHECK(std::abs(effective - 1) < (std::string(where) == "inside" ? 0.15 : 0.06));
+        CHECK(plain < 0.85);
       }
 }

@@ -118,8 +118,8 @@ class Energy {
   /// Binds a membrane to a coarse level below whose mesh the cloth buckles: no compressive stress exceeds s /
   /// V by much, V rest area × thickness of the triangle and s [J] the same for all triangles
   /// (docs/theory/locking.md; bind_buckling_membrane makes it of an isotropic law). By default bind(): its
-  /// triangles resist compression as they do on the finest mesh. The energy of a triangle is multiplied by
-  /// the level's softening, as RestTriangle::of and material_triangles do with its area.
+  /// triangles resist compression as they do on the finest mesh. A triangle's law, but not s, is
+  /// multiplied by the level's softening: areas of RestTriangle::of and material_triangles have that factor.
   virtual std::unique_ptr<BoundEnergy> bind_buckling(const Level& level, const Material& material,
                                                      double s) const {
     (void)s;

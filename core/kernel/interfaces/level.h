@@ -8,7 +8,7 @@
 
 namespace drape {
 
-/// One resolution of one cloth: its rest shape and everything that depends on it alone. Immutable.
+/// One resolution of one cloth: its rest shape, what depends on it alone, and a softening. Immutable.
 struct Level {
   int index = 0;                ///< 0 is the coarsest
   TriangleMesh rest;            ///< rest positions X_l [m] and triangles

@@ -3,24 +3,24 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <numbers>
 
 namespace drape {
 
 namespace {
 
-std::map<int, int> vertices_by_pin(const LevelModel& model) {
-  std::map<int, int> counts;
-  for (const DirichletVertex& d : model.dirichlet()) ++counts[d.pin];
-  return counts;
+bool has_fixed_neighbour(const LevelModel& model, int vertex) {
+  const AdjacencyList& neighbours = model.level().topology.vertex_vertices;
+  return std::any_of(neighbours.begin(vertex), neighbours.end(vertex),
+                     [&](int v) { return model.fixed()[v]; });
 }
 
 /// K / (E d θ) of the triangles around a vertex [1], by linear elasticity in plane stress.
 double relative_stiffness(const Level& level, int vertex, double poisson_ratio) {
   const AdjacencyList& around = level.topology.vertex_triangles;
+  const double nu = poisson_ratio;
   Eigen::Matrix3d stiffness = Eigen::Matrix3d::Zero();
-  Eigen::Vector3d axis = Eigen::Vector3d::Zero();  // of the angle; none of a full turn
+  Eigen::Vector3d axis = Eigen::Vector3d::Zero();  // the sum of all directions in the cloth
   double angle = 0;
   for (const int* t = around.begin(vertex); t != around.end(vertex); ++t) {
     const auto corners = level.rest.triangles.row(*t);
@@ -30,30 +30,29 @@ double relative_stiffness(const Level& level, int vertex, double poisson_ratio) 
                           normal = doubled.normalized(),
                           slope = normal.cross(e2 - e1) / doubled.norm();  // of the vertex's hat function
     const Eigen::Matrix3d in_plane = Eigen::Matrix3d::Identity() - normal * normal.transpose();
-    stiffness += doubled.norm() / 4 / (1 - poisson_ratio * poisson_ratio) *
-                 ((1 + poisson_ratio) * slope * slope.transpose() +
-                  (1 - poisson_ratio) * slope.squaredNorm() * in_plane);
-    axis += doubled.norm() * slope;
-    angle += std::atan2(doubled.norm(), e1.dot(e2));
+    stiffness += doubled.norm() / 4 / (1 - nu * nu) *
+                 ((1 + nu) * slope * slope.transpose() + (1 - nu) * slope.squaredNorm() * in_plane);
+    const double own = std::atan2(doubled.norm(), e1.dot(e2));
+    axis += std::tan(own / 2) * (e1.normalized() + e2.normalized());
+    angle += own;
   }
-  const double theta = (angle + std::sin(angle)) / 2;
-  if (!level.topology.on_border[vertex]) return stiffness.trace() / 2 / theta;
-  return axis.dot(stiffness * axis) / axis.squaredNorm() / theta;
+  if (!level.topology.on_border[vertex])
+    return stiffness.trace() / 2 * (3 - nu) * (1 + nu) / (4 * std::numbers::pi);
+  const double theta = (angle + std::sin(angle)) / 2, length = axis.squaredNorm();
+  const bool is_slit = length < 1e-6;  // a full turn has no axis
+  return (is_slit ? stiffness.trace() / 2 : axis.dot(stiffness * axis) / length) / theta;
 }
 
 }  // namespace
 
-std::vector<int> lone_pins(const LevelModel& coarse, const LevelModel& finest) {
-  const std::map<int, int> here = vertices_by_pin(coarse), there = vertices_by_pin(finest);
-  const AdjacencyList& neighbours = coarse.level().topology.vertex_vertices;
+std::vector<int> lone_pins(const LevelModel& coarse,
+                           const std::function<std::shared_ptr<const LevelModel>()>& finest) {
   std::vector<int> lone;
-  for (const DirichletVertex& d : coarse.dirichlet()) {
-    const auto on_finest = there.find(d.pin);
-    if (on_finest != there.end() && on_finest->second == here.at(d.pin) &&
-        std::none_of(neighbours.begin(d.vertex), neighbours.end(d.vertex),
-                     [&](int v) { return coarse.fixed()[v]; }))
-      lone.push_back(d.vertex);
-  }
+  for (const DirichletVertex& d : coarse.dirichlet())
+    if (!has_fixed_neighbour(coarse, d.vertex)) lone.push_back(d.vertex);
+  if (lone.empty()) return lone;
+  const std::shared_ptr<const LevelModel> fine = finest();
+  std::erase_if(lone, [&](int vertex) { return has_fixed_neighbour(*fine, vertex); });
   return lone;
 }
 

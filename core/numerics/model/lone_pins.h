@@ -1,5 +1,7 @@
 #pragma once
 
+#include <functional>
+#include <memory>
 #include <vector>
 
 #include "core/numerics/model/level_model.h"
@@ -7,15 +9,18 @@
 namespace drape {
 
 /// Vertices of a coarse level at which single points hold the cloth: those with a Dirichlet condition that no
-/// neighbour has, of pins that hold as many vertices on the finest level.
-std::vector<int> lone_pins(const LevelModel& coarse, const LevelModel& finest);
+/// neighbour has, here and on the finest level, where they have the same indices. `finest` is not called for
+/// a level without such vertices.
+std::vector<int> lone_pins(const LevelModel& coarse,
+                           const std::function<std::shared_ptr<const LevelModel>()>& finest);
 
 /// Factor on the stiffness of each triangle of a level `levels_below` = k below the finest: below 1 around
 /// lone pins, so that the level hangs from them as low as the finest one does (docs/theory/locking.md).
-/// Below a point that holds the force F the tension is F / (θ r) at a distance r, θ = (α + sin α) / 2 for
-/// cloth that fills an angle α there (Michell's wedge; Timoshenko and Goodier 1951, section 38). So the cloth
-/// hangs lower by F ln 2 / (E d θ) with each refinement. This adds that compliance k times to 1 / K, K the
-/// stiffness of the vertex between resting neighbours along the angle's axis, or its mean inside the cloth.
+/// At a distance r below a point that holds the force F the tension is F / (θ r): θ = (α + sin α) / 2 for
+/// cloth that fills an angle α at its border (Michell's wedge), 4π / ((3 - ν) (1 + ν)) inside the cloth
+/// (Kelvin). So the cloth hangs lower by F ln 2 / (E d θ) with each refinement. This adds that compliance k
+/// times to 1 / K, K the stiffness of the vertex between resting neighbours along the angle's axis, or its
+/// mean inside the cloth (Timoshenko and Goodier 1970, sections 38 and 42).
 Eigen::VectorXd softening_at_pins(const Level& level, const std::vector<int>& pins, double poisson_ratio,
                                   int levels_below);
 

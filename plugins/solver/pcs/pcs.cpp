@@ -29,8 +29,9 @@ struct PcsSolver : Progression {
             "most the finest; for energies that are evaluated on the finest level");
     d.add_choice("membranes", &PcsSolver::effective, {{"plain", false}, {"effective", true}})
         .description(
-            "laws of membranes on coarse levels, unless they are seen by the refiner: their own, or what the "
-            "finest level's amount to there, which buckle below the mesh and give way at lone pins")
+            "membranes of coarse levels, unless they are seen by the refiner; plain: their own laws; "
+            "effective: "
+            "as the finest level's act, which buckle below the coarse mesh and give way at lone pins")
         .source("PCS section 4 for plain; effective is a departure (docs/theory/locking.md)");
     d.add_choice("relaxation", &PcsSolver::relaxes, {{"plain", true}, {"none", false}})
         .description(

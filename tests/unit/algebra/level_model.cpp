@@ -3,9 +3,11 @@
 #include <catch2/catch.hpp>
 
 #include "core/numerics/elements/linear_energy.h"
+#include "core/numerics/hierarchy/hierarchy.h"
 #include "core/numerics/model/lone_pins.h"
 #include "core/numerics/patterns/generate.h"
 #include "tests/support/refusal.h"
+#include "tests/support/registry.h"
 
 using namespace drape;
 
@@ -181,25 +183,23 @@ TEST_CASE("A model refuses an energy whose stencils differ from those of the mod
     }
 }
 
-TEST_CASE("A pin is lone if it holds single vertices on the coarse level and as many on the finest",
+TEST_CASE("A pinned vertex is lone if none of its neighbours is pinned, on the coarse level and the finest",
           "[level_model]") {
-  const Level coarse = Level::of(0, grid({2, 2}, 3, 3, Diagonals::one_way)),
-              finest = Level::of(1, grid({2, 2}, 5, 5, Diagonals::one_way));
-  const auto model = [](const Level& level, const std::vector<std::pair<int, int>>& vertices) {
+  const Hierarchy levels =
+      Hierarchy::of(grid({2, 2}, 3, 3, Diagonals::one_way), *make_plugin_from<Refiner>("midpoint"), 2);
+  const Level &coarse = levels.levels[0], &finest = levels.levels[1];
+  const auto model = [](const Level& level, const std::vector<int>& vertices) {
     std::vector<DirichletVertex> held;
-    for (const auto& [vertex, pin] : vertices)
-      held.push_back({vertex, level.rest.vertices.row(vertex).transpose(), pin});
-    return LevelModel(level, Material(), {}, held);
+    for (const int v : vertices) held.push_back({v, level.rest.vertices.row(v).transpose()});
+    return std::make_shared<const LevelModel>(level, Material(), std::vector<NamedEnergy>{}, held);
   };
-  const auto lone = [&](const std::vector<std::pair<int, int>>& here,
-                        const std::vector<std::pair<int, int>>& there) {
-    return lone_pins(model(coarse, here), model(finest, there));
+  const auto lone = [&](const std::vector<int>& here, const std::vector<int>& there) {
+    return lone_pins(*model(coarse, here), [&] { return model(finest, there); });
   };
-  CHECK(lone({{0, 0}, {8, 1}}, {{0, 0}, {24, 1}}) == std::vector<int>{0, 8});
-  CHECK(lone({{0, 0}, {8, 0}}, {{0, 0}, {24, 0}}) == std::vector<int>{0, 8});
-  CHECK(lone({{0, 0}, {1, 1}, {8, 2}}, {{0, 0}, {2, 1}, {24, 2}}) == std::vector<int>{8});
-  CHECK(lone({{0, 0}, {8, 1}}, {{0, 0}, {1, 0}, {24, 1}}) == std::vector<int>{8});
-  CHECK(lone({}, {}).empty());
+  CHECK(lone({0, 8}, {0, 8}) == std::vector<int>{0, 8});
+  CHECK(lone({0, 1, 8}, {0, 1, 8}) == std::vector<int>{8});
+  CHECK(lone({0, 8}, {0, *finest.topology.vertex_vertices.begin(0), 8}) == std::vector<int>{8});
+  CHECK(lone_pins(*model(coarse, {0, 1}), []() -> std::shared_ptr<const LevelModel> { throw 0; }).empty());
 
   const Eigen::VectorXd softening = softening_at_pins(coarse, {0}, 0.3, 1);
   REQUIRE(softening.size() == 8);
