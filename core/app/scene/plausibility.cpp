@@ -75,7 +75,8 @@ void check_material(const ExperimentParameters& p, const SceneSummary& s, Warnin
 
 /// The membranes' and bending energies' values for a piece of cloth that is stretched, sheared and bent in
 /// every direction.
-std::vector<double> energies_of_a_piece(const Experiment& e, const Material& material, const Level& piece) {
+std::optional<std::vector<double>> energies_of_a_piece(const Experiment& e, const Material& material,
+                                                       const Level& piece) {
   Positions x = piece.rest.vertices;
   const double size = x.col(0).maxCoeff();
   for (Eigen::Index i = 0; i < x.rows(); ++i) {
@@ -84,41 +85,56 @@ std::vector<double> energies_of_a_piece(const Experiment& e, const Material& mat
         size * Eigen::RowVector3d(1.02 * u + 0.02 * v, 1.01 * v, 0.2 * u * u + 0.1 * v * v + 0.1 * u * v);
   }
   std::vector<double> values;
-  for (const NamedEnergy& named : e.energies)
-    if (Roles{EnergyRole::membrane, EnergyRole::bending}.has(named.energy->role()))
-      values.push_back(named.energy->bind(piece, material)->value(x));
-  return values;
+  try {
+    for (const NamedEnergy& named : e.energies)
+      if (Roles{EnergyRole::membrane, EnergyRole::bending}.has(named.energy->role()))
+        values.push_back(named.energy->bind(piece, material)->value(x));
+  } catch (const std::runtime_error&) {
+    return std::nullopt;
+  }
+  const bool finite = std::all_of(values.begin(), values.end(), [](double v) { return std::isfinite(v); });
+  return finite ? std::optional(values) : std::nullopt;
 }
 
-/// A measured stiffness that no energy of the scene reads is a mistake in the energies.
+/// Measured numbers that no energy of the scene reads are a mistake in the choice of energies.
 void check_measured(const Experiment& e, double edge, Warnings& warnings) {
-  struct Measured {
-    const char* key;
-    std::optional<double> Material::*value;
-    const char* read_by;
+  struct Group {
+    const char* read_by;  // an energy that has all of them
+    std::vector<std::pair<const char*, std::optional<double> Material::*>> numbers;
   };
-  static constexpr Measured all[] = {{"warp_stiffness", &Material::warp_stiffness, "woven"},
-                                     {"weft_stiffness", &Material::weft_stiffness, "woven"},
-                                     {"shear_stiffness", &Material::shear_stiffness, "woven"},
-                                     {"warp_bending", &Material::warp_bending, "midedge_bending"},
-                                     {"weft_bending", &Material::weft_bending, "midedge_bending"},
-                                     {"bias_bending", &Material::bias_bending, "midedge_bending"},
-                                     {"bending_hysteresis", nullptr, "midedge_bending"}};
-  const Material& material = e.parameters.material;
+  static const Group groups[] = {{"woven",
+                                  {{"warp_stiffness", &Material::warp_stiffness},
+                                   {"weft_stiffness", &Material::weft_stiffness},
+                                   {"shear_stiffness", &Material::shear_stiffness}}},
+                                 {"midedge_bending",
+                                  {{"warp_bending", &Material::warp_bending},
+                                   {"weft_bending", &Material::weft_bending},
+                                   {"bias_bending", &Material::bias_bending},
+                                   {"bending_hysteresis", nullptr}}}};
   const ConfigNode* written = e.source.find("material");
+  if (!written) return;
   const Level piece = Level::of(0, grid({4 * edge, 4 * edge}, 5, 5, Diagonals::criss_cross));
-  for (const Measured& measured : all) {
-    const ConfigNode* node = written ? written->find(measured.key) : nullptr;
-    if (!node) continue;
-    Material other = material;
-    if (measured.value && !(other.*measured.value)) continue;
-    double& value = measured.value ? *(other.*measured.value) : other.bending_hysteresis;
-    if (value == 0) continue;
-    value *= 1.01;
-    if (energies_of_a_piece(e, material, piece) == energies_of_a_piece(e, other, piece))
-      warnings.add(node->where, std::string("no energy of this scene reads \"") + measured.key + "\"; add " +
-                                    measured.read_by +
-                                    ", which does, in place of its like, or leave the key out");
+  const auto energies = energies_of_a_piece(e, e.parameters.material, piece);
+  for (const Group& group : groups) {
+    std::string unread;
+    const ConfigNode* first = nullptr;
+    for (const auto& [key, number] : group.numbers) {
+      const ConfigNode* node = written->find(key);
+      Material other = e.parameters.material;
+      if (!node || (number && !(other.*number))) continue;
+      double& value = number ? *(other.*number) : other.bending_hysteresis;
+      if (value == 0) continue;
+      value *= 0.99;
+      if (!energies || energies_of_a_piece(e, other, piece) != energies) continue;
+      unread += (unread.empty() ? "\"" : ", \"") + std::string(key) + "\"";
+      if (!first) first = node;
+    }
+    if (!first) continue;
+    const bool has_reader = std::any_of(e.energies.begin(), e.energies.end(), [&](const NamedEnergy& energy) {
+      return energy.name == group.read_by;
+    });
+    warnings.add(first->where, "no energy of this scene reads " + unread +
+                                   (has_reader ? "" : std::string("; ") + group.read_by + " does"));
   }
 }
 

@@ -122,12 +122,17 @@ TEST_CASE("What no fabric has gets a warning that says what is usual, before a r
       "bias_bending: 1e-6, bending_hysteresis: 1e-4";
   CHECK(measured(all, "woven, midedge_bending") == "");
   CHECK(measured("warp_stiffness: 30, warp_bending: 2e-6", "neo_hookean, hinge") == "");
-  CHECK(
-      measured("bending_hysteresis: 1e-4", "neo_hookean, hinge") ==
-      "4: no energy of this scene reads \"bending_hysteresis\"; add midedge_bending, which does, in place of "
-      "its like, or leave the key out\n");
-  CHECK_THAT(measured(all, "stvk, quadratic_bending"),
-             Contains("shear_stiffness") && Contains("bias_bending") && !Contains("weft"));
+  CHECK(measured("bending_hysteresis: 1e-4", "neo_hookean, hinge") ==
+        "4: no energy of this scene reads \"bending_hysteresis\"; midedge_bending does\n");
+  CHECK(measured(all, "stvk, quadratic_bending") ==
+        "4: no energy of this scene reads \"shear_stiffness\"; woven does\n"
+        "4: no energy of this scene reads \"bias_bending\", \"bending_hysteresis\"; midedge_bending does\n");
+  CHECK(measured(
+            "warp_stiffness: 30",
+            "{type: woven, warp_tension: [0.02, 3, 0.08, 200], weft_tension: [0.02, 3, 0.08, 200]}, hinge") ==
+        "4: no energy of this scene reads \"warp_stiffness\"\n");
+  CHECK_THAT(measured("fabric: pink-ribbon-brown", "stvk, hinge"),
+             Contains("reads \"bias_bending\"; midedge_bending does"));
   // d̂ above an edge.
   CHECK_THAT(warnings_of(scene_yaml(square, "", 3.18e-4, "[{type: ipc, dhat: 0.1}]")),
              Contains("contact distance dhat of 0.1 m is longer than most edges of level 0 (53 mm)"));
