@@ -4,7 +4,7 @@
 
 #include "core/numerics/hierarchy/hierarchy.h"
 #include "core/numerics/patterns/generate.h"
-#include "core/numerics/solve/newton.h"
+#include "tests/support/equilibrium.h"
 #include "tests/support/evaluate.h"
 #include "tests/support/strip.h"
 
@@ -73,18 +73,7 @@ struct ClampedStrip {
   }
 
   double solved(const LevelModel& model) const {
-    PlainObjective objective(model);
-    NewtonParameters newton;
-    newton.step_size = 0.01;
-    newton.force_tolerance = 1e-5;
-    Observer silent;
-    const Stopwatch clock;
-    Positions x = start(model.level());
-    model.set_dirichlet(x);
-    const LevelResult result = minimise(objective, x, newton, {clock, silent});
-    INFO(result.message);
-    REQUIRE(has_converged(result.outcome));
-    return model.value(result.x);
+    return model.value(equilibrium_of(model, start(model.level()), 1e-5, 0.01));
   }
 };
 
@@ -162,18 +151,8 @@ TEST_CASE("A strip that hangs or bends under its weight is the same with a membr
       if (level.rest.vertices(i, 0) < (hangs ? 1e-9 : 0.051))
         clamped.push_back({i, level.rest.vertices.row(i).transpose()});
     const LevelModel plain(level, m, all, clamped), buckling = plain.with_effective_membranes(2);
-    const auto end = [&](const LevelModel& model) {
-      PlainObjective objective(model);
-      NewtonParameters newton;
-      newton.force_tolerance = 1e-8;
-      Observer silent;
-      const Stopwatch clock;
-      const LevelResult result = minimise(objective, level.rest.vertices, newton, {clock, silent});
-      INFO(result.message);
-      REQUIRE(has_converged(result.outcome));
-      return result.x;
-    };
-    const Positions expected = end(plain), found = end(buckling);
+    const Positions expected = equilibrium_of(plain, level.rest.vertices, 1e-8),
+                    found = equilibrium_of(buckling, level.rest.vertices, 1e-8);
     const double moved = (expected - level.rest.vertices).rowwise().norm().maxCoeff();
     row("%s: largest displacement %.3g m, difference %.1e", hangs ? "Hanging strip" : "Cantilever", moved,
         (found - expected).rowwise().norm().maxCoeff());
