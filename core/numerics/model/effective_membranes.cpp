@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <numbers>
+#include <optional>
 #include <stdexcept>
 
 #include "core/numerics/mesh/same_entries.h"
@@ -29,14 +30,16 @@ LevelModel LevelModel::with_effective_membranes(int levels_below, const std::vec
   for (const Term& term : terms_)
     if (term.role == EnergyRole::bending) stiffness += term.kind->plate_stiffness(material_);
   const double s = buckling_bound(stiffness, levels_below);
-  Level softened = *level_;
-  if (!lone_pins.empty())
-    softened.softening = softening_at_pins(*level_, lone_pins, material_.poisson_ratio, levels_below);
+  std::optional<Level> softened;
+  if (!lone_pins.empty()) {
+    softened = *level_;
+    softened->softening = softening_at_pins(*level_, lone_pins, material_.poisson_ratio, levels_below);
+  }
   LevelModel model = *this;
   for (Term& term : model.terms_) {
     if (term.role != EnergyRole::membrane) continue;
     const Stencils plain = term.energy->stencils();
-    term.energy = term.kind->bind_buckling(softened, material_, s);
+    term.energy = term.kind->bind_buckling(softened ? *softened : *level_, material_, s);
     if (!term.energy || !same_entries(term.energy->stencils(), plain))
       throw std::runtime_error("energy " + term.name +
                                ": bind_buckling must return an energy with the stencils of bind");

@@ -209,6 +209,18 @@ TEST_CASE("A pinned vertex is lone if none of its neighbours is pinned, on the c
   }
 }
 
+TEST_CASE("Cloth at the tip of a slit softens, although a full turn has no axis", "[level_model]") {
+  TriangleMesh slit{Positions::Zero(10, 3), Triangles(8, 3)};
+  for (int i = 0; i < 9; ++i) {
+    const double angle = i * std::acos(-1) / 4;
+    slit.vertices.row(i + 1) << std::cos(angle), std::sin(angle), 0;
+    if (i < 8) slit.triangles.row(i) << 0, i + 1, i + 2;
+  }
+  const Eigen::VectorXd softening = softening_at_pins(Level::of(0, slit), {0}, 0.3, 1);
+  CHECK(softening.minCoeff() > 0.3);
+  CHECK(softening.maxCoeff() < 0.8);
+}
+
 TEST_CASE("Membranes of coarse levels buckle at the stress of a clamped column of the mesh's size",
           "[level_model]") {
   const Level level = Level::of(0, grid({2, 1}, 4, 3, Diagonals::one_way));
