@@ -2,6 +2,7 @@
 #include <array>
 #include <cmath>
 #include <map>
+#include <optional>
 #include <tuple>
 
 #include "core/app/scene/scene_summary.h"
@@ -73,10 +74,11 @@ void check_material(const ExperimentParameters& p, const SceneSummary& s, Warnin
                               moduli);
 }
 
-/// The membranes' and bending energies' values for a piece of cloth that is stretched, sheared and bent in
-/// every direction.
+/// The membranes' and bending energies' values for a piece of cloth with this edge length that is stretched,
+/// sheared and bent in every direction; none where one of them refuses the piece or is infinite.
 std::optional<std::vector<double>> energies_of_a_piece(const Experiment& e, const Material& material,
-                                                       const Level& piece) {
+                                                       double edge) {
+  const Level piece = Level::of(0, grid({4 * edge, 4 * edge}, 5, 5, Diagonals::criss_cross));
   Positions x = piece.rest.vertices;
   const double size = x.col(0).maxCoeff();
   for (Eigen::Index i = 0; i < x.rows(); ++i) {
@@ -113,8 +115,6 @@ void check_measured(const Experiment& e, double edge, Warnings& warnings) {
                                    {"bending_hysteresis", nullptr}}}};
   const ConfigNode* written = e.source.find("material");
   if (!written) return;
-  const Level piece = Level::of(0, grid({4 * edge, 4 * edge}, 5, 5, Diagonals::criss_cross));
-  const auto energies = energies_of_a_piece(e, e.parameters.material, piece);
   for (const Group& group : groups) {
     std::string unread;
     const ConfigNode* first = nullptr;
@@ -125,7 +125,8 @@ void check_measured(const Experiment& e, double edge, Warnings& warnings) {
       double& value = number ? *(other.*number) : other.bending_hysteresis;
       if (value == 0) continue;
       value *= 0.99;
-      if (!energies || energies_of_a_piece(e, other, piece) != energies) continue;
+      const auto energies = energies_of_a_piece(e, e.parameters.material, edge);
+      if (!energies || energies_of_a_piece(e, other, edge) != energies) continue;
       unread += (unread.empty() ? "\"" : ", \"") + std::string(key) + "\"";
       if (!first) first = node;
     }
