@@ -29,9 +29,8 @@ struct PcsSolver : Progression {
             "most the finest; for energies that are evaluated on the finest level");
     d.add_choice("membranes", &PcsSolver::effective, {{"plain", false}, {"effective", true}})
         .description(
-            "membranes of coarse levels, unless they are seen by the refiner; plain: their own laws; "
-            "effective: "
-            "as the finest level's act, which buckle below the coarse mesh and give way at lone pins")
+            "how membranes of coarse levels act, unless they are seen by the refiner: by their own laws, or "
+            "as the finest level's do, which buckle below the coarse mesh and give way at lone pins")
         .source("PCS section 4 for plain; effective is a departure (docs/theory/locking.md)");
     d.add_choice("relaxation", &PcsSolver::relaxes, {{"plain", true}, {"none", false}})
         .description(
