@@ -240,21 +240,21 @@ def codim_ipc():
                   "RMS distance of the final states"], rows, [], "lrrrrrrrr")[1:]
 
 
-def blender():
+def beside(program, title):
+    """The ends of drape and of another program in the two scenes of two_drapes.py."""
     two = lambda v: figure(v, 2)  # noqa: E731
     found = {}
-    for r in read("blender.json")["runs"]:
+    for r in read(f"{program}.json")["runs"]:
         found.setdefault(r["scene"], []).append(r)
     rows = []
     for scene, starts in found.items():
-        for program, name in (("drape", "drape"), ("blender", "Blender")):
-            of_program = [r[program] for r in starts]
-            rows.append([scene, name, seconds_text([r["seconds"] for r in of_program]),
-                         f"{sum(r.get('at_rest', True) for r in of_program)} of {len(starts)}",
-                         with_range([r["force_residual"] for r in of_program], two), str(sum(r["intersections"] > 0 for r in of_program)),
-                         with_range([r["largest_stretch"] for r in of_program])])
-    return table(["scene", "program", "CPU time [s]", "starts at rest", "force residual at the end", "starts with intersections", "largest stretch"], rows, ["blender.json"],
-                 "llrrrrr")
+        for key, name in (("drape", "drape"), (program, title)):
+            ends = [r[key] for r in starts]
+            rows.append([scene, name, seconds_text([r["seconds"] for r in ends]), f"{sum(r.get('at_rest', True) for r in ends)} of {len(starts)}",
+                         with_range([r["force_residual"] for r in ends], two), str(sum(r["intersections"] > 0 for r in ends)),
+                         with_range([r["largest_stretch"] for r in ends])])
+    return table(["scene", "program", "CPU time [s]", "starts at rest", "force residual at the end", "starts with intersections", "largest stretch"],
+                 rows, [f"{program}.json"], "llrrrrr")
 
 
 def scale():
@@ -278,6 +278,7 @@ STUDIES = [
     ("[linear solvers](speed.md#the-linear-solver)", "linear_solvers.json"),
     ("[Python](../extend/from-python.md#what-it-costs)", "python.json"),
     ("[beside Codim-IPC](speed.md#beside-codim-ipc)", "codim_ipc.json"),
+    ("[beside STARK](speed.md#beside-stark)", "stark.json"),
     ("[beside Blender](speed.md#beside-blender)", "blender.json"),
     ("[scale](speed.md#scale)", "scale.json"),
     ("[six scenes to 5.9K](previews.md#six-scenes)", "previews.md"),
@@ -342,7 +343,8 @@ BLOCKS = {
     "linear solvers": linear_solvers,
     "python": python,
     "codim_ipc": codim_ipc,
-    "blender": blender,
+    "blender": lambda: beside("blender", "Blender"),
+    "stark": lambda: beside("stark", "STARK"),
     "scale": scale,
     "studies": studies,
 }

@@ -1,6 +1,12 @@
 """Two scenes on which other programs stand beside drape: a square that hangs from its corners, and one over a ball."""
 
+import json
+import pathlib
+import sys
+import tempfile
 import time
+
+import numpy
 
 import drape
 
@@ -47,3 +53,37 @@ def solved(experiment, most=0):
         if most and len(states) >= most:
             solve.stop()
     return seconds, states, solve.levels[0]
+
+
+def largest_stretch(rest, x, triangles):
+    """The largest principal stretch; the rest shape is flat in z = 0."""
+    edges = lambda p: numpy.stack([p[triangles[:, k]] - p[triangles[:, 0]] for k in (1, 2)], axis=2)  # noqa: E731
+    deformation = edges(x) @ numpy.linalg.inv(edges(rest)[:, :2, :])
+    return float(numpy.linalg.svd(deformation, compute_uv=False).max())
+
+
+def end_state(model, seconds, residual, x):
+    """What is compared of a program's last state: seconds to it, net force over the weight, and of the cloth what drape finds there."""
+    return {"seconds": seconds, "force_residual": residual, "intersections": len(model.intersections(x)),
+            "largest_stretch": largest_stretch(model.level.rest, x, model.level.triangles)}
+
+
+def drape_end(scene, vertices, seed):
+    """The scene's level, its start, and the end of drape's Newton method there."""
+    experiment = experiment_of(scene, round(vertices**0.5), seed)
+    levels = experiment.scene()
+    seconds, states, level = solved(experiment)
+    end = end_state(levels[0], seconds[-1], level.force_residual, states[-1])
+    return levels[0], levels.start(0), {**end, "iterations": len(seconds)}
+
+
+def measure_all(out, about, cases, measure):
+    """Measures each case that `out` does not have, and stores it. A case: the values that name it; `measure` gets them, and a folder."""
+    done = json.loads(out.read_text())["runs"] if out.exists() else []
+    for case in cases:
+        if any(case.items() <= run.items() for run in done):
+            continue
+        with tempfile.TemporaryDirectory(prefix="drape_") as folder:
+            done.append(case | measure(**case, folder=pathlib.Path(folder)))
+        out.write_text(json.dumps({**about, "version": drape.__version__, "commit": drape.__commit__, "runs": done}, indent=1) + "\n")
+        print(*case.values(), file=sys.stderr, flush=True)

@@ -1,6 +1,7 @@
 """A method step by step."""
 
 import gc
+import json
 import os
 import pathlib
 import sys
@@ -36,6 +37,28 @@ def test_the_scenes_beside_other_programs_come_to_rest(monkeypatch):
         assert level.status == "converged"
         assert len(seconds) == len(states) == level.iterations
         assert len(two_drapes.solved(two_drapes.experiment_of(name, 9, seed=1), most=3)[1]) == 3
+
+
+def test_a_comparison_goes_on_where_it_was_cut(monkeypatch, tmp_path):
+    monkeypatch.syspath_prepend(pathlib.Path(__file__).resolve().parents[2] / "benchmarks")
+    import two_drapes
+
+    measured = []
+
+    def measure(scene, vertices, seed, folder):
+        assert folder.is_dir()
+        measured.append(seed)
+        model, start, end = two_drapes.drape_end(scene, vertices, seed)
+        assert start.shape == model.level.rest.shape
+        return {"drape": end}
+
+    for seeds in ((1,), (1, 2)):
+        two_drapes.measure_all(tmp_path / "record.json", {"benchmark": "test"},
+                               [{"scene": "hanging", "vertices": 81, "seed": seed} for seed in seeds], measure)
+    assert measured == [1, 2]
+    runs = json.loads((tmp_path / "record.json").read_text())["runs"]
+    assert [run["seed"] for run in runs] == [1, 2]
+    assert all(run["drape"]["intersections"] == 0 and run["drape"]["force_residual"] < 1e-3 < run["drape"]["seconds"] for run in runs)
 
 
 def test_stop_and_refine(experiment):
