@@ -5,6 +5,7 @@
 #include <optional>
 #include <tuple>
 
+#include "core/app/scene/boundary_conditions.h"
 #include "core/app/scene/scene_summary.h"
 #include "core/numerics/patterns/generate.h"
 #include "core/numerics/solve/start_fault.h"
@@ -33,6 +34,10 @@ class Warnings {
   const Experiment& e_;
   ConfigErrors& all_;
 };
+
+std::string point_text(const Eigen::Vector3d& p) {
+  return "(" + rounded_text(p.x(), 3) + ", " + rounded_text(p.y(), 3) + ", " + rounded_text(p.z(), 3) + ")";
+}
 
 void check_size(const ExperimentParameters& p, const SceneSummary& s, Warnings& warnings) {
   const double size = s.size.norm();
@@ -215,13 +220,30 @@ void check_welded(const Experiment& e, const Level& coarsest, double median_edge
   constexpr double same_place = 1e-4;  // of an edge: files round coordinates
   const Coincidence found = coincident_border(coarsest, same_place * median_edge);
   if (found.count == 0) return;
-  const Eigen::RowVector3d at = coarsest.rest.vertices.row(found.first);
   warnings.add("cloth", std::to_string(found.count) +
                             (found.count == 1 ? " border vertex lies" : " border vertices lie") +
                             " on another one, as " + std::to_string(found.second) + " on " +
-                            std::to_string(found.first) + " (counted from 0) at (" + rounded_text(at.x(), 3) +
-                            ", " + rounded_text(at.y(), 3) + ", " + rounded_text(at.z(), 3) +
-                            "): the cloth is not joined there; if it should be, weld them in the file");
+                            std::to_string(found.first) + " (counted from 0) at " +
+                            point_text(coarsest.rest.vertices.row(found.first)) +
+                            ": the cloth is not joined there; if it should be, weld them in the file");
+}
+
+/// A pin or handle "nearest" to a point that lies far from the cloth's rest shape.
+template <class Selections>
+void check_nearest(const Experiment& e, const std::string& key, const Selections& selections,
+                   const Level& coarsest, double edge, Warnings& warnings) {
+  for (std::size_t k = 0; k < selections.size(); ++k) {
+    const VertexSelection& selection = selections[k];
+    if (selection.region != "nearest") continue;
+    const int v = selected_vertices(selection, coarsest, coarsest).front();
+    const Eigen::Vector3d at = coarsest.rest.vertices.row(v);
+    const double distance = (at - selection.point).norm();
+    if (distance > 2 * edge)
+      warnings.add(e.source.find(key)->items[k].where,
+                   "the vertex nearest to \"point\" is " + length_text(distance) + " away from it, at " +
+                       point_text(at) + " of the rest shape; points of " + key +
+                       " are those of the cloth as it is made, before \"start\" places it");
+  }
 }
 
 }  // namespace
@@ -233,6 +255,9 @@ ConfigErrors plausibility_warnings(const Experiment& e, const Scene& scene, cons
   check_welded(e, scene.hierarchy.levels[0], s.median_edge, warnings);
   check_material(e.parameters, s, warnings);
   check_measured(e, s.median_edge, warnings);
+  const double coarse_edge = std::ldexp(s.median_edge, s.level);
+  check_nearest(e, "pins", e.parameters.pins, scene.hierarchy.levels[0], coarse_edge, warnings);
+  check_nearest(e, "handles", e.parameters.handles, scene.hierarchy.levels[0], coarse_edge, warnings);
   check_start(e, scene, warnings);
   check_contact(s, warnings);
   return all;

@@ -179,3 +179,13 @@ TEST_CASE("check and run warn, and an experiment with a warning runs all the sam
   CHECK(run.exit_code != 2);
   CHECK_THAT(run.err, Catch::StartsWith("warning: e.yaml:2:8: the cloth is 1000 × 1000 m; "));
 }
+
+TEST_CASE("A pin nearest to a point far from the cloth gets a warning") {
+  const std::string cloth = "{shape: square, side: 1, columns: 11, rows: 11}";
+  CHECK(warnings_of(scene_yaml(cloth, "pins: [{point: [0, 1, 0]}, {point: [1.04, 0.96, 0]}]\n")).empty());
+  const std::string far = " away from it, at (1, 1, 0) of the rest shape; points of ";
+  CHECK_THAT(warnings_of(scene_yaml(cloth, "pins:\n  - {point: [0, 1, 0]}\n  - {point: [5, 5, 0]}\n")),
+             Contains("10: the vertex nearest to \"point\" is 5.7 m" + far + "pins"));
+  CHECK_THAT(warnings_of(scene_yaml(cloth, "handles: [{point: [1, 1, 0.5]}]\n")),
+             Contains("0.5 m" + far + "handles"));
+}
