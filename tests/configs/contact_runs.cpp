@@ -47,7 +47,8 @@ TEST_CASE("a start that touches an obstacle is refused, with the pairs and the l
         place + "cloth triangle 54 and ball: sphere at (-0.01667, -0.03333, 0.099)\n" + place +
             "cloth triangle 55 and ball: sphere at (-0.03333, -0.01667, 0.099)\n" + place +
             "cloth triangle 57 and ball: sphere at (0.01667, -0.01667, 0.099)\n"
-            "error: e.yaml:4:8: … and 3 more pairs; move the start and the obstacle apart\n");
+            "error: e.yaml:4:8: … and 3 more pairs; move the start and the obstacle apart, or let "
+            "--allow-start-repair do it\n");
   const std::string table =
       "[{name: table, meshed_shape: box, size: [0.01, 0.01, 0.2], translate: [0.135, 0.12, 0.02]}]";
   CHECK_THAT(said_of_contact(text, "--set start.perturbation=0 --set 'obstacles=" + table + "'"),

@@ -134,7 +134,8 @@ void refuse_intersecting_start(const Experiment& e, const LevelModel& model, con
                                                     " touches" + remark + ": " + to_string(found[k])});
     if (found.size() > max_listed)
       errors.push_back({e.location_of("start"), "… and " + std::to_string(found.size() - max_listed) +
-                                                    " more pairs; move the start and the obstacle apart"});
+                                                    " more pairs; move the start and the obstacle apart, or "
+                                                    "let --allow-start-repair do it"});
   }
 }
 
