@@ -220,7 +220,7 @@ TEST_CASE("each fault of a key, a value or a plugin is named where it stands") {
        "energy_above_end, residuals, silhouette, stretch" +
            own},
       {"  cascadic: {}", "  psc: {depth: 2}",
-       "12:8: unknown solver \"psc\"; did you mean \"pcs\"? known: cascadic, newton, pcs"},
+       "12:8: unknown solver \"psc\"; did you mean \"pcs\"? known: cascadic, newton, pcs" + own},
   });
 }
 
@@ -290,7 +290,8 @@ TEST_CASE("all errors of a config are listed in file order, those of --set last"
         "not \"nearst\"; did you mean \"nearest\"?\n"
         "error: e.yaml:8:25: unknown energy \"hinje\"; did you mean \"hinge\"? known: constant_load, "
         "formula, gravity, hinge, midedge_bending, "
-        "neo_hookean, pressure, quadratic_bending, strain_limit, stvk, woven\n"
+        "neo_hookean, pressure, quadratic_bending, strain_limit, stvk, woven; a plugin of your own is given "
+        "by --plugin or found by DRAPE_PLUGIN_PATH\n"
         "error: e.yaml:12:28: \"prolongation\" must be \"midpoint\" or \"refiner\", not \"linear\"\n"
         "error: --set newton.max_steps: \"max_steps\" must be an integer, not \"few\"\n");
 }
@@ -412,6 +413,9 @@ TEST_CASE("keys that the shape or the region does not read, and empty items, are
        "cylinder\"; here \"shape\" is half_space"},
       {"contact: ipc\nobstacles: [{mesh: ball.ply, radius: 0.3}]",
        "6:38: \"radius\" in obstacles needs \"meshed_shape: sphere\"; here \"meshed_shape\" is not given"},
+      {"cloth: {shape: circle, size: [1, 1]}",
+       "5:16: \"shape\" must be \"square\", \"rectangle\", \"disc\", \"polygon\" or \"file\", not "
+       "\"circle\""},
       {"pins: [{region: border, point: [1, 0, 0]}]",
        "5:32: \"point\" in pins needs \"region: nearest or region: ball\"; here \"region\" is border"},
       {"pins: [~]", "5:8: an item of \"pins\" is empty; remove it"},

@@ -124,12 +124,10 @@ const RegistryEntry* find_plugin(const Registry& registry, const std::string& ki
   for (const RegistryEntry* entry : registry.of_kind(kind)) names.push_back(entry->name);
   const std::string nearest = nearest_word(type->scalar, names);
   errors.push_back(
-      {type->where,
-       "unknown " + kind + " \"" + excerpt(type->scalar) + "\"; " +
-           (nearest.empty() ? "" : "did you mean \"" + nearest + "\"? ") +
-           (names.empty() ? "no plugin of that kind is loaded" : "known: " + joined(names)) +
-           (nearest.empty() ? "; a plugin of your own is given by --plugin or found by DRAPE_PLUGIN_PATH"
-                            : "")});
+      {type->where, "unknown " + kind + " \"" + excerpt(type->scalar) + "\"; " +
+                        (nearest.empty() ? "" : "did you mean \"" + nearest + "\"? ") +
+                        (names.empty() ? "no plugin of that kind is loaded" : "known: " + joined(names)) +
+                        "; a plugin of your own is given by --plugin or found by DRAPE_PLUGIN_PATH"});
   return nullptr;
 }
 

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <map>
+#include <set>
 
 #include "core/kernel/files/message_text.h"
 #include "core/kernel/files/string_utils.h"
@@ -23,12 +24,17 @@ ConfigNode absolute_path(ConfigNode path) {
   return path;
 }
 
-/// "did you mean …?" or the known keys, for an unknown one.
-std::string hint_for(const std::string& key, const Schema& schema) {
-  std::vector<std::string> known;
-  for (const Parameter& p : schema.parameters)
+/// "did you mean …?" or the known keys, for an unknown one of this map. --set names constants as if they were
+/// keys.
+std::string hint_for(const std::string& key, const Schema& schema, const ConfigNode& map) {
+  std::vector<std::string> known, constants;
+  for (const Parameter& p : schema.parameters) {
     if (!p.from_experiment) known.push_back(p.name);
-  const std::string nearest = nearest_word(key, known);
+    if (const ConfigNode* written = p.type == "map of numbers" ? map.find(p.name) : nullptr)
+      for (const auto& [name, value] : written->entries) constants.push_back(name);
+  }
+  std::string nearest = nearest_word(key, known);
+  if (nearest.empty()) nearest = nearest_word(key, constants);
   if (!nearest.empty()) return "; did you mean \"" + nearest + "\"?";
   return known.empty() ? "; it takes no keys" : "; known keys are " + joined(known);
 }
@@ -43,6 +49,7 @@ void Schema::read(void* object, const ConfigNode& map, ConfigErrors& errors) con
     return;
   }
   std::map<std::string, size_t> first_of;
+  std::set<std::string> invalid;
   for (size_t i = 0; i < map.entries.size(); ++i) {
     const auto& [key, node] = map.entries[i];
     const size_t first = first_of.emplace(key, i).first->second;
@@ -53,16 +60,20 @@ void Schema::read(void* object, const ConfigNode& map, ConfigErrors& errors) con
                                                   "; it is first set at " + map.key_locations[first].text()});
     } else if (known == parameters.end()) {
       errors.push_back(
-          {map.key_locations[i], "unknown key \"" + excerpt(key) + "\"" + in + hint_for(key, *this)});
+          {map.key_locations[i], "unknown key \"" + excerpt(key) + "\"" + in + hint_for(key, *this, map)});
     } else {
+      const size_t before = errors.size();
       read_parameter(*known, object, node, errors);
+      if (errors.size() > before) invalid.insert(key);
     }
   }
   for (const Parameter& p : parameters)
     if (p.required && !map.find(p.name))
       errors.push_back({map.where, "\"" + p.name + "\"" + in + " is required and missing"});
   for (const Parameter& p : parameters) {
-    const ConfigNode* written = p.selector.empty() ? nullptr : map.find(p.name);
+    // What an invalid selector would have selected is not known.
+    const bool selected = !p.selector.empty() && !invalid.contains(p.selector);
+    const ConfigNode* written = selected ? map.find(p.name) : nullptr;
     if (const std::string fault = written ? unread_fault(p, object) : ""; !fault.empty())
       errors.push_back({written->where, fault});
   }

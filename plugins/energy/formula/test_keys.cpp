@@ -64,7 +64,7 @@ TEST_CASE("a constant is a key of its energy, with and without a unit") {
   CHECK(with("energies.orthotropic.nu12", "0.7") > own);
   CHECK(with("energies.orthotropic.density", "warp*g11^2") < own);
   CHECK_THROWS_WITH(with("energies.orthotropic.wrap", "1"),
-                    Catch::Contains("unknown key \"wrap\" in formula"));
+                    Catch::Contains("unknown key \"wrap\" in formula; did you mean \"warp\"?"));
   CHECK_THROWS_WITH(with("energies.orthotropic.warp", "many"),
                     Catch::Contains("\"warp\" in constants must be a number, not \"many\""));
 }

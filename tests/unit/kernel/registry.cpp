@@ -195,7 +195,9 @@ TEST_CASE("a node makes the object it names, with its parameters") {
 
 TEST_CASE("faults of a node are reported with their location") {
   CHECK(refiner_fault("lopo") ==
-        "a.yaml:1:4: unknown refiner \"lopo\"; did you mean \"loop\"? known: linear, loop");
+        "a.yaml:1:4: unknown refiner \"lopo\"; did you mean \"loop\"? known: linear, loop; a plugin of your "
+        "own "
+        "is given by --plugin or found by DRAPE_PLUGIN_PATH");
   CHECK(refiner_fault("butterfly") ==
         "a.yaml:1:4: unknown refiner \"butterfly\"; known: linear, loop; a plugin of your own is "
         "given by --plugin or found by DRAPE_PLUGIN_PATH");
