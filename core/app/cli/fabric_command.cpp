@@ -61,7 +61,8 @@ int print_fabric(const FabricOptions& options) {
     if (!options.file.empty()) throw std::runtime_error("--file needs the name or number of a row");
     for (const std::string& name : fabric_names()) {
       ConfigErrors none;
-      std::cout << padded(name, 22) << fabric_row(ConfigNode::of(name), none).find("source")->scalar << "\n";
+      std::cout << padded(name, 22)
+                << fabric_row(ConfigNode::of(name), std::nullopt, none).find("source")->scalar << "\n";
     }
     return exit_done;
   }
@@ -72,7 +73,7 @@ int print_fabric(const FabricOptions& options) {
     fabric = row;
   }
   ConfigErrors errors;
-  const ConfigNode values = fabric_row(fabric, errors);
+  const ConfigNode values = fabric_row(fabric, std::nullopt, errors);
   ConfigNode material;
   for (const auto& [key, value] : values.entries)
     if (key != "source") material.add(key, value);

@@ -1,6 +1,7 @@
 #include "core/app/experiment/fabrics.h"
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <optional>
 #include <sstream>
@@ -15,17 +16,19 @@
 namespace drape {
 namespace {
 
-/// A column of a table and what it gives: a key of `material`, or "mass", in SI units after the factor.
+/// A column of a table and what it gives: a key of `material`, or "mass", in SI units after the factor. Times
+/// this power of the thickness, it is a quantity of the sheet.
 struct Column {
   const char *name, *key;
   double factor = 1;
+  int thickness_power = 0;
 };
 constexpr Column columns[] = {
     {"mass", "mass"},
-    {"density", "density"},
+    {"density", "density", 1, 1},
     {"thickness", "thickness"},
-    {"membrane_modulus", "membrane_modulus"},
-    {"bending_modulus", "bending_modulus"},
+    {"membrane_modulus", "membrane_modulus", 1, 1},
+    {"bending_modulus", "bending_modulus", 1, 3},
     {"poisson_ratio", "poisson_ratio"},
     {"warp_stiffness", "warp_stiffness"},
     {"weft_stiffness", "weft_stiffness"},
@@ -86,13 +89,18 @@ const Table& own_table() {
   return table;
 }
 
-/// The row's numbers by keys of `material`. Appends an error for a cell that is not a number, and for a row
-/// without mass or bending.
+/// The row's numbers by keys of `material`. Mass per area, tensile stiffness and bending rigidity are those
+/// of the row at any other thickness. Appends an error for a cell that is not a number, and for a row without
+/// mass or bending.
 ConfigNode material_of(const Table& table, std::size_t row, const std::string& name, const Location& where,
-                       ConfigErrors& errors) {
+                       std::optional<double> thickness, ConfigErrors& errors) {
   const auto refuse = [&](const std::string& what) {
     errors.push_back({where, table.file + ": row \"" + name + "\" " + what});
   };
+  const OptionalNumber measured = number_of(table.cell(row, "thickness"));
+  const double own = measured.value_or(Material().thickness), in_force = thickness.value_or(own);
+  // A number per volume that the source gives without a thickness stays as it is.
+  const double ratio = measured ? own / in_force : 1;
   ConfigNode material;
   std::optional<double> mass;
   for (const Column& column : columns) {
@@ -104,11 +112,13 @@ ConfigNode material_of(const Table& table, std::size_t row, const std::string& n
     else if (column.key == std::string("mass"))
       mass = *value;
     else
-      material.add(column.key, ConfigNode::of(column.factor * *value));
+      material.add(column.key,
+                   ConfigNode::of(column.factor * *value * std::pow(ratio, column.thickness_power)));
   }
+  if (in_force != own && !material.find("membrane_modulus") && !material.find("warp_stiffness"))
+    material.add("membrane_modulus", ConfigNode::of(Material().membrane_modulus * (own / in_force)));
   if (mass) {
-    const double thickness = number_of(table.cell(row, "thickness")).value_or(Material().thickness);
-    material.add("density", ConfigNode::of(*mass / thickness));
+    material.add("density", ConfigNode::of(*mass / in_force));
   } else if (!material.find("density")) {
     refuse("lacks column \"mass\" [kg/m²]");
   }
@@ -125,7 +135,7 @@ std::string remedy(const std::string& name, const std::vector<std::string>& name
 }
 
 /// The row that {file, row} names.
-ConfigNode row_of_file(const ConfigNode& fabric, ConfigErrors& errors) {
+ConfigNode row_of_file(const ConfigNode& fabric, std::optional<double> thickness, ConfigErrors& errors) {
   const ConfigNode *file = fabric.find("file"), *row = fabric.find("row");
   if (fabric.kind != ConfigNode::Kind::map || !file || !row || fabric.entries.size() != 2) {
     errors.push_back({fabric.where, "\"fabric\" is a name, or {file: fabrics.csv, row: NAME}"});
@@ -139,24 +149,32 @@ ConfigNode row_of_file(const ConfigNode& fabric, ConfigErrors& errors) {
   }
   const Table table(path.string(), read_file(path));
   const auto found = table.find(row->scalar);
-  if (found) return material_of(table, *found, row->scalar, row->where, errors);
+  if (found) return material_of(table, *found, row->scalar, row->where, thickness, errors);
   errors.push_back({row->where, table.file + " has " + std::to_string(table.rows.size()) +
                                     " rows and none named \"" + excerpt(row->scalar) + "\"; " +
                                     remedy(row->scalar, table.names())});
   return {};
 }
 
+/// The thickness that a material has beside its fabric; none if it is not a length, which its reader refuses.
+std::optional<double> written_thickness(const ConfigNode& material) {
+  const ConfigNode* node = material.find("thickness");
+  const std::optional<double> value = node ? parse_number(node->scalar) : std::nullopt;
+  return value && *value >= bounds::smallest_length ? value : std::nullopt;
+}
+
 }  // namespace
 
 std::vector<std::string> fabric_names() { return own_table().names(); }
 
-ConfigNode fabric_row(const ConfigNode& fabric, ConfigErrors& errors) {
-  if (fabric.kind != ConfigNode::Kind::scalar) return row_of_file(fabric, errors);
+ConfigNode fabric_row(const ConfigNode& fabric, std::optional<double> thickness, ConfigErrors& errors) {
+  if (fabric.kind != ConfigNode::Kind::scalar) return row_of_file(fabric, thickness, errors);
   const std::string& name = fabric.scalar;
   const Table& table = own_table();
   const std::vector<std::string> names = table.names();
   const auto found = std::find(names.begin(), names.end(), name);
-  if (found != names.end()) return material_of(table, found - names.begin(), name, fabric.where, errors);
+  if (found != names.end())
+    return material_of(table, found - names.begin(), name, fabric.where, thickness, errors);
   errors.push_back({fabric.where, "unknown fabric \"" + excerpt(name) + "\"; " + remedy(name, names)});
   return {};
 }
@@ -170,7 +188,7 @@ void apply_fabric(ConfigNode& experiment, ConfigErrors& errors) {
     const ConfigNode fabric = at->second;
     material.key_locations.erase(material.key_locations.begin() + (at - material.entries.begin()));
     material.entries.erase(at);
-    const ConfigNode row = fabric_row(fabric, errors);
+    const ConfigNode row = fabric_row(fabric, written_thickness(material), errors);
     for (const auto& [name, value] : row.entries) {
       if (name == "source" || material.find(name)) continue;
       ConfigNode own = value;

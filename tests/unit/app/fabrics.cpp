@@ -33,7 +33,7 @@ TEST_CASE("fabrics: every fabric of the table is a material with a source") {
   for (const std::string& name : fabric_names()) {
     INFO(name);
     ConfigErrors errors;
-    const ConfigNode row = fabric_row(ConfigNode::of(name), errors);
+    const ConfigNode row = fabric_row(ConfigNode::of(name), std::nullopt, errors);
     CHECK(errors.empty());
     REQUIRE(row.find("source"));
     const Material m = material_of("fabric: " + name);
@@ -56,6 +56,39 @@ TEST_CASE("fabrics: what is written beside a fabric takes precedence, and the nu
   const ConfigNode* saved = e.resolved.find("material");
   CHECK(saved->find("weft_bending")->scalar == "1.427e-05");
   CHECK(saved->find("fabric")->kind == ConfigNode::Kind::null);
+}
+
+TEST_CASE("fabrics: a thickness beside a fabric keeps the sheet's mass and stiffness") {
+  const Scratch folder;
+  const std::string file = (folder / "own.csv").string();
+  folder.write("own.csv",
+               "name, density, thickness, membrane_modulus, bending_modulus, warp_stiffness, warp_bending\n"
+               "measured, 500, 4e-4, 1e6, 2e6, , \nper volume, 500, , 1e6, 2e6, , \n"
+               "per width, 500, 4e-4, , , 300, 2e-6\n");
+  const auto row = [&](const std::string& name) { return "fabric: {file: " + file + ", row: " + name + "}"; };
+  for (const std::string& fabric : {std::string("fabric: white-dots-on-blk"), std::string("fabric: cotton"),
+                                    std::string("fabric: cotton-broad"), row("measured"), row("per width")}) {
+    INFO(fabric);
+    const Material own = material_of(fabric), thick = material_of(fabric + ", thickness: 6e-4");
+    CHECK(thick.thickness == 6e-4);
+    CHECK(thick.area_density() == Approx(own.area_density()));
+    for (const double angle : {0.0, 0.8, 1.5}) {
+      CHECK(membrane_stiffness(thick).strip(angle) == Approx(membrane_stiffness(own).strip(angle)));
+      CHECK(plate_stiffness(thick).strip(angle) == Approx(plate_stiffness(own).strip(angle)));
+    }
+    CHECK(bending_stiffness(thick) == Approx(bending_stiffness(own)));
+  }
+  // Numbers of the bulk whose thickness the source does not give, and what is written beside the fabric.
+  const Material bulk = material_of(row("per volume") + ", thickness: 6e-4");
+  CHECK(bulk.density == 500);
+  CHECK(bulk.membrane_modulus == 1e6);
+  CHECK(bulk.bending_modulus == 2e6);
+  const Material written = material_of(
+      "fabric: cotton, thickness: 6e-4, density: 400, membrane_modulus: 7e4, bending_modulus: 9e4");
+  CHECK(written.density == 400);
+  CHECK(written.membrane_modulus == 7e4);
+  CHECK(written.bending_modulus == 9e4);
+  check_refused("fabric: cotton, thickness: 0", "\"thickness\" must be at least ");
 }
 
 TEST_CASE("fabrics: isotropic energies take the mean of warp and weft") {
