@@ -163,6 +163,19 @@ std::optional<double> written_thickness(const ConfigNode& material) {
   return value && *value >= bounds::smallest_length ? value : std::nullopt;
 }
 
+/// Whether a fabric's number for a key has to give way to what is written beside the fabric: a modulus to a
+/// stiffness by direction, and the other way round.
+bool replaced_by(const ConfigNode& written, const std::string& key) {
+  const auto has = [&](const char* name) {
+    const ConfigNode* node = written.find(name);
+    return node && node->kind != ConfigNode::Kind::null;
+  };
+  if (key == "membrane_modulus") return has("warp_stiffness");
+  if (key == "bending_modulus") return has("warp_bending");
+  if (key == "warp_stiffness" || key == "weft_stiffness") return has("membrane_modulus");
+  return (key == "warp_bending" || key == "weft_bending" || key == "bias_bending") && has("bending_modulus");
+}
+
 }  // namespace
 
 std::vector<std::string> fabric_names() { return own_table().names(); }
@@ -189,8 +202,9 @@ void apply_fabric(ConfigNode& experiment, ConfigErrors& errors) {
     material.key_locations.erase(material.key_locations.begin() + (at - material.entries.begin()));
     material.entries.erase(at);
     const ConfigNode row = fabric_row(fabric, written_thickness(material), errors);
+    const ConfigNode written = material;
     for (const auto& [name, value] : row.entries) {
-      if (name == "source" || material.find(name)) continue;
+      if (name == "source" || written.find(name) || replaced_by(written, name)) continue;
       ConfigNode own = value;
       own.where = fabric.where;
       material.add(name, own);

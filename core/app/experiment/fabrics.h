@@ -18,7 +18,8 @@ std::vector<std::string> fabric_names();
 /// a number.
 ConfigNode fabric_row(const ConfigNode& fabric, std::optional<double> thickness, ConfigErrors& errors);
 
-/// Replaces `material.fabric` of an experiment by its values for the keys that `material` does not have.
+/// Replaces `material.fabric` of an experiment by its values for the keys that `material` does not have,
+/// without those that could not stand beside what it has.
 void apply_fabric(ConfigNode& experiment, ConfigErrors& errors);
 
 }  // namespace drape

@@ -91,6 +91,32 @@ TEST_CASE("fabrics: a thickness beside a fabric keeps the sheet's mass and stiff
   check_refused("fabric: cotton, thickness: 0", "\"thickness\" must be at least ");
 }
 
+TEST_CASE("fabrics: a modulus beside a fabric replaces its stiffness by direction, and the other way round") {
+  const Scratch folder;
+  const std::string file = (folder / "own.csv").string();
+  folder.write("own.csv",
+               "name, mass, warp_stiffness, weft_stiffness, shear_stiffness, warp_bending, weft_bending\n"
+               "own, 0.3, 300, 200, 40, 2e-5, 9e-6\n");
+  const std::string row = "fabric: {file: " + file + ", row: own}";
+  const Material bent = material_of("fabric: white-dots-on-blk, bending_modulus: 9e4");
+  CHECK(bent.bending_modulus == 9e4);
+  CHECK_FALSE((bent.warp_bending || bent.weft_bending || bent.bias_bending));
+  const Material stretched = material_of(row + ", membrane_modulus: 7e4, thickness: 6e-4");
+  CHECK(stretched.membrane_modulus == 7e4);
+  CHECK_FALSE((stretched.warp_stiffness || stretched.weft_stiffness));
+  CHECK(stretched.shear_stiffness == 40);
+  CHECK(stretched.warp_bending == 2e-5);
+  const Material directed =
+      material_of("fabric: cotton, warp_bending: 3e-5, warp_stiffness: 50, thickness: 6e-4");
+  CHECK(directed.warp_bending == 3e-5);
+  CHECK(directed.warp_stiffness == 50);
+  CHECK(directed.bending_modulus == Material().bending_modulus);
+  CHECK(directed.membrane_modulus == Material().membrane_modulus);
+  check_refused(row + ", bending_modulus: 9e4, weft_bending: 1e-5",
+                "\"weft_bending\" needs \"warp_bending\"");
+  check_refused(row + ", bending_modulus: 9e4, warp_bending: 1e-5", "\"bending_modulus\" is not read beside");
+}
+
 TEST_CASE("fabrics: isotropic energies take the mean of warp and weft") {
   Material m;
   m.thickness = 1e-3;
