@@ -4,6 +4,7 @@
 #include <iostream>
 #include <memory>
 #include <numbers>
+#include <optional>
 
 #include "core/app/cli/commands.h"
 #include "core/app/cli/config_arguments.h"
@@ -34,22 +35,40 @@ void print_row(const std::string& label, const Directions& values, double unit,
   std::cout << "  " << unit_name << "\n";
 }
 
-void print_sheet(const Material& material) {
+constexpr const char* assumed = " (default, not measured)";
+
+/// The columns of a stiffness that were not measured, below its rows; nothing if all were.
+void print_assumed(const std::optional<double>& weft, const std::optional<double>& bias) {
+  if (weft && bias) return;
+  std::cout << padded("", 22)
+            << (weft   ? "bias"
+                : bias ? "weft"
+                       : "weft and bias")
+            << " not measured: as of an isotropic cloth\n";
+}
+
+void print_sheet(const Material& material, const ConfigNode& figures) {
   const Directions bending = strips(plate_stiffness(material));
   const double weight = material.area_density() * standard_gravity;
   Directions length;
   for (std::size_t i = 0; i < 3; ++i) length[i] = std::cbrt(bending[i] / weight);
   std::cout << padded("mass", 22) << 1e3 * material.area_density() << " g/m²\n"
+            << padded("thickness", 22) << 1e3 * material.thickness << " mm"
+            << (figures.find("thickness") ? "" : assumed) << "\n"
             << padded("", 22) << "       warp       weft       bias\n";
   print_row("bending length c", length, 1e-3, "mm (ASTM D1388, BS 3356, FAST-2)");
   print_row("overhang at 41.5°", length, 0.5e-3, "mm");
   print_row("flexural rigidity G", bending, standard_gravity * 1e-8, "mg cm");
   print_row("bending rigidity B", bending, 1e-6, "µN m (FAST-2)");
   print_row("", bending, standard_gravity * 1e-5, "gf cm²/cm (KES-FB2)");
+  if (material.warp_bending) print_assumed(material.weft_bending, material.bias_bending);
   if (material.bending_hysteresis > 0)
     std::cout << padded("hysteresis 2HB", 22) << 1e3 * material.bending_hysteresis << " mN, "
               << material.bending_hysteresis / (standard_gravity * 1e-3) << " gf cm/cm (KES-FB2)\n";
-  print_row("tensile stiffness", strips(membrane_stiffness(material)), 1, "N/m");
+  const bool stretched = figures.find("membrane_modulus") || material.warp_stiffness;
+  print_row("tensile stiffness", strips(membrane_stiffness(material)), 1,
+            std::string("N/m") + (stretched ? "" : assumed));
+  if (material.warp_stiffness) print_assumed(material.weft_stiffness, material.shear_stiffness);
 }
 
 struct FabricOptions {
@@ -83,7 +102,7 @@ int print_fabric(const FabricOptions& options) {
   std::cout << options.name;
   if (const ConfigNode* source = values.find("source")) std::cout << ": " << source->scalar;
   std::cout << "\n";
-  print_sheet(own);
+  print_sheet(own, values);
   const std::string value =
       options.file.empty() ? options.name : "{file: " + options.file + ", row: " + options.name + "}";
   std::cout

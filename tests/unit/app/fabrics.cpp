@@ -187,6 +187,17 @@ TEST_CASE("drape fabric prints what a laboratory measures, and lists the table")
   CHECK(cotton.out.find("hysteresis 2HB        1.216 mN, 0.12") != std::string::npos);
   CHECK(cotton.out.find("drape run configs/tests/cusick.yaml --set 'material.fabric=cotton-broad'") !=
         std::string::npos);
+  // What is a default says so.
+  const auto has = [](const Ended& run, const std::string& text) {
+    INFO(run.out);
+    CHECK(run.out.find(text) != std::string::npos);
+  };
+  has(sheet, "thickness             0.318 mm (default, not measured)\n");
+  has(sheet, "N/m (default, not measured)\n");
+  CHECK(sheet.out.find("as of an isotropic cloth") == std::string::npos);
+  has(cotton, "thickness             0.497 mm\n");
+  has(cotton, "weft and bias not measured: as of an isotropic cloth\n");
+  has(drape_with("fabric wool-lycra", folder.path), "N/m\n");
   const Ended wrong = drape_with("fabric denim", folder.path);
   CHECK(wrong.exit_code == 2);
   CHECK(wrong.err.find("unknown fabric \"denim\"") != std::string::npos);
