@@ -130,7 +130,8 @@ ConfigNode material_of(const Table& table, std::size_t row, const std::string& n
 }
 
 std::string remedy(const std::string& name, const std::vector<std::string>& names) {
-  const std::string nearest = nearest_word(name, names);
+  std::string nearest = nearest_word(name, names);
+  if (nearest.empty()) nearest = only_word_with(name, names);
   return nearest.empty() ? "it has " + joined(names) : "did you mean \"" + nearest + "\"?";
 }
 

@@ -42,6 +42,18 @@ std::string nearest_word(const std::string& typed, const std::vector<std::string
   return nearest;
 }
 
+std::string only_word_with(const std::string& part, const std::vector<std::string>& words) {
+  constexpr std::size_t least = 3;  // fewer letters are in a word by chance
+  std::string only;
+  if (part.size() < least) return only;
+  for (const std::string& word : words) {
+    if (folded(word).find(folded(part)) == std::string::npos) continue;
+    if (!only.empty()) return "";
+    only = word;
+  }
+  return only;
+}
+
 std::vector<std::string> split(const std::string& text, char separator) {
   std::vector<std::string> parts;
   std::size_t begin = 0;

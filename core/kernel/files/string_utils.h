@@ -8,6 +8,10 @@ namespace drape {
 /// The word closest to `typed`, or "" if none is close; ignores case and treats - as _.
 std::string nearest_word(const std::string& typed, const std::vector<std::string>& words);
 
+/// The only word that contains `part`, of three letters or more, or "" without one or with several; ignores
+/// case and treats - as _.
+std::string only_word_with(const std::string& part, const std::vector<std::string>& words);
+
 /// The parts between separators; empty ones too, so one more than there are separators.
 std::vector<std::string> split(const std::string& text, char separator);
 

@@ -128,6 +128,10 @@ TEST_CASE("fabrics: isotropic energies take the mean of warp and weft") {
 TEST_CASE("fabrics: a name that the table does not have is refused with the nearest one") {
   check_refused("fabric: gray_interlok",
                 "unknown fabric \"gray_interlok\"; did you mean \"gray-interlock\"?");
+  // A part of one name, too short to be near it, and one of two names.
+  check_refused("fabric: white-dots", "unknown fabric \"white-dots\"; did you mean \"white-dots-on-blk\"?");
+  check_refused("fabric: Denim", "did you mean \"11oz-black-denim\"?");
+  check_refused("fabric: polyester", "unknown fabric \"polyester\"; it has cotton, ");
   check_refused("fabric: [a, b]", "\"fabric\" is a name, or {file: fabrics.csv, row: NAME}");
 }
 
