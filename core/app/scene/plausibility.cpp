@@ -16,6 +16,7 @@ namespace {
 
 // What no fabric and no scene with one exceeds, by a wide margin: a warning has to be a mistake.
 constexpr double smallest_cloth = 5e-3, largest_cloth = 50;     // diagonal [m]
+constexpr double least_garment = 0.3, largest_garment = 3;      // longest extent of most garments [m]
 constexpr double least_weight = 3e-3, largest_weight = 10;      // [kg/m²]
 constexpr double shortest_bending = 2e-4, longest_bending = 2;  // bending length [m]
 constexpr double fewest_edges = 0.02, most_edges = 1000;        // bending length over an edge
@@ -39,19 +40,42 @@ std::string point_text(const Eigen::Vector3d& p) {
   return "(" + rounded_text(p.x(), 3) + ", " + rounded_text(p.y(), 3) + ", " + rounded_text(p.z(), 3) + ")";
 }
 
+/// The units in which the numbers of a cloth with this longest extent [m] would be those of a garment, each
+/// with what to do; "" if there is none.
+std::string other_units(const ClothParameters& cloth, double longest) {
+  struct Unit {
+    const char *name, *key;
+    double metres;
+    const char* conversion;
+  };
+  static constexpr Unit units[] = {{"centimetres", "cm", 1e-2, "divide every length by 100"},
+                                   {"millimetres", "mm", 1e-3, "divide every length by 1000"},
+                                   {"inches", "inch", 0.0254, "multiply every length by 0.0254"}};
+  const bool has_unit = cloth.shape == "file" || cloth.shape == "polygon";
+  double own = 1;
+  for (const Unit& unit : units)
+    if (has_unit && cloth.unit == unit.key) own = unit.metres;
+  std::string text;
+  for (const Unit& unit : units) {
+    const double length = longest / own * unit.metres;
+    if (unit.metres == own || length < least_garment || length > largest_garment) continue;
+    text += (text.empty() ? "if its lengths are in " : "; if in ") + std::string(unit.name) + ", " +
+            (has_unit ? "write \"unit: " + std::string(unit.key) + "\"" : unit.conversion);
+  }
+  return text;
+}
+
 void check_size(const ExperimentParameters& p, const SceneSummary& s, Warnings& warnings) {
   const double size = s.size.norm();
-  const bool file = p.cloth.shape == "file";
-  if (size > largest_cloth)
-    warnings.add("cloth", "the cloth is " + size_text(s.size) +
-                              "; fabric is usually between 0.05 and 10 m wide, and lengths are in metres; " +
-                              (file ? "if its file is in millimetres or centimetres, add \"unit: mm\" or "
-                                      "\"unit: cm\""
-                                    : "if these are millimetres, divide every length by 1000"));
-  else if (size < smallest_cloth)
-    warnings.add("cloth", "the cloth is " + size_text(s.size) +
-                              "; fabric is usually between 0.05 and 10 m wide, and lengths are in metres; " +
-                              (file ? "choose the file's \"unit\" or \"scale\"" : "choose a larger size"));
+  if (size >= smallest_cloth && size <= largest_cloth) return;
+  std::string remedy = size > largest_cloth ? other_units(p.cloth, s.size.maxCoeff()) : "";
+  if (remedy.empty())
+    remedy = p.cloth.shape == "file" ? "choose the file's \"unit\" or \"scale\""
+             : size > largest_cloth  ? "choose a smaller size"
+                                     : "choose a larger size";
+  warnings.add("cloth", "the cloth is " + size_text(s.size) +
+                            "; fabric is usually between 0.05 and 10 m wide, and lengths are in metres; " +
+                            remedy);
 }
 
 void check_material(const ExperimentParameters& p, const SceneSummary& s, Warnings& warnings) {

@@ -93,7 +93,29 @@ TEST_CASE("What no fabric has gets a warning that says what is usual, before a r
   CHECK_THAT(
       warnings_of(scene_yaml("{shape: square, side: 1000, vertices: 900}")),
       Contains("2: the cloth is 1000 × 1000 m; fabric is usually between 0.05 and 10 m wide, and lengths "
-               "are in metres; if these are millimetres, divide every length by 1000\n"));
+               "are in metres; if its lengths are in millimetres, divide every length by 1000\n"));
+  // In centimetres, or in one of two units, or in none.
+  const auto remedy = [](const std::string& cloth) {
+    const std::string text = warnings_of(scene_yaml(cloth)), before = "lengths are in metres; ";
+    const std::size_t from = text.find(before) + before.size();
+    return text.substr(from, text.find('\n', from) - from);
+  };
+  CHECK(remedy("{shape: rectangle, size: [120, 80], vertices: 900}") ==
+        "if its lengths are in centimetres, divide every length by 100");
+  CHECK(
+      remedy("{shape: square, side: 60, vertices: 900}") ==
+      "if its lengths are in centimetres, divide every length by 100; if in inches, multiply every length by "
+      "0.0254");
+  CHECK(remedy("{shape: square, side: 10000, vertices: 900}") == "choose a smaller size");
+  CHECK(remedy("{shape: polygon, loops: [{points: [0, 0, 120, 0, 120, 80, 0, 80]}], vertices: 900}") ==
+        "if its lengths are in centimetres, write \"unit: cm\"");
+  CHECK(
+      remedy(
+          "{shape: polygon, unit: cm, loops: [{points: [0, 0, 9e3, 0, 9e3, 8e3, 0, 8e3]}], vertices: 900}") ==
+      "choose a smaller size");
+  CHECK(
+      remedy("{shape: polygon, unit: inch, loops: [{points: [0, 0, 2200, 0, 2200, 900, 0, 900]}], vertices: "
+             "900}") == "if its lengths are in millimetres, write \"unit: mm\"");
   CHECK_THAT(warnings_of(scene_yaml("{shape: square, side: 1e-3, vertices: 900}")),
              Contains("2: the cloth is 1 × 1 mm"));
   // A thickness in millimetres, and half of one.
