@@ -36,6 +36,10 @@ void MaterialParameters::declare(Declaration<MaterialParameters>& d) {
       .description(
           "a fabric whose figures stand for the keys that are not written here: a name (`drape fabric` lists "
           "them), or {file: fabrics.csv, row: NAME}");
+  d.add("from_fabric", &MaterialParameters::from_fabric)
+      .description(
+          "the `fabric` that gave numbers of this material, which drape writes to the config of a run, where "
+          "all of them stand; a record, from which nothing is taken");
 }
 
 void ClothParameters::declare(Declaration<ClothParameters>& d) {

@@ -21,7 +21,8 @@ struct LoopParameters {
 
 /// The cloth's material, from which a fabric of a table may stand (core/app/experiment/fabrics.h).
 struct MaterialParameters : Material {
-  ConfigNode fabric;  ///< NAME, or {file, row}
+  ConfigNode fabric;                       ///< NAME, or {file, row}
+  std::optional<std::string> from_fabric;  ///< the fabric that gave the numbers of a saved config
   static void declare(Declaration<MaterialParameters>& d);
 };
 

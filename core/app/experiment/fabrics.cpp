@@ -177,6 +177,31 @@ bool replaced_by(const ConfigNode& written, const std::string& key) {
   return (key == "warp_bending" || key == "weft_bending" || key == "bias_bending") && has("bending_modulus");
 }
 
+void remove(ConfigNode& map, const std::string& key) {
+  const auto at = std::find_if(map.entries.begin(), map.entries.end(),
+                               [&](const auto& entry) { return entry.first == key; });
+  if (at == map.entries.end()) return;
+  map.key_locations.erase(map.key_locations.begin() + (at - map.entries.begin()));
+  map.entries.erase(at);
+}
+
+/// Adds a fabric's numbers to a material, and the fabric's name as `from_fabric`. Refuses a fabric that gives
+/// none, as beside the numbers that a run has saved.
+void add_fabric(ConfigNode& material, const ConfigNode& fabric, ConfigErrors& errors) {
+  const ConfigNode written = material, row = fabric_row(fabric, written_thickness(written), errors);
+  const auto add = [&](const std::string& key, ConfigNode value) {
+    value.where = fabric.where;
+    material.add(key, std::move(value));
+  };
+  for (const auto& [key, value] : row.entries)
+    if (key != "source" && !written.find(key) && !replaced_by(written, key)) add(key, value);
+  const std::string name = fabric.kind == ConfigNode::Kind::scalar ? fabric.scalar : fabric.one_line();
+  if (!row.entries.empty() && material.entries.size() == written.entries.size())
+    errors.push_back({fabric.where, "\"fabric\" gives nothing: every number of " + excerpt(name) +
+                                        " is written beside it; leave out those that it is to give"});
+  add("from_fabric", ConfigNode::of(name));
+}
+
 }  // namespace
 
 std::vector<std::string> fabric_names() { return own_table().names(); }
@@ -195,21 +220,12 @@ ConfigNode fabric_row(const ConfigNode& fabric, std::optional<double> thickness,
 
 void apply_fabric(ConfigNode& experiment, ConfigErrors& errors) {
   for (auto& [key, material] : experiment.entries) {
-    if (key != "material" || material.kind != ConfigNode::Kind::map) continue;
-    const auto at = std::find_if(material.entries.begin(), material.entries.end(),
-                                 [](const auto& entry) { return entry.first == "fabric"; });
-    if (at == material.entries.end() || at->second.kind == ConfigNode::Kind::null) continue;
-    const ConfigNode fabric = at->second;
-    material.key_locations.erase(material.key_locations.begin() + (at - material.entries.begin()));
-    material.entries.erase(at);
-    const ConfigNode row = fabric_row(fabric, written_thickness(material), errors);
-    const ConfigNode written = material;
-    for (const auto& [name, value] : row.entries) {
-      if (name == "source" || written.find(name) || replaced_by(written, name)) continue;
-      ConfigNode own = value;
-      own.where = fabric.where;
-      material.add(name, own);
-    }
+    const ConfigNode* written = material.find("fabric");
+    if (key != "material" || !written || written->kind == ConfigNode::Kind::null) continue;
+    const ConfigNode fabric = *written;
+    remove(material, "fabric");
+    remove(material, "from_fabric");
+    add_fabric(material, fabric, errors);
   }
 }
 

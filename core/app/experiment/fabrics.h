@@ -19,7 +19,7 @@ std::vector<std::string> fabric_names();
 ConfigNode fabric_row(const ConfigNode& fabric, std::optional<double> thickness, ConfigErrors& errors);
 
 /// Replaces `material.fabric` of an experiment by its values for the keys that `material` does not have,
-/// without those that could not stand beside what it has.
+/// without those that could not stand beside what it has, and by its name as `material.from_fabric`.
 void apply_fabric(ConfigNode& experiment, ConfigErrors& errors);
 
 }  // namespace drape

@@ -1,6 +1,7 @@
 #include "core/app/report/model_keys.h"
 
 #include <algorithm>
+#include <optional>
 
 namespace drape {
 
@@ -10,6 +11,16 @@ using NodeKind = ConfigNode::Kind;
 
 constexpr const char* model_keys[] = {"cloth",    "levels",  "material", "pins",      "handles", "schedule",
                                       "energies", "refiner", "contact",  "obstacles", "friction"};
+
+/// The part of an experiment below a key, without the record of where a material's numbers are from; empty if
+/// it lacks the key.
+std::optional<ConfigNode> part_of(const ConfigNode& config, const std::string& key) {
+  const ConfigNode* node = config.find(key);
+  if (!node) return std::nullopt;
+  ConfigNode part = *node;
+  if (key == "material") std::erase_if(part.entries, [](const auto& e) { return e.first == "from_fabric"; });
+  return part;
+}
 
 /// The word that names an item of a list in a path: its type or name, or its index.
 std::string word_of(const ConfigNode& item, std::size_t index) {
@@ -40,14 +51,14 @@ void add_differences(const ConfigNode& a, const ConfigNode& b, const std::string
 std::string model_of(const ConfigNode& config) {
   std::string text;
   for (const char* key : model_keys)
-    if (const ConfigNode* node = config.find(key)) text += std::string(key) + ": " + node->one_line() + "\n";
+    if (const auto node = part_of(config, key)) text += std::string(key) + ": " + node->one_line() + "\n";
   return text;
 }
 
 std::vector<std::string> differing_model_keys(const ConfigNode& a, const ConfigNode& b) {
   std::vector<std::string> differing;
   for (const char* key : model_keys)
-    if (const ConfigNode* of_a = a.find(key), *of_b = b.find(key); of_a && of_b)
+    if (const auto of_a = part_of(a, key), of_b = part_of(b, key); of_a && of_b)
       add_differences(*of_a, *of_b, key, differing);
   return differing;
 }

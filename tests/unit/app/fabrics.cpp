@@ -4,6 +4,8 @@
 
 #include <catch2/catch.hpp>
 
+#include "core/app/files/yaml_file.h"
+#include "core/app/report/model_keys.h"
 #include "core/numerics/elements/orthotropic_stiffness.h"
 #include "tests/support/command.h"
 #include "tests/support/solve.h"
@@ -56,6 +58,32 @@ TEST_CASE("fabrics: what is written beside a fabric takes precedence, and the nu
   const ConfigNode* saved = e.resolved.find("material");
   CHECK(saved->find("weft_bending")->scalar == "1.427e-05");
   CHECK(saved->find("fabric")->kind == ConfigNode::Kind::null);
+  CHECK(saved->find("from_fabric")->scalar == "gray-interlock");
+  const Experiment again = experiment_from(to_yaml(e.resolved));
+  CHECK(again.parameters.material == m);
+  CHECK(to_yaml(again.resolved) == to_yaml(e.resolved));
+}
+
+TEST_CASE("fabrics: a fabric beside the numbers that a run has saved gives nothing and is refused") {
+  const ConfigNode saved = experiment_from(experiment("fabric: cotton")).resolved;
+  const std::string numbers =
+      replaced(saved.find("material")->one_line(), "fabric: null", "fabric: wool-lycra");
+  CHECK_THROWS_WITH(
+      material_of(numbers.substr(1, numbers.size() - 2)),
+      Catch::Contains("\"fabric\" gives nothing: every number of wool-lycra is written beside it; "
+                      "leave out those that it is to give"));
+  const Experiment e = experiment_from(experiment("from_fabric: cotton, fabric: wool-lycra"));
+  CHECK(e.resolved.find("material")->find("from_fabric")->scalar == "wool-lycra");
+}
+
+TEST_CASE("fabrics: a name is no difference between two models") {
+  const ConfigNode named = experiment_from(experiment("fabric: gray-interlock")).resolved;
+  std::string numbers = named.find("material")->one_line();
+  numbers =
+      replaced(numbers.substr(1, numbers.size() - 2), "from_fabric: gray-interlock", "from_fabric: null");
+  const ConfigNode plain = experiment_from(experiment(numbers)).resolved;
+  CHECK(differing_model_keys(named, plain).empty());
+  CHECK(model_of(named) == model_of(plain));
 }
 
 TEST_CASE("fabrics: a thickness beside a fabric keeps the sheet's mass and stiffness") {
@@ -149,6 +177,9 @@ TEST_CASE("fabrics: a row of a file, whose faults are named") {
   CHECK(m.weft_bending == 9e-6);
   CHECK_FALSE(m.bias_bending);
   CHECK(material_of(row("1")) == m);
+  const Experiment e = experiment_from(experiment(row("twill")));
+  CHECK(e.parameters.material.from_fabric == "{file: " + file + ", row: twill}");
+  CHECK(to_yaml(experiment_from(to_yaml(e.resolved)).resolved) == to_yaml(e.resolved));
   check_refused(row("twil"), "own.csv has 4 rows and none named \"twil\"; did you mean \"twill\"?");
   check_refused(row("light"), "row \"light\" lacks column \"mass\" [kg/m²]");
   check_refused(row("worse"),
