@@ -127,25 +127,43 @@ std::optional<std::vector<double>> energies_of_a_piece(const Experiment& e, cons
   return finite ? std::optional(values) : std::nullopt;
 }
 
+/// Numbers of a measured stiffness, with an energy that reads all of them.
+struct Measured {
+  const char *read_by, *stiffness;
+  EnergyRole role;
+  std::vector<std::pair<const char*, std::optional<double> Material::*>> numbers;  ///< warp first
+};
+
+/// The energies that read a fabric's stiffness in part, and that part, as "hinge reads only the mean of …,
+/// not"; otherwise that none reads it.
+std::string read_in_part(const Experiment& e, const Measured& group, bool warp_is_read) {
+  if (!warp_is_read) return "no energy of this scene reads its";
+  std::vector<std::string> names;
+  for (const NamedEnergy& energy : e.energies)
+    if (energy.energy->role() == group.role) names.push_back(energy.name);
+  return (names.size() == 1 ? names[0] + " reads" : "the energies of this scene read") +
+         " only the mean of its " + group.stiffness + " along warp and weft, not";
+}
+
 /// Measured numbers that no energy of the scene reads are a mistake in the choice of energies.
 void check_measured(const Experiment& e, double edge, Warnings& warnings) {
-  struct Group {
-    const char* read_by;  // an energy that has all of them
-    std::vector<std::pair<const char*, std::optional<double> Material::*>> numbers;
-  };
-  static const Group groups[] = {{"woven",
-                                  {{"warp_stiffness", &Material::warp_stiffness},
-                                   {"weft_stiffness", &Material::weft_stiffness},
-                                   {"shear_stiffness", &Material::shear_stiffness}}},
-                                 {"midedge_bending",
-                                  {{"warp_bending", &Material::warp_bending},
-                                   {"weft_bending", &Material::weft_bending},
-                                   {"bias_bending", &Material::bias_bending},
-                                   {"bending_hysteresis", nullptr}}}};
+  static const Measured groups[] = {{"woven",
+                                     "stiffness",
+                                     EnergyRole::membrane,
+                                     {{"warp_stiffness", &Material::warp_stiffness},
+                                      {"weft_stiffness", &Material::weft_stiffness},
+                                      {"shear_stiffness", &Material::shear_stiffness}}},
+                                    {"midedge_bending",
+                                     "bending",
+                                     EnergyRole::bending,
+                                     {{"warp_bending", &Material::warp_bending},
+                                      {"weft_bending", &Material::weft_bending},
+                                      {"bias_bending", &Material::bias_bending},
+                                      {"bending_hysteresis", nullptr}}}};
   const ConfigNode* written = e.source.find("material");
   if (!written) return;
-  for (const Group& group : groups) {
-    std::string unread;
+  for (const Measured& group : groups) {
+    std::vector<std::string> unread;
     const ConfigNode* first = nullptr;
     for (const auto& [key, number] : group.numbers) {
       const ConfigNode* node = written->find(key);
@@ -156,15 +174,22 @@ void check_measured(const Experiment& e, double edge, Warnings& warnings) {
       value *= 0.99;
       const auto energies = energies_of_a_piece(e, e.parameters.material, edge);
       if (!energies || energies_of_a_piece(e, other, edge) != energies) continue;
-      unread += (unread.empty() ? "\"" : ", \"") + std::string(key) + "\"";
+      unread.push_back("\"" + std::string(key) + "\"");
       if (!first) first = node;
     }
     if (!first) continue;
     const bool has_reader = std::any_of(e.energies.begin(), e.energies.end(), [&](const NamedEnergy& energy) {
       return energy.name == group.read_by;
     });
-    warnings.add(first->where, "no energy of this scene reads " + unread +
-                                   (has_reader ? "" : std::string("; ") + group.read_by + " does"));
+    const auto& fabric = e.parameters.material.from_fabric;
+    const auto& [warp, measured] = group.numbers[0];
+    const bool warp_is_read = e.parameters.material.*measured && unread[0] != "\"" + std::string(warp) + "\"";
+    warnings.add(
+        first->where,
+        (fabric ? "fabric \"" + *fabric + "\": " + read_in_part(e, group, warp_is_read)
+                : std::string("no energy of this scene reads")) +
+            " " + joined(unread) +
+            (has_reader ? "" : std::string("; ") + group.read_by + (fabric ? " reads each" : " does")));
   }
 }
 

@@ -153,8 +153,23 @@ TEST_CASE("What no fabric has gets a warning that says what is usual, before a r
             "warp_stiffness: 30",
             "{type: woven, warp_tension: [0.02, 3, 0.08, 200], weft_tension: [0.02, 3, 0.08, 200]}, hinge") ==
         "4: no energy of this scene reads \"warp_stiffness\"\n");
-  CHECK_THAT(measured("fabric: pink-ribbon-brown", "stvk, hinge"),
-             Contains("reads \"bias_bending\"; midedge_bending does"));
+  // Those of a fabric, of which the user has written none.
+  const auto fabric = [&](const std::string& material, const std::string& energies) {
+    return warnings_of("name: scene\ncloth: " + square + "\nlevels: 1\nmaterial: {" + material +
+                       "}\nenergies: [" + energies + ", gravity]\nmethods: {newton: {}}\n");
+  };
+  CHECK(fabric("fabric: pink-ribbon-brown", "stvk, midedge_bending") == "");
+  CHECK(fabric("fabric: pink-ribbon-brown", "stvk, hinge") ==
+        "4: fabric \"pink-ribbon-brown\": hinge reads only the mean of its bending along warp and weft, not "
+        "\"bias_bending\"; midedge_bending reads each\n");
+  CHECK(fabric("fabric: cotton-broad", "stvk, hinge, quadratic_bending") ==
+        "4: fabric \"cotton-broad\": the energies of this scene read only the mean of its bending along warp "
+        "and "
+        "weft, not \"bending_hysteresis\"; midedge_bending reads each\n");
+  CHECK(fabric("fabric: cotton-broad", "stvk") ==
+        "4: fabric \"cotton-broad\": no energy of this scene reads its \"warp_bending\", "
+        "\"bending_hysteresis\"; midedge_bending reads each\n");
+  CHECK(fabric("fabric: cotton", "stvk, hinge") == "");
   // d̂ above an edge.
   CHECK_THAT(warnings_of(scene_yaml(square, "", 3.18e-4, "[{type: ipc, dhat: 0.1}]")),
              Contains("contact distance dhat of 0.1 m is longer than most edges of level 0 (53 mm)"));
