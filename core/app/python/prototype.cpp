@@ -96,7 +96,11 @@ void register_class(const std::string& name, const py::object& type,
 
 void register_of_kind(const std::string& kind, const std::string& name, const py::object& type) {
   if (kind == Energy::kind) return register_class(name, type, &prototype_energy);
-  if (kind == Metric::kind) return register_class(name, type, &prototype_metric);
+  if (kind == Metric::kind) {
+    prototype_metric(
+        type());  // refuses a faulty one, which every experiment that names no metrics would have
+    return register_class(name, type, &prototype_metric);
+  }
   if (kind == Refiner::kind) return register_class(name, type, &prototype_refiner);
   if (kind == Solver::kind) return register_class(name, type, &prototype_solver);
   throw py::value_error("there are no prototypes of kind " + kind);

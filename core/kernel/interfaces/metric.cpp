@@ -20,10 +20,7 @@ bool collide(const std::string& a, const std::string& b) {
 void require_values(const MetricDeclaration& declared, const std::vector<MetricValue>& values) {
   for (std::size_t k = 0; k < values.size(); ++k) {
     const std::string& name = values[k].name;
-    const bool is_declared =
-        std::any_of(declared.columns.begin(), declared.columns.end(),
-                    [&](const MetricColumn& c) { return name == c.name || name.starts_with(c.name + "."); });
-    if (!is_declared)
+    if (!declared.declares(name))
       throw std::runtime_error("the value \"" + name + "\" is not among the declared columns");
     for (std::size_t j = 0; j < k; ++j)
       if (collide(values[j].name, name))

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <string>
 #include <vector>
 
@@ -45,6 +46,13 @@ struct MetricDeclaration {
   std::vector<MetricColumn> columns = {};   ///< all values, in the order of tables
   std::vector<MetricColours> colours = {};  ///< of pair metrics
   std::string text = {};                    ///< what the columns mean, in a few sentences
+
+  /// Whether a column declares the value: the column "a" declares "a" and "a.b".
+  bool declares(const std::string& value) const {
+    return std::any_of(columns.begin(), columns.end(), [&](const MetricColumn& c) {
+      return value == c.name || value.starts_with(c.name + ".");
+    });
+  }
 };
 
 }  // namespace drape

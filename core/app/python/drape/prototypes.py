@@ -93,10 +93,10 @@ class Metric(_Prototype):
     scope = "state"
     """state, or pair: a coarse state, prolonged, against a fine one."""
     columns: dict = {}
-    """From the name of each value to its Column."""
+    """From the name of each value that `measure` returns to its Column; at least one."""
 
     def measure(self, level: _core.Level, x: numpy.ndarray, other: Optional[numpy.ndarray]) -> dict:
-        """Values by name. x is n×3 [m], of a pair the fine state; `other` is the coarse one."""
+        """Values by the names in `columns`. x is n×3 [m], of a pair the fine state; `other` is the coarse one."""
         raise NotImplementedError
 
 
@@ -121,8 +121,8 @@ class Solver(_Prototype):
 def register(name: str, prototype: type) -> type:
     """Register a prototype under the name that experiments use; it replaces an earlier one of that name.
 
-    Raises TypeError for a class that is not derived from Energy, Metric, Refiner or Solver, RuntimeError if a
-    plugin's library has the name. Call it while no experiment is being read in another thread.
+    Raises TypeError for a class that is not derived from Energy, Metric, Refiner or Solver and for a metric whose
+    columns are missing or not Columns, RuntimeError if a plugin's library has the name. Call it while no experiment is being read in another thread.
     """
     for kind in (Energy, Metric, Refiner, Solver):
         if isinstance(prototype, type) and issubclass(prototype, kind):

@@ -1,0 +1,34 @@
+"""What is refused of a metric in Python."""
+
+import pytest
+
+import drape
+
+
+@pytest.mark.parametrize("columns, message", [
+    ({}, "Overhang.columns must be a dict with a drape.Column for every value that measure returns"),
+    (["overhang"], r"Overhang.columns must be a dict .*, not \['overhang'\]"),
+    ({"overhang": "m"}, "Overhang.columns: \"overhang\" must be a drape.Column, such as .*, not 'm'"),
+])
+def test_a_metric_declares_its_columns(columns, message):
+    with pytest.raises(TypeError, match=message):
+        drape.register("faulty", type("Overhang", (drape.Metric,), {"columns": columns}))
+    assert "faulty" not in dict(drape.plugins("metric"))
+
+
+@pytest.mark.parametrize("answer, error, message", [
+    ({"overhng": 1.0}, ValueError, "Overhang.measure returned \"overhng\", which is not in Overhang.columns"),
+    (1.5, TypeError, "Overhang.measure must return a dict from the names in Overhang.columns to numbers, not 1.5"),
+    ({"overhang": "far"}, TypeError, "Overhang.measure must return a number for \"overhang\", not 'far'"),
+])
+def test_a_metric_returns_the_numbers_that_it_declares(small, answer, error, message):
+    class Overhang(drape.Metric):
+        parameters = {"faulty": False}  # experiments that name no metrics have this one too
+        columns = {"overhang": drape.Column("m", "neither")}
+
+        def measure(self, level, x, other):
+            return answer if self.faulty else {"overhang": 1.0}
+
+    drape.register("overhang", Overhang)
+    with pytest.raises(error, match=message):
+        drape.Experiment({**small, "metrics": [{"type": "overhang", "faulty": True}]}).run(progress=False)
