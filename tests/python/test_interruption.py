@@ -30,6 +30,15 @@ def test_callbacks_see_levels(experiment):
     assert levels[1].x.shape == (121, 3) and levels[1].iterations > 0
 
 
+def test_callbacks_know_the_method(experiment):
+    iterations, levels = [], []
+    experiment.run(methods=["pcs", "cascadic"], on_iteration=iterations.append, on_level=levels.append, progress=False)
+    assert [(level.method, level.level) for level in levels] == [("pcs", 0), ("pcs", 1), ("cascadic", 0), ("cascadic", 1)]
+    for method in ("pcs", "cascadic"):
+        assert sum(i.method == method for i in iterations) == sum(l.iterations for l in levels if l.method == method)
+    assert "cascadic" in repr(iterations[-1])
+
+
 def test_states_of_callbacks_may_be_kept(experiment):
     kept = []
     result = experiment.run(on_iteration=lambda i: kept.append(i.x), progress=False)

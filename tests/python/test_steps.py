@@ -25,6 +25,7 @@ def test_iterations_have_the_bits_of_a_run(experiment):
     assert numpy.allclose(residuals, run.iterations["force_residual"], rtol=1e-8)
     assert solver.levels[-1].x.tobytes() == run["pcs"].levels[-1].x.tobytes() == states[-1].tobytes()
     assert [level.status for level in solver.levels] == ["converged", "converged"]
+    assert iteration.method == solver.levels[0].method == "pcs"
     assert list(solver) == []
 
 

@@ -26,15 +26,18 @@ namespace fs = std::filesystem;
 /// GIL.
 class Callbacks : public Observer {
  public:
-  /// Functions of an Iteration and of a LevelResult; None for none.
+  /// Functions of an Iteration and of a MethodLevelResult; None for none.
   Callbacks(const py::object& on_iteration, const py::object& on_level)
       : on_iteration_(function("on_iteration", on_iteration)), on_level_(function("on_level", on_level)) {}
 
+  void method_started(const std::string& method) { method_ = method; }
   void level_started(int) override { refine_ = false; }
   void iteration(const IterationRow& row, const Positions& x) override {
-    if (on_iteration_) call(on_iteration_, Iteration{row, x});
+    if (on_iteration_) call(on_iteration_, Iteration{row, x, method_});
   }
-  void level_finished(const LevelResult& result) override { call(on_level_, result); }
+  void level_finished(const LevelResult& result) override {
+    call(on_level_, MethodLevelResult{result, method_});
+  }
   bool refine_requested() override { return std::exchange(refine_, false); }
 
   bool stop_requested() override {
@@ -83,6 +86,7 @@ class Callbacks : public Observer {
   }
 
   SharedObject on_iteration_, on_level_;  // null for none
+  std::string method_;
   bool stop_ = false, refine_ = false;
   std::exception_ptr error_;
 };
@@ -100,6 +104,7 @@ void run(const ExperimentHandle& handle, const std::vector<std::string>& methods
   options.verbosity = progress ? Verbosity::progress : Verbosity::quiet;
   options.report = report;
   options.stop = [&] { return callbacks.stop_requested(); };  // of solves that are not observed too
+  options.method_started = [&](const std::string& method) { callbacks.method_started(method); };
   options.observer = &callbacks;
   forget_failure();
   std::exception_ptr error;
@@ -146,6 +151,7 @@ void bind_results(py::module_& m) {
 
 void bind_run(py::module_& m) {
   py::class_<Iteration>(m, "Iteration", "One Newton iteration and the state after it.")
+      .def_readonly("method", &Iteration::method, "The method under way, as the experiment names it.")
       .def_readonly("level", &Iteration::level)
       .def_readonly("step", &Iteration::step)
       .def_readonly("iteration", &Iteration::iteration, "Within its step.")
@@ -163,26 +169,27 @@ void bind_run(py::module_& m) {
       .def_readonly("smallest_gap", &Iteration::smallest_gap, "Of them [m].")
       .def_readonly("x", &Iteration::x, "n×3 positions [m], read-only.")
       .def("__repr__", [](const Iteration& i) {
-        return "<drape.Iteration level " + std::to_string(i.level) + ", step " + std::to_string(i.step) +
-               ", force_residual " + fixed_text(i.force_residual, 6) + ">";
+        return "<drape.Iteration " + i.method + ", level " + std::to_string(i.level) + ", step " +
+               std::to_string(i.step) + ", force_residual " + fixed_text(i.force_residual, 6) + ">";
       });
 
-  py::class_<LevelResult>(m, "LevelResult", "How a level of a solve ended.")
-      .def_readonly("level", &LevelResult::level)
+  py::class_<MethodLevelResult>(m, "LevelResult", "How a level of a method ended.")
+      .def_readonly("method", &MethodLevelResult::method, "As the experiment names it.")
+      .def_readonly("level", &MethodLevelResult::level)
       .def_property_readonly(
-          "status", [](const LevelResult& r) { return to_string(r.outcome); },
+          "status", [](const MethodLevelResult& r) { return to_string(r.outcome); },
           "converged, max_steps_reached, stalled, cancelled, infeasible, …")
-      .def_readonly("message", &LevelResult::message)
-      .def_readonly("steps", &LevelResult::steps)
-      .def_readonly("iterations", &LevelResult::iterations)
-      .def_readonly("factorisations", &LevelResult::factorisations)
-      .def_readonly("seconds", &LevelResult::seconds)
-      .def_readonly("seconds_by_phase", &LevelResult::seconds_by_phase)
-      .def_readonly("force_residual", &LevelResult::force_residual, "Of the objective [1].")
-      .def_readonly("smallest_gap", &LevelResult::smallest_gap, "[m]; None without a contact model.")
-      .def_readonly("contact_stiffness", &LevelResult::contact_stiffness,
+      .def_readonly("message", &MethodLevelResult::message)
+      .def_readonly("steps", &MethodLevelResult::steps)
+      .def_readonly("iterations", &MethodLevelResult::iterations)
+      .def_readonly("factorisations", &MethodLevelResult::factorisations)
+      .def_readonly("seconds", &MethodLevelResult::seconds)
+      .def_readonly("seconds_by_phase", &MethodLevelResult::seconds_by_phase)
+      .def_readonly("force_residual", &MethodLevelResult::force_residual, "Of the objective [1].")
+      .def_readonly("smallest_gap", &MethodLevelResult::smallest_gap, "[m]; None without a contact model.")
+      .def_readonly("contact_stiffness", &MethodLevelResult::contact_stiffness,
                     "Barrier stiffness of each contact model at the end [Pa].")
-      .def_readonly("x", &LevelResult::x, "n×3 positions [m], read-only.");
+      .def_readonly("x", &MethodLevelResult::x, "n×3 positions [m], read-only.");
 
   bind_results(m);
   py::class_<ExperimentHandle> experiment(py::object(m.attr("ExperimentBase")));

@@ -82,7 +82,13 @@ class Solve {
     const bool advanced = exclusively([&] { return solve_->advance(); });
     if (PyErr_CheckSignals() != 0) throw py::error_already_set();
     if (!advanced) throw py::stop_iteration();
-    return {solve_->row(), solve_->x()};
+    return {solve_->row(), solve_->x(), method_};
+  }
+
+  std::vector<MethodLevelResult> levels() {
+    std::vector<MethodLevelResult> levels;
+    for (const LevelResult& result : idle().finished()) levels.push_back({result, method_});
+    return levels;
   }
 
   Checkpoint checkpoint() { return {idle().checkpoint(), method_, scene_.experiment->resolved.one_line()}; }
@@ -164,9 +170,7 @@ void bind_solve(py::module_& m) {
            "Change one value of the experiment, a material's or a pin's, and go on from the present state. "
            "Raises ConfigError, with nothing changed, if it is refused.")
       .def("checkpoint", &Solve::checkpoint, "The state at the beginning of the step of the last iteration.")
-      .def_property_readonly(
-          "levels", [](Solve& s) { return s.idle().finished(); },
-          "Results of the finished levels since the last `set`.")
+      .def_property_readonly("levels", &Solve::levels, "Results of the finished levels since the last `set`.")
       .def_property_readonly("method", &Solve::method)
       .def_property_readonly("scene", &Solve::scene, py::return_value_policy::copy);
 

@@ -73,9 +73,15 @@ struct ExperimentHandle {
 /// Issues a UserWarning for everything about the scene that no fabric has.
 void warn_of_implausible(const SceneHandle& scene);
 
-/// An iteration and its state.
+/// An iteration of a method, and its state.
 struct Iteration : IterationRow {
   Positions x;
+  std::string method;
+};
+
+/// The result of one level of a method.
+struct MethodLevelResult : LevelResult {
+  std::string method;
 };
 
 // What each file adds to the module; Python's own part of the package is in drape/.

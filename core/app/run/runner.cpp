@@ -193,6 +193,7 @@ bool run(const Experiment& experiment, const Scene& scene, const RunOptions& opt
     observer.method_started(solver.can_resume(), state);
     progress.method_started(name);
     if (options.view) options.view->method_started(name);
+    if (options.method_started) options.method_started(name);
     if (under_way) {
       catch_up(state, progress, options.view);
     } else {

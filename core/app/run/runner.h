@@ -24,8 +24,9 @@ struct RunOptions {
   int first_level = 0;                        ///< first level of every method
   std::string warm_started_from;              ///< origin of a warm start, in words; empty without one
   std::function<bool()> stop;                 ///< polled after every step; may be empty
-  Observer* observer = nullptr;               ///< sees every event after it is recorded; may be null
-  LiveView* view = nullptr;                   ///< shows the run and may stop it; may be null
+  std::function<void(const std::string&)> method_started;  ///< called as a method begins; may be empty
+  Observer* observer = nullptr;  ///< sees every event after it is recorded; may be null
+  LiveView* view = nullptr;      ///< shows the run and may stop it; may be null
 };
 
 /// A run was aborted after it had begun, as on a full disk. Its folder records the cause if that is possible.
