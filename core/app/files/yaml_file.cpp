@@ -159,13 +159,6 @@ ConfigNode parse_value(const std::string& text, const std::string& name, ConfigE
   return {};
 }
 
-void set_places(ConfigNode& node, const Location& where) {
-  node.where = where;
-  for (ConfigNode& item : node.items) set_places(item, where);
-  for (auto& entry : node.entries) set_places(entry.second, where);
-  for (Location& key : node.key_locations) key = where;
-}
-
 /// The child of `node` that one word of a path names; a new key is added. Null without such a child.
 ConfigNode* step(ConfigNode& node, const std::string& word, const Location& where) {
   if (node.kind == Kind::list) {
@@ -215,6 +208,13 @@ std::optional<ConfigNode> value_of_option(const std::string& text, const std::st
   if (errors.size() != before) return std::nullopt;
   set_places(value, {option, 0, 0});
   return value;
+}
+
+void set_places(ConfigNode& node, const Location& where) {
+  node.where = where;
+  for (ConfigNode& item : node.items) set_places(item, where);
+  for (auto& entry : node.entries) set_places(entry.second, where);
+  for (Location& key : node.key_locations) key = where;
 }
 
 bool set_path(ConfigNode& root, const std::string& path, const std::string& value, ConfigErrors& errors) {

@@ -23,6 +23,9 @@ std::string to_yaml(const ConfigNode& node);
 std::optional<ConfigNode> value_of_option(const std::string& text, const std::string& option,
                                           ConfigErrors& errors);
 
+/// Gives a node and all within it, keys too, one location.
+void set_places(ConfigNode& node, const Location& where);
+
 /// Sets the node at a path to a YAML value. A path consists of keys and, in lists, of indices from 0, types
 /// or names ("metrics.0.type", "energies.gravity.acceleration"). Missing maps are made; a plugin's bare name
 /// becomes `{type: name}`. Locations are named "--set <path>". Returns false, with an error appended, if the

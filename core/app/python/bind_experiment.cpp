@@ -30,6 +30,16 @@ void check(const ExperimentHandle& e, bool allow_memory) {
   throw_errors(errors);
 }
 
+/// Faults elsewhere are left to `check`: a value that is set next may mend them.
+void set(ExperimentHandle& e, const std::string& key, const py::object& value) {
+  ConfigNode changed = with_value(e.source, key, value);
+  ConfigErrors errors;
+  read_experiment(changed, registry(), errors);
+  std::erase_if(errors, [&](const ConfigError& error) { return error.where.file != option_of(key); });
+  throw_errors(errors);
+  e.source = std::move(changed);
+}
+
 }  // namespace
 
 std::shared_ptr<const Experiment> ExperimentHandle::read() const {
@@ -62,14 +72,10 @@ void warn_of_implausible(const SceneHandle& s) {
 void bind_experiment(py::module_& m) {
   py::class_<ExperimentHandle>(m, "ExperimentBase", "See drape.Experiment.")
       .def(py::init(&experiment_of), py::arg("source"))
-      .def(
-          "set",
-          [](ExperimentHandle& e, const std::string& key, const py::object& value) {
-            e.source = with_value(e.source, key, value);
-          },
-          py::arg("key"), py::arg("value"),
-          "Override one value, as `drape run --set KEY=VALUE` does; a str is read as YAML. Raises "
-          "ConfigError for a path that is none. The key and the value are checked by `check` and `run`.")
+      .def("set", &set, py::arg("key"), py::arg("value"),
+           "Override one value, as `drape run --set KEY=VALUE` does; a str is read as YAML. Raises "
+           "ConfigError, with nothing changed, for an unknown key or a value that it cannot have. What the "
+           "value makes faulty elsewhere is left to `check` and `run`.")
       .def(
           "check", &check, py::arg("allow_memory") = false,
           "Validate the experiment without running it, and evaluate its energies at the start. Raises "

@@ -5,6 +5,7 @@
 #include "core/app/experiment/describe.h"
 #include "core/app/experiment/experiment_path.h"
 #include "core/app/files/json_file.h"
+#include "core/app/files/yaml_file.h"
 
 namespace drape::python {
 
@@ -146,13 +147,18 @@ py::dict value_of(const ConfigNode& node) {
   return py::module_::import("json").attr("loads")(json_text(json_value(node)));
 }
 
+std::string option_of(const std::string& key) { return "--set " + key; }
+
 ConfigNode with_value(ConfigNode experiment, const std::string& key, const py::object& value) {
   ConfigErrors errors;
-  const std::string option = "--set " + key;
-  if (py::isinstance<py::str>(value))
-    set_parameter(experiment, key, value.cast<std::string>(), option, errors);
-  else
-    set_parameter(experiment, key, node_of(value), Location{option, 0, 0}, errors);
+  if (py::isinstance<py::str>(value)) {
+    set_parameter(experiment, key, value.cast<std::string>(), option_of(key), errors);
+  } else {
+    const Location where{option_of(key)};
+    ConfigNode node = node_of(value);
+    set_places(node, where);
+    set_parameter(experiment, key, std::move(node), where, errors);
+  }
   throw_errors(errors);
   return experiment;
 }

@@ -50,8 +50,11 @@ ConfigNode node_of(const py::handle& value);
 /// The node as Python's dict, list, str, int, float, bool or None.
 py::dict value_of(const ConfigNode& node);
 
-/// The experiment with another value at the key; a str is read as YAML. Throws drape.ConfigError for a path
-/// that is none.
+/// The "file" in the locations of a value that is set: "--set material.thickness".
+std::string option_of(const std::string& key);
+
+/// The experiment with another value at the key, whose location is option_of(key); a str is read as YAML.
+/// Throws drape.ConfigError for a path that is none.
 ConfigNode with_value(ConfigNode experiment, const std::string& key, const py::object& value);
 
 /// Throws a Python exception drape.ConfigError unless the list is empty.

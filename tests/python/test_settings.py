@@ -1,0 +1,24 @@
+"""What Experiment.set refuses, and what it leaves to check."""
+
+import pytest
+
+import drape
+
+
+@pytest.mark.parametrize("key, value", [
+    ("material.thicknes", 1), ("material.thickness", -1), ("material.thickness", "thick"),
+    ("material", {"thicknes": 1}), ("energies.0", "nothing_such"),
+])
+def test_a_faulty_value_is_refused_where_it_is_set(experiment, key, value):
+    before = experiment.resolved
+    with pytest.raises(drape.ConfigError, match=f"--set {key}: "):
+        experiment.set(key, value)
+    assert experiment.resolved == before
+
+
+def test_values_that_need_each_other_are_set_one_after_another(experiment):
+    experiment.set("methods", {"pcs": {}})  # the reference is the method newton
+    with pytest.raises(drape.ConfigError, match="reference"):
+        experiment.check()
+    experiment.set("reference", "pcs")
+    experiment.check()
