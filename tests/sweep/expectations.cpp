@@ -87,6 +87,28 @@ TEST_CASE("a run passes when it ends as its sweep expects, for the reason expect
         "error: there is no column \"runs\"; did you mean \"run\"?\n");
 }
 
+TEST_CASE("every value that a metric declares is a column by its name") {
+  RunData data;
+  data.metrics = {{"sag", MetricScope::state, {.columns = {{.name = "sag"}}}},
+                  {"drift", MetricScope::pair, {.columns = {{.name = "drift", .shown = Shown::stored}}}},
+                  {"worst", MetricScope::state, {.columns = {{.name = "worst", .shown = Shown::summary}}}}};
+  MethodRecord& method = data.methods.emplace_back();
+  method.name = method.status = "newton";
+  for (int level = 0; level < 2; ++level) {
+    LevelRecord& one = method.levels.emplace_back();
+    one.level = level;
+    one.values["sag"] = one.values["worst"] = 3 - level;
+  }
+  method.consistency.push_back({0, 1, {{{"drift", 0.5}}}, ""});
+  RunRecord run;
+  run.data = data;
+  const RunTable table = table_of({"set", true, {run}});
+  CHECK(table_text(table, {"sag", "drift", "worst"}, TableFormat::csv) == "sag,drift,worst\n2,0.5,3\n");
+  CHECK_THAT(table_text(table, {}, TableFormat::csv), Contains(",sag,drift"));
+  const std::string shown = table_text(table, {}, TableFormat::markdown);
+  CHECK_THAT(shown, Contains("| worst |") && !Contains("sag") && !Contains("drift"));
+}
+
 TEST_CASE("an intersection, or an energy that is no number, fails whatever the status") {
   const auto rows = [](OptionalNumber energy, OptionalNumber intersections) {
     RunData data;

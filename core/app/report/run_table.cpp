@@ -68,11 +68,13 @@ std::string statuses(const MethodRecord& method) {
   return same ? method.status : joined(words);
 }
 
-/// A metric's value of one method: of a state metric, the worst of its levels'; of a pair metric, that of the
-/// coarsest level against the finest.
+/// A metric's value of one method: of a state metric, that of the finest level, or for summaries the worst of
+/// all levels; of a pair metric, that of the coarsest level against the finest.
 OptionalNumber metric_value(const MetricColumn& column, MetricScope scope, const MethodRecord& method) {
-  if (scope == MetricScope::state) return worst_over_levels(column, method);
   if (method.levels.empty()) return {};
+  if (scope == MetricScope::state)
+    return column.shown == Shown::summary ? worst_over_levels(column, method)
+                                          : method.levels.back().values.of(column.name);
   for (const ConsistencyRecord& pair : method.consistency)
     if (pair.coarse == method.levels.front().level && pair.fine == method.levels.back().level)
       return pair.values.of(column.name);
@@ -150,8 +152,8 @@ TableRow row_of(const RunData& run, const MethodRecord& method) {
     row["preview_" + m.name] = json_of(last_error(run, method, true, "own_" + m.name));
   }
   for (const MetricScope scope : {MetricScope::state, MetricScope::pair})
-    for (const MetricColumn& column : columns_of(run.metrics, scope, Shown::summary))
-      row[column.name] = json_of(metric_value(column, scope, method));
+    for (const MetricColumn& column : columns_of(run.metrics, scope, Shown::stored))
+      if (!row.contains(column.name)) row[column.name] = json_of(metric_value(column, scope, method));
   fault += remark;
   row["message"] = fault.substr(0, fault.find('\n'));
   return row;
@@ -182,11 +184,14 @@ RunTable table_of(const RunCollection& collection) {
   for (const MetricScope scope : {MetricScope::state, MetricScope::pair})
     for (const MetricColumn& column : columns_of(metrics, scope, Shown::summary))
       table.columns.push_back(column.name);
-  for (const std::string& name : summary_quantities(collection.error_measures()))
-    if (std::find(table.columns.begin(), table.columns.end(), name) == table.columns.end()) {
-      table.columns.push_back(name);
-      table.in_files.push_back(name);
-    }
+  const auto add_to_files = [&](const std::string& name) {
+    if (std::find(table.columns.begin(), table.columns.end(), name) != table.columns.end()) return;
+    table.columns.push_back(name);
+    table.in_files.push_back(name);
+  };
+  for (const std::string& name : summary_quantities(collection.error_measures())) add_to_files(name);
+  for (const MetricScope scope : {MetricScope::state, MetricScope::pair})
+    for (const MetricColumn& column : columns_of(metrics, scope, Shown::stored)) add_to_files(column.name);
   table.columns.push_back("message");
   for (const RunRecord& run : collection.runs) {
     Json name = {{"sweep", run.sweep}, {"run", run.name}, {"seed", count_of(run.seed)}};

@@ -10,7 +10,7 @@ enum class Better { lower, higher, neither };
 
 /// Where reports show a value.
 enum class Shown {
-  stored,  ///< only in results.json
+  stored,  ///< only in results.json, and in `drape table` by name
   tables,  ///< in tables of levels or of pairs of levels too
   summary  ///< also in tables with one row per method
 };
