@@ -50,6 +50,17 @@ TEST_CASE("an experiment's only method runs; of several without pcs some must be
              Contains("\"all\" cannot name a method, since --method all runs every one; rename it"));
 }
 
+TEST_CASE("a run of several methods ends with a table of their costs and errors") {
+  const Scratch folder(small_experiment());
+  const std::string run = "run e.yaml --no-report --overwrite -j 1 -o out ";
+  const std::string said = drape_with(run + "--method pcs,newton", folder.path).err;
+  const std::size_t table =
+      said.find("\nmethod  status     preview_seconds  preview_rms  seconds  error_rms  ");
+  REQUIRE(table != std::string::npos);
+  CHECK_THAT(said.substr(table), Contains("\npcs     converged  ") && Contains("\nnewton  converged  "));
+  CHECK_THAT(drape_with(run, folder.path).err, !Contains("preview_rms"));
+}
+
 TEST_CASE("-v shows every iteration, -q nothing, and both exclude each other") {
   const Scratch folder(small_experiment());
   const std::string run =

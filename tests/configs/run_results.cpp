@@ -25,8 +25,8 @@ const fs::path& whole_run() {
     folder.write("e.yaml", small_experiment());
     const Ended ended = drape_ends("run e.yaml --out out --method all --threads 1 --levels 3", folder);
     REQUIRE(ended.out == "report: out/report.html\n");
-    // One line stays for each level of each method.
-    REQUIRE(std::count(ended.err.begin(), ended.err.end(), '\n') == levels * int(methods.size()));
+    // One line stays for each level of each method, then the methods' table with its heads.
+    REQUIRE(std::count(ended.err.begin(), ended.err.end(), '\n') == (levels + 1) * int(methods.size()) + 1);
     return folder / "out";
   }();
   return path;

@@ -6,6 +6,7 @@
 #include "core/app/cli/commands.h"
 #include "core/app/cli/config_arguments.h"
 #include "core/app/experiment/exit_codes.h"
+#include "core/app/report/run_table.h"
 #include "core/app/run/checkpoint_manager.h"
 #include "core/app/run/recorder_files.h"
 #include "core/app/run/run_folder.h"
@@ -50,11 +51,13 @@ int run(const RunRequest& request, const Experiment& experiment, const Scene& sc
   }
   const bool converged = interrupted ? resume_experiment(experiment, scene, options, std::move(*interrupted))
                                      : run_experiment(experiment, scene, options);
+  const bool stopped = stop_signal() != 0 || (view && view->stop_requested());
+  if (options.methods.size() > 1 && options.verbosity != Verbosity::quiet && !stopped)
+    std::cerr << printable_lines(methods_text(table_of(read_runs({options.out}))));
   if (options.report)
     std::cout << "report: " << (options.out / "report.html").string() << "\n";
   else
     std::cout << "results: " << (options.out / "results.json").string() << "\n";
-  const bool stopped = stop_signal() != 0 || (view && view->stop_requested());
   const int as_signal = stop_signal() ? stop_signal() : SIGINT;  // the view's Stop counts as Ctrl-C
   if (request.keep_view && !stop_signal()) {
     std::cout << "the view stays at " << view->url() << " until Ctrl-C" << std::endl;

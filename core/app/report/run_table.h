@@ -18,7 +18,8 @@ TableRow row_of(const RunData& run, const MethodRecord& method);
 std::vector<std::string> summary_quantities(const std::vector<ErrorMeasure>& measures);
 
 /// Rows and all their columns, in order: what tells the runs apart, the keys that a sweep varies and the seed
-/// among it; what every run has; the summary columns of the runs' metrics, errors and previews; the message.
+/// among it; what every run has; the summary columns of the runs' metrics, errors and previews; the metrics'
+/// other values; the message.
 struct RunTable {
   std::vector<std::string> columns;
   std::vector<std::string> in_files;  ///< columns that Markdown leaves out unless they are asked for
@@ -42,6 +43,9 @@ enum class TableFormat { markdown, csv, json };
 /// A table of the chosen columns, by default of all non-empty ones, for Markdown without `in_files`. Throws
 /// std::runtime_error for an unknown column, with the nearest name.
 std::string table_text(const RunTable& table, std::vector<std::string> columns, TableFormat format);
+
+/// The methods of a run beside each other, for a terminal: cost and errors of previews and ends.
+std::string methods_text(const RunTable& table);
 
 /// Three significant digits ("403", "0.0213", "7.21e4"), or a dash if absent.
 std::string number_text(const OptionalNumber& value);

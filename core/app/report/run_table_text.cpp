@@ -102,6 +102,25 @@ std::string table_text(const RunTable& table, std::vector<std::string> columns, 
   return text;
 }
 
+std::string methods_text(const RunTable& table) {
+  std::vector<std::string> columns = {"method",  "status",    "preview_seconds", "preview_rms",
+                                      "seconds", "error_rms", "energy_gap"};
+  std::erase_if(columns, [&](const std::string& column) {
+    return std::find(table.columns.begin(), table.columns.end(), column) == table.columns.end();
+  });
+  std::vector<std::vector<std::string>> lines = {columns};
+  for (const TableRow& row : table.rows) {
+    std::vector<std::string>& cells = lines.emplace_back();
+    for (const std::string& column : columns) {
+      const Json value = row.value(column, Json());
+      cells.push_back(value.is_string() ? value.get<std::string>()
+                                        : number_text(value.is_number() ? OptionalNumber(value.get<double>())
+                                                                        : std::nullopt));
+    }
+  }
+  return text_table(lines);
+}
+
 std::string number_text(const OptionalNumber& value) {
   if (!value) return "–";
   if (*value == 0) return "0";
