@@ -88,12 +88,14 @@ OneDirection::P OneDirection::largest_q() const {
     P arc = (f.force_arc - f.mixed * inverse_q * f.force_q) / abs(curvature);
     arc = max(min(arc, largest_turn * now_.q), -largest_turn * now_.q);
     const P dq = (f.force_q - f.mixed * arc) * inverse_q;
+    // So short a step changes the energy by less than a law may round it: it is taken whole, unjudged.
     const Mask last = (abs(dq) + abs(arc) < last_step) & (curvature > 0.0);
+    fraction = select(last, 1.0, fraction);
     const P turn = fraction * arc / now_.q, x = now_.x - turn * now_.y, y = now_.y + turn * now_.x,
             inverse = 1.0 / sqrt(x * x + y * y);
     const State next = at(now_.q + max(fraction * dq, -0.9 * now_.q), x * inverse, y * inverse);
     const P now_value = value(now_), next_value = value(next), noise = 1e-14 * (abs(now_value) + s_);
-    Mask better = active & (next_value <= now_value + noise);
+    Mask better = active & (last | (next_value <= now_value + noise));
     // At the end energies differ by round-off alone; then forces judge.
     if (const Mask alike = better & !last & (next_value >= now_value - noise); any(alike))
       better = better & !(alike & (unbalanced(Forces(next, s_)) >= 0.25 * unbalanced(f)));

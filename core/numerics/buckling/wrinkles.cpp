@@ -166,17 +166,18 @@ Jet<3, double> wrinkled(const StrainLaw& law, const Vector3d& g, const double* p
         free[k] = false;
         step = downhill_step(now, free);
       }
-    if (step.head<2>().cwiseAbs().maxCoeff() + std::abs(step[2] * (p[0] - p[1])) < 1e-11) break;
+    const double length = step.head<2>().cwiseAbs().maxCoeff() + std::abs(step[2] * (p[0] - p[1]));
+    if (length < 1e-11) break;
     const double unbalanced = now.unbalanced(free);
     bool better = false;
     for (double fraction = 1; !better && fraction > 1e-6; fraction /= 2) {
       Wrinkles to = p + fraction * step;
       for (int k = 0; k < 2; ++k) to[k] = std::clamp(to[k], 1.0, most);
       const Relaxed<3> next(law, g, place, s, to);
-      // At the end energies differ by round-off alone; then forces judge.
+      // At the end energies differ by round-off alone, of which a law may have much; then forces judge.
       const double noise = 1e-14 * (std::abs(now.value) + s);
-      better = next.value < now.value - noise ||
-               (next.value <= now.value + noise && next.unbalanced(free) < 0.5 * unbalanced);
+      const bool alike = length < 1e-7 || next.value <= now.value + noise;
+      better = next.value < now.value - noise || (alike && next.unbalanced(free) < 0.5 * unbalanced);
       if (better) p = to, now = next;
     }
     if (!better) break;
