@@ -8,6 +8,7 @@
 #include "core/kernel/threads/parallel.h"
 #include "core/numerics/contact/pair_geometry.h"
 #include "core/numerics/contact/self_pairs.h"
+#include "core/numerics/mesh/disjoint_sets.h"
 
 namespace drape::ipc {
 namespace {
@@ -39,22 +40,27 @@ BroadPhasePairs pairs_within_dhat(const Surface& cloth, const Positions& rest, d
 class PathSearch {
  public:
   PathSearch(const Level& level, double radius)
-      : level_(level), radius_(radius), visited_by_(level.triangle_count(), -1) {}
+      : level_(level),
+        radius_(radius),
+        low_(level.rest.vertices.colwise().minCoeff()),
+        high_(level.rest.vertices.colwise().maxCoeff()),
+        part_(0.5 * (high_ - low_).norm() <= radius ? parts_of(level) : std::vector<int>()),
+        visited_by_(level.triangle_count(), -1) {}
 
   /// Whether a path connects the pair's primitives within the radius of `centre`.
   bool connects(const ContactPair& pair, const Eigen::Vector3d& centre) {
+    // Where the whole cloth is within the radius, every path is. A search would visit it all, for each pair.
+    if ((centre - low_).cwiseAbs().cwiseMax((high_ - centre).cwiseAbs()).norm() <= radius_)
+      return share_a_part(pair);
     ++search_;
     open_.clear();
-    const auto& v = pair.vertices;
-    for (const int* t = around(v[0]); t != end_around(v[0]); ++t)
-      if (pair.kind == PairKind::point_triangle || has(*t, v[1])) open(*t);
-    const int last = first_primitive_size(pair.kind);
+    const int first = pair.vertices[0];
+    for (const int* t = around(first); t != end_around(first); ++t)
+      if (begins(pair, *t)) open(*t);
     while (!open_.empty()) {
       const int t = open_.back();
       open_.pop_back();
-      bool reached = true;
-      for (int k = last; k < 4; ++k) reached = reached && has(t, v[k]);
-      if (reached) return true;
+      if (ends(pair, t)) return true;
       for (int k = 0; k < 3; ++k) {
         const int e = level_.topology.triangle_edges(t, k);
         if (distance(e, centre) > radius_) continue;
@@ -68,6 +74,31 @@ class PathSearch {
  private:
   const int* around(int v) const { return level_.topology.vertex_triangles.begin(v); }
   const int* end_around(int v) const { return level_.topology.vertex_triangles.end(v); }
+  /// Whether a path from the pair's first primitive begins in triangle t, and whether one ends there.
+  bool begins(const ContactPair& pair, int t) const {
+    return pair.kind == PairKind::point_triangle || has(t, pair.vertices[1]);
+  }
+  bool ends(const ContactPair& pair, int t) const {
+    bool reached = true;
+    for (int k = first_primitive_size(pair.kind); k < 4; ++k) reached = reached && has(t, pair.vertices[k]);
+    return reached;
+  }
+  bool share_a_part(const ContactPair& pair) const {
+    const int first = pair.vertices[0], last = pair.vertices[3];
+    for (const int* t = around(first); t != end_around(first); ++t)
+      for (const int* s = around(last); s != end_around(last); ++s)
+        if (part_[*t] == part_[*s] && begins(pair, *t) && ends(pair, *s)) return true;
+    return false;
+  }
+  /// For each triangle a number of those that edges connect with it.
+  static std::vector<int> parts_of(const Level& level) {
+    DisjointSets sets(level.triangle_count());
+    for (const auto& sides : level.topology.edge_triangles.rowwise())
+      if (sides.minCoeff() >= 0) sets.unite(sides[0], sides[1]);
+    std::vector<int> part(level.triangle_count());
+    for (std::size_t t = 0; t < part.size(); ++t) part[t] = sets.find(static_cast<int>(t));
+    return part;
+  }
   bool has(int t, int v) const { return (level_.rest.triangles.row(t).array() == v).any(); }
   void open(int t) {
     if (visited_by_[t] == search_) return;
@@ -82,6 +113,8 @@ class PathSearch {
 
   const Level& level_;
   double radius_;
+  Eigen::Vector3d low_, high_;   // the corners of the cloth's box
+  std::vector<int> part_;        // empty where no pair has the whole cloth within the radius
   std::vector<int> visited_by_;  // the last search that opened each triangle
   int search_ = 0;
   std::vector<int> open_;

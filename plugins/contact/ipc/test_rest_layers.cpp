@@ -128,3 +128,15 @@ TEST_CASE("ipc: neighbours along the cloth have no barrier, and the model's rema
   CHECK(collisions(*bound(level), level.rest.vertices)->contact_count() == 0);
   CHECK(bound(Level::of(0, grid({0.1, 0.1}, 21, 21, Diagonals::one_way)))->remark().empty());
 }
+
+TEST_CASE("ipc: layers of a cloth that is smaller than dhat have a barrier, and neighbours have none") {
+  Level sheets = two_sheets(0.05, 6);
+  sheets = Level::of(0, {0.01 * sheets.rest.vertices, sheets.rest.triangles});  // 1 mm wide, 0.5 mm apart
+  const auto contact = bound(sheets);
+  const auto forces = [&](const Positions& x) { return gradient_of(*collisions(*contact, x), x); };
+  const Positions g = forces(with_gap(sheets, 0.2e-3));
+  CHECK(forces(sheets.rest.vertices).cwiseAbs().maxCoeff() < 1e-9 * g.cwiseAbs().maxCoeff());
+  const Eigen::Index n = g.rows() / 2;
+  CHECK((g.col(2).head(n).array() > 0).all());
+  CHECK((g.col(2).tail(n).array() < 0).all());
+}
