@@ -76,6 +76,24 @@ TEST_CASE("check-energy compares the derivatives of an energy with differences")
              StartsWith("error: energy: unknown energy \"neo_hokean\"; did you mean \"neo_hookean\"?"));
 }
 
+TEST_CASE("check-energy finds an energy or a force that jumps, and passes a law whose stiffness does") {
+  const auto check = [](const std::string& term) {
+    return drape_of("check-energy \"{type: formula, density: '100*(g11^2+g22^2+2*g12^2) + " + term + "'}\"");
+  };
+  for (const auto& [term, jump] : {std::pair("if(g11 > 0.01, 1, 0)", "the energy jumps by "),
+                                   {"if(J > 1, 3, 0)", "the energy jumps by "},
+                                   {"5*abs(g11)", "the force jumps by "},
+                                   {"5*abs(g12)", "the force jumps by "},
+                                   {"5*max(g22, 0)", "the force jumps by "}}) {
+    INFO(term);
+    const Ended ended = check(term);
+    CHECK(ended.exit_code == 1);
+    CHECK_THAT(ended.out, Contains("\nNOT SMOOTH: ") && Contains(jump) && Contains(", at strains g11 = "));
+  }
+  CHECK_THAT(check("if(g11 > 0.01, 1, 0)").out, Contains("at strains g11 = 0.01, "));
+  CHECK(check("5*max(g11, 0)^2").exit_code == 0);
+}
+
 TEST_CASE("check of a sweep says so, and checks every variation") {
   const Scratch folder(small_experiment());
   const std::string sweep =

@@ -11,6 +11,7 @@
 #include "core/kernel/files/message_text.h"
 #include "core/kernel/plugin/make.h"
 #include "core/numerics/model/derivative_check.h"
+#include "core/numerics/model/smoothness_check.h"
 
 namespace drape {
 
@@ -85,7 +86,11 @@ int check_energy(const std::string& energy, const Registry& registry) {
   const DerivativeCheck check = check_derivatives(*made, Material());
   std::cout << check.text() << "derivatives " << (check.agrees() ? "agree with" : "DIFFER from")
             << " finite differences\n";
-  return check.agrees() ? exit_done : exit_not_converged;
+  const std::string jump = jump_of(*made, Material());
+  if (!jump.empty())
+    std::cout << "NOT SMOOTH: " << jump
+              << "; let both branches of the law have the same energy and slope there\n";
+  return check.agrees() && jump.empty() ? exit_done : exit_not_converged;
 }
 
 }  // namespace
