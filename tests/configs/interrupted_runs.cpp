@@ -96,6 +96,7 @@ TEST_CASE("A run goes on where nobody reads its progress") {
 }
 
 TEST_CASE("An interrupted run is resumed although its results.json is damaged and its config.yaml is gone") {
+  const bool between_renames = GENERATE(false, true);  // of a checkpoint's save
   const Scratch folder(small_experiment());
   const std::string run = "run e.yaml --out out --threads 1 --no-report --quiet --method pcs --checkpoint 0 ";
   Command command("exec " + drape_command + " " + run + "--set newton.max_steps=100000 " +
@@ -105,6 +106,8 @@ TEST_CASE("An interrupted run is resumed although its results.json is damaged an
   command.send(SIGKILL);
   command.wait();
   std::ofstream(folder / "out/results.json") << "";
+  const fs::path newest = folder / "out/checkpoint/state.bin";
+  if (between_renames && fs::exists(newest)) fs::rename(newest, folder / "out/checkpoint/previous.bin");
   fs::remove(folder / "out/config.yaml");
   Command resumed("exec " + drape_command + " run --resume out --quiet --no-report", folder.path);
   const std::string before = text_of(folder / "out/iterations.csv");

@@ -92,6 +92,11 @@ void save_checkpoint(const std::filesystem::path& folder, const Checkpoint& chec
   sync_to_disk(file.parent_path());
 }
 
+bool has_checkpoint(const std::filesystem::path& folder) {
+  std::error_code none;  // between the two renames of a save there is the previous one alone
+  return std::filesystem::exists(newest(folder), none) || std::filesystem::exists(previous(folder), none);
+}
+
 Checkpoint load_checkpoint(const std::filesystem::path& folder, std::string& warning) {
   warning.clear();
   std::string faults;

@@ -50,6 +50,9 @@ void require_fitting(const Checkpoint& checkpoint, const Experiment& experiment,
 /// of the two is complete at any moment. Throws WriteError.
 void save_checkpoint(const std::filesystem::path& folder, const Checkpoint& checkpoint);
 
+/// Whether the run in `folder` has a checkpoint, complete or not.
+bool has_checkpoint(const std::filesystem::path& folder);
+
 /// The newest complete checkpoint of the run in `folder`; `warning` explains a fall-back to the previous one.
 /// Throws std::runtime_error if there is none.
 Checkpoint load_checkpoint(const std::filesystem::path& folder, std::string& warning);

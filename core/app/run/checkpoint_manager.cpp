@@ -130,7 +130,7 @@ std::vector<FileFingerprint> fingerprints_of_files(const ConfigNode& saved, cons
 
 bool is_complete(const fs::path& folder) {
   const fs::path file = folder / "results.json";
-  if (!fs::exists(folder / "checkpoint/state.bin")) return results_of(folder).value("complete", false);
+  if (!has_checkpoint(folder)) return results_of(folder).value("complete", false);
   // The checkpoint holds these results too: a power cut may have damaged the file.
   if (!fs::exists(file)) return false;
   const nlohmann::ordered_json results = parse_json(read_file(file));

@@ -146,9 +146,8 @@ bool with_folder(const RunFolder& folder, const RunOptions& options, const Actio
   }
   record_abort(folder, cause);
   if (options.view) options.view->run_finished("the run was aborted: " + cause);
-  std::error_code none;
   throw RunAborted(cause + "; the run is aborted. Once the cause is removed, " +
-                   (std::filesystem::exists(folder.file("checkpoint/state.bin"), none)
+                   (has_checkpoint(folder.path())
                         ? "resume it with drape run --resume " + folder.path().string()
                         : "run the experiment again: there is no checkpoint of it"));
 }

@@ -9,6 +9,7 @@
 #include "core/app/experiment/experiment.h"
 #include "core/app/files/file_lock.h"
 #include "core/app/files/json_file.h"
+#include "core/app/run/checkpoint.h"
 #include "core/kernel/files/file.h"
 #include "core/kernel/files/message_text.h"
 #include "core/kernel/interfaces/solver.h"
@@ -49,8 +50,7 @@ std::string last_lines(const std::filesystem::path& file) {
 /// Whether an earlier start was cut and left a state to resume from. Its times count only with the same
 /// threads.
 bool is_resumable(const RunFiles& files, const RunStatus& status, int threads) {
-  return status.state == RunState::cancelled && status.threads == threads &&
-         std::filesystem::exists(files.folder / "checkpoint/state.bin");
+  return status.state == RunState::cancelled && status.threads == threads && has_checkpoint(files.folder);
 }
 
 /// Removes the states of an earlier start that is not resumed, unless a process still uses the folder: the

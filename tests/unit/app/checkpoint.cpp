@@ -225,6 +225,7 @@ TEST_CASE("Whatever bytes a body has, it is refused or read as what would be wri
 
 TEST_CASE("The newest complete checkpoint is used, and a damaged one is named") {
   const Scratch folder;
+  CHECK_FALSE(has_checkpoint(folder.path));
   CHECK_THAT(error_in(folder.path), Contains("holds no checkpoint of a run"));
   std::string warning;
   for (int method = 0; method < 3; ++method) {
@@ -243,6 +244,7 @@ TEST_CASE("The newest complete checkpoint is used, and a damaged one is named") 
 
   // Between the two renames of a save there is no newest one.
   std::filesystem::remove(newest);
+  CHECK(has_checkpoint(folder.path));
   CHECK(load_checkpoint(folder.path, warning).method == 1);
   CHECK(warning == "");
 
