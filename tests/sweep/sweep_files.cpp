@@ -96,23 +96,24 @@ TEST_CASE("the shape of an ablation") {
 }
 
 TEST_CASE("every variation is validated, and errors have location and variation") {
-  CHECK(
-      said_of("ablation:\n"
-              "  - {name: a, set: {newton.step_siz: 1}}\n"
-              "  - {name: b, levels: 1, set: {newton.step_growth: 0.5, refiner: lop, pins.7.radius: 1}}\n"
-              "  - {name: c, methods: [psc]}\n"
-              "  - {name: d, levels: 1}\n"
-              "  - {name: d, levels: 1, set: {levels: 3}}\n") ==
-      "error: s.yaml:4:21: unknown key \"step_siz\" in newton; did you mean \"step_size\"? (variation "
-      "\"a\")\n"
-      "error: s.yaml:5:52: \"step_growth\" must be at least 1, not 0.5 (variation \"b\")\n"
-      "error: s.yaml:5:66: unknown refiner \"lop\"; did you mean \"loop\"? known: loop, midpoint (variation "
-      "\"b\")\n"
-      "error: s.yaml:5:71: \"7\" is not an index of a list of 2, counted from 0 (variation \"b\")\n"
-      "error: s.yaml:6:24: there is no method \"psc\"; the experiment's methods are pcs, cascadic, newton "
-      "(variation \"c\")\n"
-      "error: s.yaml:8:12: variation \"d\" is given twice; rename one of them\n"
-      "error: s.yaml:8:32: \"levels\" is given twice in variation \"d\"; take one of them out\n");
+  CHECK(said_of("ablation:\n"
+                "  - {name: a, set: {newton.step_siz: 1}}\n"
+                "  - {name: b, levels: 1, set: {newton.step_growth: 0.5, refiner: lop, pins.7.radius: 1}}\n"
+                "  - {name: c, methods: [psc]}\n"
+                "  - {name: d, levels: 1}\n"
+                "  - {name: d, levels: 1, set: {levels: 3}}\n") ==
+        "error: s.yaml:4:21: unknown key \"step_siz\" in newton; did you mean \"step_size\"? (variation "
+        "\"a\")\n"
+        "error: s.yaml:5:52: \"step_growth\" must be at least 1, not 0.5 (variation \"b\")\n"
+        "error: s.yaml:5:66: unknown refiner \"lop\"; did you mean \"loop\"? known: loop, midpoint; a plugin "
+        "of your "
+        "own is given by --plugin or found by DRAPE_PLUGIN_PATH (variation "
+        "\"b\")\n"
+        "error: s.yaml:5:71: \"7\" is not an index of a list of 2, counted from 0 (variation \"b\")\n"
+        "error: s.yaml:6:24: there is no method \"psc\"; the experiment's methods are pcs, cascadic, newton "
+        "(variation \"c\")\n"
+        "error: s.yaml:8:12: variation \"d\" is given twice; rename one of them\n"
+        "error: s.yaml:8:32: \"levels\" is given twice in variation \"d\"; take one of them out\n");
   // What is wrong in all of them is said once.
   CHECK(
       said_of("set: {newton.step_siz: 1, levels: 0}\nablation:\n  - {name: a}\n  - {name: b, levels: 1}\n") ==
