@@ -5,10 +5,6 @@
 # make results  run what the pages state and fill their figures in, at most eight hours on two cores; resumes; STUDIES=sphere,scale chooses
 #               some
 # make figures  fill the pages' figures in from the stored records; runs nothing
-# make table1   the study of the supplement's Table 1; LEVELS=2 goes to at most so many levels, and writes
-#               no record
-# make scenes   the study of every scene of the supplement's Table 2 by PCS, many hours (`make data`); LEVELS=2 goes to at most
-#               so many, and writes no record
 # make python   build the Python module: PYTHONPATH=build/python python3 -c "import drape"; `make test` then tests it too
 # make deb      pack the command, its plugins, the C++ package and the Python module: build-package/drape_*.deb, for Debian 12
 # make wheel    pack the Python module with its libraries, command and plugins: build-package/drape-*.whl, for pip of /usr/bin/python3
@@ -18,8 +14,7 @@
 #               FUZZ_TARGETS="mesh config" chooses some; what ends one is kept in build-fuzz/artifacts
 # make extremes run small drapes with parameters at their declared bounds: EXTREMES (500) of them, from the seed EXTREMES_SEED (1)
 # make data     fetch scanned meshes and make obstacles of them: data/*.ply (third_party/data/meshes.txt)
-# make bench    build and run the benchmark programs, to results/*.json; benchmarks alone builds them
-# make hard     the study of the hard cases (docs/results/hard-cases.md)
+# make benchmarks build the benchmark programs, build/bin/drape_bench_*
 # make pictures the pictures of README and docs, from the runs of the study sphere that `make results` has left (FROM=
 #               results/studies/COMMIT/ chooses the build, the newest otherwise) and from some runs of its own, minutes
 # make api      pages of the headers that plugins include, by Doxygen: build/api/html/index.html
@@ -39,8 +34,8 @@ LINTED := $(if $(LINT),/unity_$(notdir $(LINT:/=))_cxx\.,(core|plugins)/)
 BUILD := $(if $(filter release ci,$(PRESET)),build,build-$(PRESET))
 SOURCES = $(shell find core plugins examples tests benchmarks -name '*.cpp' -o -name '*.h')
 
-.PHONY: all setup configure build build-tests benchmarks python deb wheel notebooks demo table1 scenes test fuzz extremes data bench hard results figures \
-        pictures api format fix-format lint clean
+.PHONY: all setup configure build build-tests benchmarks python deb wheel notebooks demo test fuzz extremes data results figures pictures \
+        api format fix-format lint clean
 all: build
 
 setup:
@@ -89,14 +84,6 @@ notebooks: python setup
 demo: build
 	@configs/demo $(BUILD)/bin/drape
 
-# Whole studies are those of `make results`; a part of one stays in results/.
-to_levels = $(BUILD)/bin/drape sweep configs/sweeps/$(1).yaml --out results/$(1)_levels_$(LEVELS) --most-levels $(LEVELS)
-table1: benchmarks
-	@$(if $(LEVELS),$(call to_levels,table1); benchmarks/table1 results/table1_levels_$(LEVELS),benchmarks/run_studies --no-limit $(BUILD) table1)
-
-scenes: benchmarks
-	@$(if $(LEVELS),$(call to_levels,scenes); $(BUILD)/bin/drape table results/scenes_levels_$(LEVELS),benchmarks/run_studies --no-limit $(BUILD) scenes)
-
 test: build-tests
 	@ctest --preset $(PRESET) -j $(JOBS)
 
@@ -111,16 +98,6 @@ extremes: build setup
 data: configure
 	@third_party/data/fetch data $(BUILD)
 
-bench: benchmarks
-	mkdir -p results
-	$(BUILD)/bin/drape_bench_kernels --benchmark_out=results/kernels.json --benchmark_out_format=json
-	$(BUILD)/bin/drape_bench_linear_solvers results/linear_solvers.json
-	$(BUILD)/bin/drape_bench_ratios results/ratios.json
-	$(BUILD)/bin/drape_bench_changes results/changes.json
-
-hard: benchmarks
-	@benchmarks/run_studies $(BUILD) hard
-
 # The records are stamped with the commit that ran, so nothing may differ from it (benchmarks/run_studies).
 results: benchmarks
 	@benchmarks/run_studies $(BUILD) $(STUDIES)
@@ -131,22 +108,8 @@ figures:
 FROM ?= $(patsubst %sphere,%,$(shell ls -td results/studies/*/sphere 2>/dev/null | head -1))
 # The start whose PCS preview has the median distance from its final state.
 SPHERE = $(FROM)sphere/runs/base/seed_1
-LOCKING = configs/sphere.yaml --levels 3 --method pcs,pcs_loop,unrelaxed,cascadic --set 'methods.unrelaxed={type: pcs, relaxation: none}'
-LONE_PINS = configs/pinned_square.yaml --set cloth.columns=20 --set cloth.rows=20 --method pcs,plain --set 'methods.plain={type: pcs, membranes: plain}'
-SCENES = tablecloth bunny_shawl armadillo cube materials_6 pinned_square tests/cusick
-draw = $(BUILD)/bin/drape run $(1) -o results/pictures/$(2) --overwrite --no-report
 pictures: benchmarks data
 	@[ -e $(SPHERE)/results.json ] || { echo "pictures: no run of the study sphere; make results STUDIES=sphere" >&2; exit 1; }
-	$(BUILD)/bin/drape report $(SPHERE)
-	rm -rf results/pictures && mkdir -p results/pictures
-	set -e; $(foreach s,$(SCENES),$(call draw,configs/$(s).yaml --levels 3 --method pcs,$(notdir $(s)));)
-	$(BUILD)/bin/drape report results/pictures/tablecloth
-	set -e; $(foreach s,ribbon handkerchief,$(call draw,configs/$(s).yaml --method pcs,$(s));)
-	sed -n '/^```yaml my_curtain/,/^```$$/{/^```/!p}' README.md >results/my_curtain.yaml
-	$(call draw,results/my_curtain.yaml,curtain)
-	$(call draw,configs/hard/folded.yaml --method newton,folded)
-	$(call draw,$(LOCKING),locking)
-	$(call draw,$(LONE_PINS),lone_pins)
 	@tests/browser/install $(BUILD)/tests/browser
 	DRAPE_BIN=$(abspath $(BUILD))/bin DRAPE_NODE_MODULES=$(abspath $(BUILD))/tests/browser node docs/pictures/make.mjs $(SPHERE) results/pictures
 

@@ -1,14 +1,54 @@
-// Pictures of README and docs: node docs/pictures/make.mjs SPHERE RUNS, with a run of the study sphere, which has a report as that of
-// the tablecloth has, and the folder of the runs that `make pictures` makes.
+// Pictures of README and docs, by `make pictures`: node docs/pictures/make.mjs SPHERE RUNS [PART,...], with a run of the study sphere and
+// the folder for runs of its own, which stay there for another call.
 import {execFileSync} from 'node:child_process';
 import fs from 'node:fs';
 import path from 'node:path';
 import {browser, newPage, openPage, run, scratch} from '../../tests/browser/support.mjs';
 
-const here = path.dirname(new URL(import.meta.url).pathname);
+const here = path.dirname(new URL(import.meta.url).pathname), root = path.resolve(here, '../..');
 const sphere = path.resolve(process.argv[2]);
 const runs = path.resolve(process.argv[3]);
 const folder = scratch();
+const drape = (...options) => execFileSync(path.join(process.env.DRAPE_BIN, 'drape'), options, {cwd: root, stdio: 'inherit'});
+
+const preview = ['--levels', '3', '--method', 'pcs'];
+const galleryRuns = {
+  bunny_shawl: ['configs/bunny_shawl.yaml', ...preview],
+  armadillo: ['configs/armadillo.yaml', ...preview],
+  cube: ['configs/cube.yaml', ...preview],
+  materials_6: ['configs/materials_6.yaml', ...preview],
+  pinned_square: ['configs/pinned_square.yaml', ...preview],
+  cusick: ['configs/tests/cusick.yaml', ...preview],
+  ribbon: ['configs/ribbon.yaml', '--method', 'pcs'],
+  handkerchief: ['configs/handkerchief.yaml', '--method', 'pcs'],
+  curtain: [path.join(runs, 'my_curtain.yaml')],
+  folded: ['configs/hard/folded.yaml', '--method', 'newton'],
+};
+const otherRuns = {
+  tablecloth: ['configs/tablecloth.yaml', ...preview],
+  locking: ['configs/sphere.yaml', '--levels', '3', '--method', 'pcs,pcs_loop,unrelaxed,cascadic',
+    '--set', 'methods.unrelaxed={type: pcs, relaxation: none}'],
+  lone_pins: ['configs/pinned_square.yaml', '--set', 'cloth.columns=20', '--set', 'cloth.rows=20', '--method', 'pcs,plain',
+    '--set', 'methods.plain={type: pcs, membranes: plain}'],
+};
+
+const build = execFileSync(path.join(process.env.DRAPE_BIN, 'drape'), ['--version'], {encoding: 'utf8'}).match(/\((.*)\)/)[1];
+
+function hasRun(results) {
+  if (!fs.existsSync(path.join(results, 'results.json'))) return false;
+  const {complete, commit} = JSON.parse(fs.readFileSync(path.join(results, 'results.json'), 'utf8'));
+  return complete && commit === build;
+}
+
+/// Runs what has not run yet, from the README's own experiment too.
+function runAll() {
+  fs.mkdirSync(runs, {recursive: true});
+  const readme = fs.readFileSync(path.join(root, 'README.md'), 'utf8');
+  fs.writeFileSync(path.join(runs, 'my_curtain.yaml'), readme.match(/```yaml my_curtain.yaml\n(.*?)```/s)[1]);
+  for (const [name, options] of Object.entries({...galleryRuns, ...otherRuns}))
+    if (!hasRun(path.join(runs, name))) drape('run', ...options, '-o', path.join(runs, name), '--overwrite', '--no-report');
+  for (const results of [sphere, path.join(runs, 'tablecloth')]) drape('report', results);
+}
 
 /// A part of a run's report as it looks on the page.
 async function reportPart(results, selector, name, margin = 12) {
@@ -37,7 +77,7 @@ async function still(results, name, width, ...options) {
 /// The finest states of the gallery, some from a side that shows more than the report's.
 async function gallery() {
   const views = {bunny_shawl: '--view=-0.5,-1,0.6', ribbon: '--view=0.3,-1,0.5'};
-  for (const name of fs.readdirSync(runs).filter(name => !['tablecloth', 'locking', 'lone_pins'].includes(name)))
+  for (const name of Object.keys(galleryRuns))
     await still(path.join(runs, name), name, name === 'bunny_shawl' ? 640 : 480, ...(views[name] ? [views[name]] : []));
   await still(path.join(runs, 'bunny_shawl'), 'bunny_shawl_l0', 640, views.bunny_shawl, '--level', '0');
 }
@@ -87,6 +127,7 @@ async function progression() {
     {cwd: folder, stdio: 'pipe'});
 }
 
+runAll();
 const parts = {plot, viewer, levels, gallery, progression};
 for (const name of process.argv[4] ? process.argv[4].split(',') : Object.keys(parts)) await parts[name]();
 await (await browser()).close();

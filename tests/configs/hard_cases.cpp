@@ -1,4 +1,4 @@
-// The hard cases that take seconds, on their coarsest level alone; `make hard` runs all, on two levels and by
+// The hard cases that take seconds, on their coarsest level alone; `make results STUDIES=hard` runs all, on two levels and by
 // every method. And what a scene's size and place may change of its shape: nothing.
 
 #include <Eigen/Geometry>
