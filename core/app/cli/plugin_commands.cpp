@@ -108,7 +108,7 @@ void add_plugin_commands(Commands& commands) {
       .add_with_plugins("describe", "show a plugin's parameters (or `experiment`'s, `sweep`'s)",
                         "drape describe strain_limit",
                         [name](const Registry& registry) { return describe_plugin(*name, registry); })
-      .add_option("plugin", *name, "name of the plugin")
+      .add_option("name", *name, "name of the plugin")
       ->required();
   const auto of = std::make_shared<std::string>("experiment");
   commands
