@@ -2,6 +2,8 @@
 
 #include <cmath>
 #include <stdexcept>
+#include <string>
+#include <vector>
 
 #include "core/kernel/files/message_text.h"
 #include "core/kernel/plugin/plugin.h"
@@ -10,11 +12,9 @@
 #include "core/numerics/model/derivative_check.h"
 #include "core/numerics/model/hessian_assembler.h"
 
-namespace drape {
+namespace drape::formula {
 
-using formula::ElementKind;
-
-void Formula::Parameters::declare(Declaration<Parameters>& d) {
+void Parameters::declare(Declaration<Parameters>& d) {
   d.add("name", &Parameters::name)
       .description("name in results and in paths of parameters, as in energies.NAME.CONSTANT");
   d.add_choice(
@@ -40,7 +40,7 @@ void Formula::Parameters::declare(Declaration<Parameters>& d) {
 
 namespace {
 
-EnergyRole role_of(const Formula::Parameters& p) {
+EnergyRole role_of(const Parameters& p) {
   const std::string own = p.per == ElementKind::triangle ? "membrane"
                           : p.per == ElementKind::hinge  ? "bending"
                                                          : "external";
@@ -55,10 +55,10 @@ constexpr double cell = 0.01;  // [m]
 
 /// Throws RefusedParameters at the key if the law cannot be compiled, or if its energy, forces or stiffness
 /// on a small patch of cloth at rest are not finite.
-void require_computable(const formula::Law& law, const std::string& key, const Energy& energy) {
+void require_computable(const Law& law, const std::string& key, const Energy& energy) {
   const auto refuse = [&](const std::string& message) {
     const std::string& text = law.parts.back().text;
-    throw RefusedParameters({{key, message, 0, formula::with_caret(text, formula::Fault(0, ""))}});
+    throw RefusedParameters({{key, message, 0, with_caret(text, Fault(0, ""))}});
   };
   std::unique_ptr<BoundEnergy> bound;
   const Level level = checked_level();
@@ -121,63 +121,82 @@ std::string rest_remark(const Energy& energy, ElementKind kind, const Material& 
 
 }  // namespace
 
-Formula::Formula(const Parameters& p) : law_(p.law()), role_(role_of(p)) {
-  require_computable(law_, p.density.empty() ? "energy" : "density", *this);
-}
+/// An energy whose density is an expression in the experiment. It is parsed and checked once, compiled to a
+/// program with exact derivatives on every level, and evaluated on packs of elements.
+class Formula final : public Energy {
+ public:
+  using Parameters = formula::Parameters;
 
-std::optional<double> Formula::midpoint_factor() const {
-  if (law_.depends_on_place()) return std::nullopt;
-  // The four triangles have the strains of the whole, and a quarter of its area each.
-  if (law_.per_area && !law_.uses("area")) return 1;
-  const auto bound = [&](const Level& level) { return bind_unchecked(level, Material()); };
-  const bool linear = bound(checked_level())->stencils().rows() == 0;
-  if (law_.kind == ElementKind::vertex && !linear) return std::nullopt;
-  return sampled_midpoint_factor(bound);
-}
-
-double Formula::plate_stiffness(const Material& material) const {
-  if (role_ != EnergyRole::bending || law_.kind != ElementKind::hinge) return 0;
-  return fold_plate_stiffness([&](const Level& level) { return bind_unchecked(level, material); });
-}
-
-std::unique_ptr<BoundEnergy> Formula::bind_unchecked(const Level& level, const Material& material) const {
-  switch (law_.kind) {
-    case ElementKind::triangle:
-      return formula::bind_membrane(law_, level, material);
-    case ElementKind::hinge:
-      return formula::bind_hinges(law_, level, material);
-    case ElementKind::vertex:
-      break;
+  /// Throws RefusedParameters with the place in the formula.
+  explicit Formula(const Parameters& p) : law_(read_law(p)), role_(role_of(p)) {
+    require_computable(law_, p.density.empty() ? "energy" : "density", *this);
   }
-  return formula::bind_vertices(law_, level, material);
-}
 
-std::unique_ptr<BoundEnergy> Formula::bind(const Level& level, const Material& material) const {
-  auto bound = bind_unchecked(level, material);
-  // Where a vertex is at rest is not where the cloth starts.
-  if (law_.kind == ElementKind::vertex) return bound;
-  Positions g = Positions::Zero(level.vertex_count(), 3);
-  const double energy = bound->add_gradient(level.rest.vertices, g);
-  if (!std::isfinite(energy) || !g.allFinite())
-    throw std::runtime_error(std::string("the energy ") +
-                             (std::isfinite(energy) ? "has forces that are" : "is") +
-                             " not finite on the rest shape of level " + std::to_string(level.index));
-  return bound;
-}
+  /// What formulas may use, for `drape describe formula`.
+  static std::string details() { return vocabulary(); }
 
-std::unique_ptr<BoundEnergy> Formula::bind_buckling(const Level& level, const Material& material,
-                                                    double s) const {
-  return law_.kind == ElementKind::triangle ? formula::bind_buckling(law_, level, material, s)
-                                            : bind(level, material);
-}
+  EnergyRole role() const override { return role_; }
 
-std::vector<std::string> Formula::remarks(const Material& material) const {
-  return {derivatives_remark(*this, material), rest_remark(*this, law_.kind, material)};
-}
+  std::optional<double> midpoint_factor() const override {
+    if (law_.depends_on_place()) return std::nullopt;
+    // The four triangles have the strains of the whole, and a quarter of its area each.
+    if (law_.per_area && !law_.uses("area")) return 1;
+    const auto bound = [&](const Level& level) { return bind_unchecked(level, Material()); };
+    const bool linear = bound(checked_level())->stencils().rows() == 0;
+    if (law_.kind == ElementKind::vertex && !linear) return std::nullopt;
+    return sampled_midpoint_factor(bound);
+  }
 
-}  // namespace drape
+  double plate_stiffness(const Material& material) const override {
+    if (role_ != EnergyRole::bending || law_.kind != ElementKind::hinge) return 0;
+    return fold_plate_stiffness([&](const Level& level) { return bind_unchecked(level, material); });
+  }
+
+  /// Throws std::runtime_error if the energy or its forces at rest are not finite.
+  std::unique_ptr<BoundEnergy> bind(const Level& level, const Material& material) const override {
+    auto bound = bind_unchecked(level, material);
+    // Where a vertex is at rest is not where the cloth starts.
+    if (law_.kind == ElementKind::vertex) return bound;
+    Positions g = Positions::Zero(level.vertex_count(), 3);
+    const double energy = bound->add_gradient(level.rest.vertices, g);
+    if (!std::isfinite(energy) || !g.allFinite())
+      throw std::runtime_error(std::string("the energy ") +
+                               (std::isfinite(energy) ? "has forces that are" : "is") +
+                               " not finite on the rest shape of level " + std::to_string(level.index));
+    return bound;
+  }
+
+  std::unique_ptr<BoundEnergy> bind_buckling(const Level& level, const Material& material,
+                                             double s) const override {
+    return law_.kind == ElementKind::triangle ? formula::bind_buckling(law_, level, material, s)
+                                              : bind(level, material);
+  }
+
+  /// A check of the derivatives, and the stress, moment or force at rest.
+  std::vector<std::string> remarks(const Material& material) const override {
+    return {derivatives_remark(*this, material), rest_remark(*this, law_.kind, material)};
+  }
+
+ private:
+  std::unique_ptr<BoundEnergy> bind_unchecked(const Level& level, const Material& material) const {
+    switch (law_.kind) {
+      case ElementKind::triangle:
+        return bind_membrane(law_, level, material);
+      case ElementKind::hinge:
+        return bind_hinges(law_, level, material);
+      case ElementKind::vertex:
+        break;
+    }
+    return bind_vertices(law_, level, material);
+  }
+
+  Law law_;
+  EnergyRole role_;
+};
+
+}  // namespace drape::formula
 
 DRAPE_PLUGIN(registry) {
-  registry.add<drape::Energy, drape::Formula>(
+  registry.add<drape::Energy, drape::formula::Formula>(
       "formula", "An energy of triangles, hinges or vertices by a formula in the experiment.");
 }

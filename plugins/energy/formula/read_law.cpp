@@ -13,7 +13,7 @@ constexpr std::size_t most_constants = 64;
 
 class LawReader {
  public:
-  explicit LawReader(const Formula::Parameters& p) : p_(p) {
+  explicit LawReader(const Parameters& p) : p_(p) {
     law_.kind = p.per;
     law_.per_area = !p.density.empty();
   }
@@ -117,16 +117,13 @@ class LawReader {
     return "";
   }
 
-  const Formula::Parameters& p_;
+  const Parameters& p_;
   Law law_;
   std::vector<ParameterFault> faults_;
 };
 
 }  // namespace
+
+Law read_law(const Parameters& parameters) { return LawReader(parameters).read(); }
+
 }  // namespace drape::formula
-
-namespace drape {
-
-formula::Law Formula::Parameters::law() const { return formula::LawReader(*this).read(); }
-
-}  // namespace drape
