@@ -1,7 +1,5 @@
-#include <initializer_list>
 #include <map>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "core/numerics/elements/green_strain.h"
@@ -67,25 +65,24 @@ class Compiler {
  public:
   using J = Jet<N, Term>;
 
-  Compiler(const Law& law, const Material& material) : law_(law) {
-    for (const Symbol& s : symbols_of(law.kind))
-      if (s.value) names_[s.name] = J(s.value(MaterialSymbols(material)));
-    for (const NamedConstant& c : law.constants) names_[c.name] = J(c.value);
+  /// All symbols of the element are inputs, none of them a variable.
+  Compiler(const Law& law, const Material& material) : law_(law), symbols_(symbols_of(law.kind)) {
+    for (std::size_t i = 0; i < symbols_.size(); ++i) {
+      const auto value = symbols_[i].value;
+      define(symbols_[i].name, value ? J(value(MaterialSymbols(material))) : J(read(i)));
+    }
+    for (const NamedConstant& c : law.constants) define(c.name, c.value);
   }
 
   void define(const std::string& name, const J& jet) { names_[name] = jet; }
-  /// Defines names that are numbers of the element, none of the variables.
-  template <class Input>
-  void define_inputs(std::initializer_list<std::pair<const char*, Input>> inputs) {
-    for (const auto& [name, input] : inputs) define(name, J(read(input)));
-  }
   template <class Input>
   Term read(Input input) {
     return graph_.input(static_cast<int>(input));
   }
+  /// Makes an input variable i.
   template <class Input>
   J variable(Input input, int i) {
-    return J::variable(read(input), i);
+    return names_[symbols_[static_cast<std::size_t>(input)].name] = J::variable(read(input), i);
   }
 
   Programs compile() {
@@ -126,6 +123,7 @@ class Compiler {
   }
 
   const Law& law_;
+  const std::vector<Symbol>& symbols_;
   TermGraph graph_;
   std::map<std::string, J> names_;
 };
@@ -134,9 +132,7 @@ class Compiler {
 template <int N>
 void define_strains(Compiler<N>& c) {
   using I = TriangleInput;
-  c.define("g11", c.variable(I::g11, 0));
-  c.define("g22", c.variable(I::g22, 1));
-  c.define("g12", c.variable(I::g12, 2));
+  for (const I strain : {I::g11, I::g22, I::g12}) c.variable(strain, static_cast<int>(strain));
   const auto ratio = area_ratio<N>(c.read(I::g11), c.read(I::g22), c.read(I::g12), c.read(I::det));
   c.define("J", ratio);
   c.define("log J", log(ratio));
@@ -146,26 +142,22 @@ void define_strains(Compiler<N>& c) {
 void define_principal_strains(Compiler<2>& c) {
   const Jet<2, Term> s1 = c.variable(TriangleInput::s1, 0), s2 = c.variable(TriangleInput::s2, 1), one(1.0),
                      half(0.5);
-  c.define("s1", s1);
-  c.define("s2", s2);
   c.define("J", s1 * s2);
   c.define("g11", half * ((s1 - one) * (s1 + one)));
   c.define("g22", half * ((s2 - one) * (s2 + one)));
-  c.define("g12", Jet<2, Term>(0.0));
+  c.define("g12", 0.0);
 }
 
 template <int N>
 Programs compile_triangle_by(const Law& law, const Material& material) {
-  using I = TriangleInput;
   Compiler<N> c(law, material);
-  c.template define_inputs<I>({{"area", I::area}, {"u", I::u}, {"v", I::v}, {"w", I::w}});
   if constexpr (N == 2)
     define_principal_strains(c);
   else
     define_strains(c);
   if constexpr (N == 5) {
-    c.define("s1", c.variable(I::s1, 3));
-    c.define("s2", c.variable(I::s2, 4));
+    c.variable(TriangleInput::s1, 3);
+    c.variable(TriangleInput::s2, 4);
   }
   return c.compile();
 }
@@ -179,29 +171,15 @@ Programs compile_triangle(const Law& law, const Material& material, TriangleVari
 }
 
 Programs compile_hinge(const Law& law, const Material& material) {
-  using I = HingeInput;
   Compiler<1> c(law, material);
-  c.define_inputs<I>({{"rest", I::rest},
-                      {"length", I::length},
-                      {"h1", I::h1},
-                      {"h2", I::h2},
-                      {"area", I::area},
-                      {"u", I::u},
-                      {"v", I::v},
-                      {"w", I::w}});
-  const Jet<1, Term> bend = c.variable(I::bend, 0), rest(c.read(I::rest));
-  c.define("bend", bend);
+  const Jet<1, Term> bend = c.variable(HingeInput::bend, 0), rest(c.read(HingeInput::rest));
   c.define("theta", bend + rest);
   return c.compile();
 }
 
 Programs compile_vertex(const Law& law, const Material& material) {
-  using I = VertexInput;
   Compiler<3> c(law, material);
-  c.define("x", c.variable(I::x, 0));
-  c.define("y", c.variable(I::y, 1));
-  c.define("z", c.variable(I::z, 2));
-  c.define_inputs<I>({{"u", I::u}, {"v", I::v}, {"w", I::w}, {"area", I::area}, {"mass", I::mass}});
+  for (int i = 0; i < 3; ++i) c.variable(i, i);  // x, y and z
   return c.compile();
 }
 

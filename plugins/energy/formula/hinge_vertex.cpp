@@ -14,7 +14,7 @@ namespace {
 class HingeFormulaKernel {
  public:
   static constexpr int vertices = 4, batch = Program::batch_packs;
-  using Rest = RestHinge;  ///< HingeInput from `rest` to `w`
+  using Rest = RestHinge;
   using T = Pack<native_pack_width>;
   using Batch = ElementBatch<4, native_pack_width, batch>;
   using Vector = Batch::Vector;
@@ -55,11 +55,12 @@ class HingeFormulaKernel {
   // Out of line: value and gradient must return the same bits.
   [[gnu::noinline, gnu::flatten]] void run(const Batch& packs, const Program& program, T* registers,
                                            Vector (*kept)[3]) const {
+    using I = HingeInput;
+    constexpr I inputs[] = {I::rest, I::length, I::h1, I::h2, I::area, I::u, I::v, I::w};
     constexpr int numbers = Rest::SizeAtCompileTime;
     int of_rest[numbers];
-    for (int r = 0; r < numbers; ++r)
-      of_rest[r] = program.register_of(static_cast<int>(HingeInput::rest) + r) * batch;
-    T* const bend = registers + program.register_of(HingeInput::bend) * batch;
+    for (int r = 0; r < numbers; ++r) of_rest[r] = program.register_of(inputs[r]) * batch;
+    T* const bend = registers + program.register_of(I::bend) * batch;
     for (int i = 0; i < batch; ++i) {
       const T* rest = packs.rest[i];
       Vector d[3];

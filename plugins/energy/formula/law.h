@@ -39,10 +39,10 @@ inline constexpr ElementKind element_kinds[] = {ElementKind::triangle, ElementKi
 /// "triangle", "hinge" or "vertex".
 std::string name_of(ElementKind kind);
 
-/// Inputs of a program: numbers of an element that change with the state, then numbers of its rest shape.
-/// Kinds share the numbers: input 0 of a hinge is not that of a triangle.
-enum class TriangleInput { g11, g22, g12, det, s1, s2, area, u, v, w };
-enum class HingeInput { bend, rest, length, h1, h2, area, u, v, w };
+/// Inputs of a program, numbered as the kind's symbols_of. In place of J a triangle has det C; that of theta
+/// is not read.
+enum class TriangleInput { g11, g22, g12, s1, s2, det, area, u, v, w };
+enum class HingeInput { theta, rest, bend, length, h1, h2, area, u, v, w };
 enum class VertexInput { x, y, z, u, v, w, area, mass };
 
 /// A name that a formula may use.

@@ -10,36 +10,30 @@ namespace drape::formula {
 class Program::Allocator {
  public:
   Allocator(Program& program, const std::vector<Term>& outputs) : program_(program) {
+    int count = 0;
     for (const Term& t : outputs)
-      if (t.graph) graph_ = t.graph;
-    mark(outputs);
-    for (std::size_t n = 0; n < needed_.size(); ++n)
-      if (needed_[n] && (*graph_)[static_cast<int>(n)].op == Op::input) add_input(static_cast<int>(n));
-    for (std::size_t n = 0; n < needed_.size(); ++n)
-      if (needed_[n] && (*graph_)[static_cast<int>(n)].op != Op::input) emit(static_cast<int>(n));
-    for (const Term& t : outputs)
-      program_.outputs_.push_back(t.graph ? registers_[static_cast<std::size_t>(t.node)] : load(t.literal));
+      if (t.graph) graph_ = t.graph, count = std::max(count, t.node + 1);
+    last_use_.assign(count, unused);
+    registers_.assign(count, -1);
+    for (const Term& t : outputs) need(t, count);
+    for (int n = count - 1; n >= 0; --n)
+      for (int i = 0; last_use_[n] != unused && i < arguments_of(op_of(n)); ++i)
+        need((*graph_)[n].arguments[i], n);
+    for (int n = 0; n < count; ++n)
+      if (last_use_[n] != unused && op_of(n) == Op::input) add_input(n);
+    for (int n = 0; n < count; ++n)
+      if (last_use_[n] != unused && op_of(n) != Op::input) emit(n);
+    for (const Term& t : outputs) program_.outputs_.push_back(t.graph ? registers_[t.node] : load(t.literal));
   }
 
  private:
-  /// Finds the nodes that outputs need, and each one's last reader.
-  void mark(const std::vector<Term>& outputs) {
-    int highest = -1;
-    for (const Term& t : outputs) highest = std::max(highest, t.node);
-    needed_.assign(static_cast<std::size_t>(highest) + 1, false);
-    last_use_.assign(needed_.size(), -1);
-    registers_.assign(needed_.size(), -1);
-    for (const Term& t : outputs)
-      if (t.graph) need(t, static_cast<int>(needed_.size()));
-    for (int n = highest; n >= 0; --n)
-      if (needed_[static_cast<std::size_t>(n)])
-        for (int i = 0; i < arguments_of((*graph_)[n].op); ++i)
-          if (const Term& t = (*graph_)[n].arguments[static_cast<std::size_t>(i)]; t.graph) need(t, n);
-  }
+  static constexpr int unused = -1;
+
+  Op op_of(int n) const { return (*graph_)[n].op; }
+
+  /// Notes a reader of a term: a node, or the outputs behind the last node.
   void need(const Term& t, int reader) {
-    const auto n = static_cast<std::size_t>(t.node);
-    needed_[n] = true;
-    last_use_[n] = std::max(last_use_[n], reader);
+    if (t.graph) last_use_[t.node] = std::max(last_use_[t.node], reader);
   }
 
   int take_register() {
@@ -55,9 +49,9 @@ class Program::Allocator {
   }
 
   void add_input(int n) {
-    const auto number = static_cast<std::size_t>((*graph_)[n].input);
+    const std::size_t number = (*graph_)[n].input;
     if (program_.inputs_.size() <= number) program_.inputs_.resize(number + 1, most_registers);
-    program_.inputs_[number] = registers_[static_cast<std::size_t>(n)] = take_register();
+    program_.inputs_[number] = registers_[n] = take_register();
   }
 
   int load(double literal) {
@@ -79,39 +73,35 @@ class Program::Allocator {
     if (node.op == Op::subtract && !a.graph) made.op = Op::subtract_from, made.literal = a.literal;
     if (node.op == Op::divide && !a.graph) made.op = Op::divide_into, made.literal = a.literal;
     std::vector<int> loaded;  // registers of literals, free after this
-    int read[3] = {0, 0, 0}, reads = 0;
+    std::uint16_t read[3] = {0, 0, 0};
+    int reads = 0;
     const int count = arguments_of(node.op);
     for (int i = 0; i < count; ++i) {
-      const Term& t = node.arguments[static_cast<std::size_t>(i)];
+      const Term& t = node.arguments[i];
       if (t.graph) {
-        read[reads++] = registers_[static_cast<std::size_t>(t.node)];
+        read[reads++] = registers_[t.node];
       } else if (made.op == node.op || i == 2) {
         loaded.push_back(load(t.literal));
         read[reads++] = loaded.back();
       }
     }
-    for (int i = 0; i < count; ++i) release(node.arguments[static_cast<std::size_t>(i)], n);
+    for (int i = 0; i < count; ++i) release(node.arguments[i], n);
     free_.insert(free_.end(), loaded.begin(), loaded.end());
     // An instruction reads a pack of all its arguments before it writes that pack: it may write over them.
-    const int to = take_register();
-    registers_[static_cast<std::size_t>(n)] = to;
-    made.to = static_cast<std::uint16_t>(to);
-    made.a = static_cast<std::uint16_t>(read[0]);
-    made.b = static_cast<std::uint16_t>(read[1]);
-    made.c = static_cast<std::uint16_t>(read[2]);
+    made.to = registers_[n] = take_register();
+    made.a = read[0], made.b = read[1], made.c = read[2];
     program_.code_.push_back(made);
   }
 
   void release(const Term& t, int reader) {
-    if (!t.graph || last_use_[static_cast<std::size_t>(t.node)] != reader) return;
-    last_use_[static_cast<std::size_t>(t.node)] = -1;  // twice an argument: released once
-    free_.push_back(registers_[static_cast<std::size_t>(t.node)]);
+    if (!t.graph || last_use_[t.node] != reader) return;
+    last_use_[t.node] = unused;  // twice an argument: released once
+    free_.push_back(registers_[t.node]);
   }
 
   Program& program_;
   const TermGraph* graph_ = nullptr;
-  std::vector<bool> needed_;
-  std::vector<int> last_use_, registers_;
+  std::vector<int> last_use_, registers_;  // of each node
   std::vector<int> free_;
   int used_ = 0;
 };

@@ -31,7 +31,7 @@ class Program {
     return number < inputs_.size() ? inputs_[number] : most_registers;
   }
   /// The register of an output after run.
-  int output(int i) const { return outputs_[static_cast<std::size_t>(i)]; }
+  int output(int i) const { return outputs_[i]; }
   /// An output's packs after run with batch_packs.
   template <class T>
   const T* packs_of(int output_number, const T* registers) const {
