@@ -18,11 +18,18 @@ namespace {
 
 std::string triangle_name(int i) { return "cloth triangle " + std::to_string(i); }
 
+/// Shortens the limit to the smallest of the fractions, which names its item.
+template <class Name>
+void shorten(StepLimit& limit, const std::vector<double>& fractions, const Name& name) {
+  for (std::size_t i = 0; i < fractions.size(); ++i)
+    if (fractions[i] < limit.fraction) limit = {fractions[i], name(static_cast<int>(i))};
+}
+
 class ShapesCandidates final : public CollisionCandidates {
  public:
   ShapesCandidates(std::shared_ptr<const ShapeScene> scene, const Positions& x0, const Positions& x1)
       : scene_(std::move(scene)) {
-    const std::vector<TriangleSolidPair> triangles = find_triangles(*scene_, x0, x1);
+    const std::vector<SolidPair> triangles = find_triangles(*scene_, x0, x1);
     if (x0 != x1) limit_ = limit_step(triangles, x0, x1);
     // Collisions are only built up to the limit, and long motions mostly have a small one.
     candidates_ = find_candidates(*scene_, triangles, x0,
@@ -44,7 +51,7 @@ class ShapesCandidates final : public CollisionCandidates {
  private:
   /// Those of the vertex candidates within d̂ at x.
   std::vector<VertexContact> vertex_contacts(const Positions& x) const {
-    const std::vector<VertexSolidPair>& pairs = candidates_.vertices;
+    const std::vector<SolidPair>& pairs = candidates_.vertices;
     const auto find = [&](int begin, int end, std::vector<VertexContact>& contacts) {
       for (int i = begin; i < end; ++i) {
         const auto [vertex, k] = pairs[i];
@@ -59,19 +66,17 @@ class ShapesCandidates final : public CollisionCandidates {
     return parallel_collect<VertexContact>(static_cast<int>(pairs.size()), 1024, find);
   }
 
-  StepLimit limit_step(const std::vector<TriangleSolidPair>& pairs, const Positions& x0,
-                       const Positions& x1) const {
+  StepLimit limit_step(const std::vector<SolidPair>& pairs, const Positions& x0, const Positions& x1) const {
     std::vector<double> fractions(pairs.size());
     parallel_for(static_cast<int>(pairs.size()), 256, [&](int begin, int end) {
       for (int i = begin; i < end; ++i)
-        fractions[i] = advance(scene_->solids[pairs[i].solid], scene_->corners(pairs[i].triangle, x0),
-                               scene_->corners(pairs[i].triangle, x1), scene_->min_gap_fraction);
+        fractions[i] = advance(scene_->solids[pairs[i].solid], scene_->corners(pairs[i].element, x0),
+                               scene_->corners(pairs[i].element, x1), scene_->min_gap_fraction);
     });
     StepLimit limit;
-    for (std::size_t i = 0; i < pairs.size(); ++i)
-      if (fractions[i] < limit.fraction)
-        limit = {fractions[i],
-                 triangle_name(pairs[i].triangle) + " and " + scene_->solids[pairs[i].solid].name};
+    shorten(limit, fractions, [&](int i) {
+      return triangle_name(pairs[i].element) + " and " + scene_->solids[pairs[i].solid].name;
+    });
     return limit;
   }
 
@@ -91,11 +96,11 @@ class BoundShapes final : public BoundContact {
 
   std::vector<Intersection> intersections(const Positions& x) const override {
     std::vector<Intersection> found;
-    for (const TriangleSolidPair& pair : find_triangles(*scene_, x, x)) {
-      const Corners c = scene_->corners(pair.triangle, x);
-      if (intersects(scene_->solids[pair.solid], c))
-        found.push_back(
-            {triangle_name(pair.triangle), scene_->solids[pair.solid].name, (c[0] + c[1] + c[2]) / 3});
+    for (const SolidPair& pair : find_triangles(*scene_, x, x)) {
+      const Corners c = scene_->corners(pair.element, x);
+      const Solid& solid = scene_->solids[pair.solid];
+      if (intersects(solid, c))
+        found.push_back({triangle_name(pair.element), solid.name, (c[0] + c[1] + c[2]) / 3});
     }
     return found;
   }
@@ -118,11 +123,12 @@ class BoundShapes final : public BoundContact {
     SmallestGap smallest;
     smallest.dhat = scene_->barrier.dhat;
     smallest.stiffness = scene_->barrier.stiffness;
-    for (const TriangleSolidPair& pair : find_triangles(*scene_, x, x)) {
-      const double gap = separate(scene_->solids[pair.solid], scene_->corners(pair.triangle, x)).gap;
+    for (const SolidPair& pair : find_triangles(*scene_, x, x)) {
+      const Solid& solid = scene_->solids[pair.solid];
+      const double gap = separate(solid, scene_->corners(pair.element, x)).gap;
       if (gap >= std::min(smallest.gap, smallest.dhat)) continue;
       smallest.gap = gap;
-      smallest.between = triangle_name(pair.triangle) + " and " + scene_->solids[pair.solid].name;
+      smallest.between = triangle_name(pair.element) + " and " + solid.name;
     }
     return smallest;
   }
@@ -141,11 +147,22 @@ class BoundShapes final : public BoundContact {
   }
 
   StepLimit max_step(const BoundContact& before, const Positions& x) const override {
-    const std::vector<SolidTrajectory> trajectories =
-        solid_trajectories(scene_of(before).solids, scene_->solids);
-    return max_obstacle_step(
-        scene_->barrier.dhat, smallest_gap(trajectories, x),
-        [&](double min_gap, int iterations) { return advance(trajectories, x, min_gap, iterations); });
+    const std::vector<SolidTrajectory> moving = moving_solids(scene_of(before).solids, scene_->solids);
+    const double dhat = scene_->barrier.dhat;
+    double smallest = dhat;
+    for (const SolidTrajectory& solid : moving)
+      smallest = std::min(smallest, std::ranges::min(of_triangles(x, [&](const Corners& triangle) {
+                            return solid.gap(triangle, dhat);
+                          })));
+    return max_obstacle_step(dhat, smallest, [&](double min_gap, int max_iterations) {
+      StepLimit limit;
+      for (const SolidTrajectory& solid : moving) {
+        const std::vector<double> fractions = of_triangles(
+            x, [&](const Corners& triangle) { return solid.advance(triangle, min_gap, max_iterations); });
+        shorten(limit, fractions, [&](int i) { return triangle_name(i) + " and " + solid.name(); });
+      }
+      return limit;
+    });
   }
 
   Eigen::Vector3d displacement(const BoundContact& before, const ObstaclePoint& point) const override {
@@ -158,35 +175,14 @@ class BoundShapes final : public BoundContact {
   }
 
  private:
-  double smallest_gap(const std::vector<SolidTrajectory>& trajectories, const Positions& x) const {
-    const double dhat = scene_->barrier.dhat;
-    std::vector<double> gaps(scene_->cloth.triangles.rows());
-    double smallest = dhat;
-    for (const SolidTrajectory& trajectory : trajectories) {
-      if (trajectory.is_static()) continue;
-      parallel_for(static_cast<int>(gaps.size()), 256, [&](int begin, int end) {
-        for (int i = begin; i < end; ++i) gaps[i] = trajectory.gap(scene_->corners(i, x), dhat);
-      });
-      smallest = std::min(smallest, *std::min_element(gaps.begin(), gaps.end()));
-    }
-    return smallest;
-  }
-
-  StepLimit advance(const std::vector<SolidTrajectory>& trajectories, const Positions& x, double min_gap,
-                    int max_iterations) const {
-    StepLimit limit;
-    std::vector<double> fractions(scene_->cloth.triangles.rows());
-    for (const SolidTrajectory& trajectory : trajectories) {
-      if (trajectory.is_static()) continue;
-      parallel_for(static_cast<int>(fractions.size()), 256, [&](int begin, int end) {
-        for (int i = begin; i < end; ++i)
-          fractions[i] = trajectory.advance(scene_->corners(i, x), min_gap, max_iterations);
-      });
-      for (std::size_t i = 0; i < fractions.size(); ++i)
-        if (fractions[i] < limit.fraction)
-          limit = {fractions[i], triangle_name(static_cast<int>(i)) + " and " + trajectory.name()};
-    }
-    return limit;
+  /// What `number` gives for the corners of each triangle at x.
+  template <class Number>
+  std::vector<double> of_triangles(const Positions& x, const Number& number) const {
+    std::vector<double> numbers(scene_->cloth.triangles.rows());
+    parallel_for(static_cast<int>(numbers.size()), 256, [&](int begin, int end) {
+      for (int i = begin; i < end; ++i) numbers[i] = number(scene_->corners(i, x));
+    });
+    return numbers;
   }
 
   static const ShapeScene& scene_of(const BoundContact& contact) {
@@ -201,9 +197,8 @@ class BoundShapes final : public BoundContact {
 
 }  // namespace
 
-std::unique_ptr<BoundContact> bind_shapes(const Level& level, const std::vector<Solid>& solids,
-                                          const BarrierParameters& barrier, double min_gap_fraction) {
-  return std::make_unique<BoundShapes>(ShapeScene::of(level, solids, barrier, min_gap_fraction));
+std::unique_ptr<BoundContact> bind_shapes(ShapeScene scene) {
+  return std::make_unique<BoundShapes>(std::move(scene));
 }
 
 }  // namespace drape::shapes

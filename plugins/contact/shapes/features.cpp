@@ -24,22 +24,23 @@ std::vector<Vector3d> core_corners(const Vector3d& half) {
   return corners;
 }
 
-Vector3d on_circle(const Solid& solid, int k, int sides, double z) {
+Vector3d on_circle(double radius, int k, int sides, double z) {
   const double angle = 2 * M_PI * k / sides;
-  return {solid.radius * std::cos(angle), solid.radius * std::sin(angle), z};
+  return {radius * std::cos(angle), radius * std::sin(angle), z};
 }
 
 /// Calls visit(i) for the points or edges that may be within `radius` of `centre`. Those of a prism are
 /// ordered in rings (bottom, top and, for edges, lateral); element k of each ring begins at angle 2πk /
 /// sides.
 template <class Visit>
-void visit_candidates(const Features& f, int count, const Solid& solid, const Vector3d& centre, double radius,
-                      const Visit& visit) {
+void visit_candidates(const Features& f, std::size_t size, const Solid& solid, const Vector3d& centre,
+                      double radius, const Visit& visit) {
+  const int count = static_cast<int>(size);
   if (f.side == 0) {
     for (int i = 0; i < count; ++i) visit(i);
     return;
   }
-  const int sides = static_cast<int>(f.points.rows()) / 2;
+  const int sides = static_cast<int>(f.points.size()) / 2;
   const Vector3d q = solid.to_local(centre);
   const double rho = q.head<2>().norm(), angle = std::atan2(q.y(), q.x()), unit = 2 * M_PI / sides;
   if (rho + radius < solid.radius * std::cos(unit / 2)) return;
@@ -65,9 +66,7 @@ TriangleMesh revolve(const Solid& solid, const std::vector<Vector2d>& profile) {
   int row = 0;
   for (int i = 0; i < rings; ++i)
     for (int k = 0; k < sides; ++k) {
-      const double angle = 2 * M_PI * k / sides;
-      const Vector3d q(profile[i].x() * std::cos(angle), profile[i].x() * std::sin(angle), profile[i].y());
-      mesh.vertices.row(i * sides + k) = solid.to_world(q);
+      mesh.vertices.row(i * sides + k) = solid.to_world(on_circle(profile[i].x(), k, sides, profile[i].y()));
       const int next = (k + 1) % sides, a = i * sides;
       if (i + 1 < rings) {
         mesh.triangles.row(row++) << a + k, a + sides + k, a + next;
@@ -97,45 +96,39 @@ TriangleMesh box_surface(const Solid& solid) {
 
 Features Features::of(const Solid& solid, double max_inset) {
   Features f;
-  std::vector<Vector3d> points;
-  std::vector<std::pair<int, int>> edges;
   if (solid.kind == SolidKind::cylinder) {
     const double step = std::acos(1 - std::min(0.5, max_inset / solid.radius));
     const int sides = std::max(16, static_cast<int>(std::ceil(M_PI / step)));
     f.side = 2 * solid.radius * std::sin(M_PI / sides);
     for (const int ring : {0, sides})
       for (int k = 0; k < sides; ++k) {
-        points.push_back(on_circle(solid, k, sides, ring ? solid.half.z() : -solid.half.z()));
-        edges.push_back({ring + k, ring + (k + 1) % sides});
+        f.points.push_back(on_circle(solid.radius, k, sides, ring ? solid.half.z() : -solid.half.z()));
+        f.edges.push_back({ring + k, ring + (k + 1) % sides});
       }
-    for (int k = 0; k < sides; ++k) edges.push_back({k, sides + k});
+    for (int k = 0; k < sides; ++k) f.edges.push_back({k, sides + k});
   } else if (solid.kind != SolidKind::half_space) {
-    points = core_corners(solid.half);
+    f.points = core_corners(solid.half);
     f.offset = solid.radius;
-    const int count = static_cast<int>(points.size());
+    const int count = static_cast<int>(f.points.size());
     for (int i = 0; i < count; ++i)
       for (int bit = 1; bit < count; bit *= 2)
-        if (!(i & bit)) edges.push_back({i, i | bit});
+        if (!(i & bit)) f.edges.push_back({i, i | bit});
   }
-  f.points.resize(static_cast<Eigen::Index>(points.size()), 3);
-  for (std::size_t i = 0; i < points.size(); ++i) f.points.row(i) = solid.to_world(points[i]);
-  f.edges.resize(static_cast<Eigen::Index>(edges.size()), 2);
-  for (std::size_t i = 0; i < edges.size(); ++i) f.edges.row(i) << edges[i].first, edges[i].second;
+  for (Vector3d& point : f.points) point = solid.to_world(point);
   return f;
 }
 
 void Features::points_near(const Solid& solid, const Vector3d& centre, double radius,
                            std::vector<int>& found) const {
-  visit_candidates(*this, static_cast<int>(points.rows()), solid, centre, radius, [&](int i) {
-    if ((points.row(i).transpose() - centre).norm() <= radius) found.push_back(i);
+  visit_candidates(*this, points.size(), solid, centre, radius, [&](int i) {
+    if ((points[i] - centre).norm() <= radius) found.push_back(i);
   });
 }
 
 void Features::edges_near(const Solid& solid, const Vector3d& centre, double radius,
                           std::vector<int>& found) const {
-  visit_candidates(*this, static_cast<int>(edges.rows()), solid, centre, radius, [&](int i) {
-    if (distance_to_segment(centre, points.row(edges(i, 0)), points.row(edges(i, 1))) <= radius)
-      found.push_back(i);
+  visit_candidates(*this, edges.size(), solid, centre, radius, [&](int i) {
+    if (distance_to_segment(centre, points[edges[i][0]], points[edges[i][1]]) <= radius) found.push_back(i);
   });
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <vector>
 
 #include "core/kernel/interfaces/triangle_mesh.h"
@@ -11,10 +12,10 @@ namespace drape::shapes {
 /// The corners and straight edges of a solid, rounded by `offset`, that the interior of a cloth edge or
 /// triangle can make contact with. A cylinder has those of an inscribed prism.
 struct Features {
-  Positions points;                                   ///< k×3 [m]
-  Eigen::Matrix<int, Eigen::Dynamic, 2> edges{0, 2};  ///< e×2, indices of points
-  double offset = 0;                                  ///< [m]
-  double side = 0;  ///< side length of the prism's polygon [m]; 0 for other solids
+  std::vector<Eigen::Vector3d> points;    ///< [m]
+  std::vector<std::array<int, 2>> edges;  ///< indices of points
+  double offset = 0;                      ///< [m]
+  double side = 0;                        ///< side length of the prism's polygon [m]; 0 for other solids
 
   /// The prism is nowhere more than `max_inset` [m] inside its cylinder.
   static Features of(const Solid& solid, double max_inset);

@@ -41,6 +41,7 @@ class Finder {
         solid_index_(solid),
         solid_(scene.solids[solid]),
         features_(scene.features[solid]),
+        first_point_(static_cast<int>(x0.rows()) + scene.first_point[solid]),
         x0_(x0),
         x1_(x1) {}
 
@@ -63,57 +64,51 @@ class Finder {
   }
 
   /// Adds pairs of the solid's points and triangles.
-  void add_point_triangle(const std::vector<int>& triangles, int first_point,
-                          std::vector<ContactPair>& pairs) const {
+  void add_point_triangle(const std::vector<int>& triangles, std::vector<ContactPair>& pairs) const {
     const double share = solid_.kind == SolidKind::sphere ? 1 : half;  // a sphere has no other pairs
     std::vector<int> found;
     for (const int i : triangles) {
       const Ball ball = ball_of(&scene_.cloth.triangles(i, 0), 3, x0_, x1_);
       found.clear();
       features_.points_near(solid_, ball.centre, ball.radius + reach(), found);
-      ContactPair pair;
-      pair.kind = PairKind::point_triangle;
-      pair.offset = features_.offset;
-      pair.dhat = scene_.barrier.dhat;
-      pair.obstacle = solid_index_;
-      pair.friction = solid_.friction;
-      pair.weight =
-          share * scene_.cloth.triangle_area[i] * side_fraction(std::sqrt(2 * scene_.cloth.triangle_area[i]));
+      const double area = scene_.cloth.triangle_area[i];
+      ContactPair pair = pair_of(PairKind::point_triangle, share * area * side_fraction(std::sqrt(2 * area)));
       for (const int point : found) {
-        pair.vertices = {static_cast<int>(x0_.rows()) + first_point + point, scene_.cloth.triangles(i, 0),
-                         scene_.cloth.triangles(i, 1), scene_.cloth.triangles(i, 2)};
+        pair.vertices = {first_point_ + point, scene_.cloth.triangles(i, 0), scene_.cloth.triangles(i, 1),
+                         scene_.cloth.triangles(i, 2)};
         pairs.push_back(pair);
       }
     }
   }
 
   /// Adds pairs of the solid's and the cloth's edges.
-  void add_edge_edge(const std::vector<int>& edges, int first_point, std::vector<ContactPair>& pairs) const {
+  void add_edge_edge(const std::vector<int>& edges, std::vector<ContactPair>& pairs) const {
     std::vector<int> found;
     for (const int i : edges) {
       const Ball ball = ball_of(&scene_.cloth.edges(i, 0), 2, x0_, x1_);
       found.clear();
       features_.edges_near(solid_, ball.centre, ball.radius + reach(), found);
-      ContactPair pair;
-      pair.kind = PairKind::edge_edge;
-      pair.offset = features_.offset;
-      pair.dhat = scene_.barrier.dhat;
-      pair.obstacle = solid_index_;
-      pair.friction = solid_.friction;
       const double length = std::sqrt(scene_.cloth.edge_length_squared[i]);
-      pair.weight = half * scene_.cloth.edge_area[i] * side_fraction(length);
-      const int first = static_cast<int>(x0_.rows()) + first_point;
+      ContactPair pair =
+          pair_of(PairKind::edge_edge, half * scene_.cloth.edge_area[i] * side_fraction(length));
       for (const int edge : found) {
-        const int a = features_.edges(edge, 0), b = features_.edges(edge, 1);
-        pair.vertices = {scene_.cloth.edges(i, 0), scene_.cloth.edges(i, 1), first + a, first + b};
-        pair.mollifier = mollifier_threshold * length * length *
-                         (features_.points.row(b) - features_.points.row(a)).squaredNorm();
+        const auto [a, b] = features_.edges[edge];
+        pair.vertices = {scene_.cloth.edges(i, 0), scene_.cloth.edges(i, 1), first_point_ + a,
+                         first_point_ + b};
+        pair.mollifier =
+            mollifier_threshold * length * length * (features_.points[b] - features_.points[a]).squaredNorm();
         pairs.push_back(pair);
       }
     }
   }
 
  private:
+  /// A pair of the solid, without its vertices.
+  ContactPair pair_of(PairKind kind, double weight) const {
+    ContactPair pair{{}, kind, solid_index_, weight, scene_.barrier.dhat, features_.offset};
+    pair.friction = solid_.friction;
+    return pair;
+  }
   double reach() const { return scene_.barrier.dhat + features_.offset; }
   bool is_near(const Ball& ball) const {
     return solid_.distance(ball.centre) - ball.radius < scene_.barrier.dhat;
@@ -140,6 +135,7 @@ class Finder {
   int solid_index_;
   const Solid& solid_;
   const Features& features_;
+  int first_point_;  // index of the solid's first point in pairs
   const Positions &x0_, &x1_;
 };
 
@@ -157,22 +153,20 @@ ShapeScene ShapeScene::of(const Level& level, const std::vector<Solid>& solids,
   for (const Solid& solid : solids) s.features.push_back(Features::of(solid, inset * barrier.dhat));
   // Cylinders come last: a larger one has more points, and contacts are identified by point indices.
   s.first_point.resize(solids.size());
-  int count = 0;
+  std::vector<Vector3d> points;
   for (const bool cylinders : {false, true})
     for (std::size_t k = 0; k < solids.size(); ++k) {
       if ((solids[k].kind == SolidKind::cylinder) != cylinders) continue;
-      s.first_point[k] = count;
-      count += static_cast<int>(s.features[k].points.rows());
+      s.first_point[k] = static_cast<int>(points.size());
+      points.insert(points.end(), s.features[k].points.begin(), s.features[k].points.end());
     }
-  s.obstacle_points.resize(count, 3);
-  for (std::size_t k = 0; k < solids.size(); ++k)
-    s.obstacle_points.middleRows(s.first_point[k], s.features[k].points.rows()) = s.features[k].points;
+  s.obstacle_points.resize(static_cast<Eigen::Index>(points.size()), 3);
+  for (std::size_t i = 0; i < points.size(); ++i) s.obstacle_points.row(i) = points[i];
   return s;
 }
 
-std::vector<TriangleSolidPair> find_triangles(const ShapeScene& scene, const Positions& x0,
-                                              const Positions& x1) {
-  std::vector<TriangleSolidPair> found;
+std::vector<SolidPair> find_triangles(const ShapeScene& scene, const Positions& x0, const Positions& x1) {
+  std::vector<SolidPair> found;
   std::vector<int> all(scene.cloth.triangles.rows());
   std::iota(all.begin(), all.end(), 0);
   for (int k = 0; k < static_cast<int>(scene.solids.size()); ++k)
@@ -180,21 +174,21 @@ std::vector<TriangleSolidPair> find_triangles(const ShapeScene& scene, const Pos
   return found;
 }
 
-CandidatePairs find_candidates(const ShapeScene& scene, const std::vector<TriangleSolidPair>& found,
+CandidatePairs find_candidates(const ShapeScene& scene, const std::vector<SolidPair>& found,
                                const Positions& x0, const Positions& x1) {
   CandidatePairs c;
   std::size_t next = 0;
   for (int k = 0; k < static_cast<int>(scene.solids.size()); ++k) {
-    const Solid& solid = scene.solids[k];
+    const SolidKind kind = scene.solids[k].kind;
     const Finder finder(scene, k, x0, x1);
     std::vector<int> triangles;
-    for (; next < found.size() && found[next].solid == k; ++next) triangles.push_back(found[next].triangle);
+    for (; next < found.size() && found[next].solid == k; ++next) triangles.push_back(found[next].element);
     triangles = finder.triangles_near(triangles);
-    finder.add_point_triangle(triangles, scene.first_point[k], c.pairs);
-    if (solid.kind == SolidKind::sphere) continue;
+    finder.add_point_triangle(triangles, c.pairs);
+    if (kind == SolidKind::sphere) continue;
     for (const int i : finder.vertices_of(triangles)) c.vertices.push_back({i, k});
-    if (solid.kind == SolidKind::half_space) continue;
-    finder.add_edge_edge(finder.edges_of(triangles), scene.first_point[k], c.pairs);
+    if (kind == SolidKind::half_space) continue;
+    finder.add_edge_edge(finder.edges_of(triangles), c.pairs);
   }
   return c;
 }

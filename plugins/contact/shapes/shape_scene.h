@@ -33,34 +33,26 @@ struct ShapeScene {
   }
 };
 
-/// A triangle of the cloth and a solid.
-struct TriangleSolidPair {
-  int triangle, solid;
+/// A triangle or a vertex of the cloth and a solid that may come within d̂ of each other.
+struct SolidPair {
+  int element, solid;
 };
 
-/// Triangles that may come within d̂ of a solid during the linear motion from x0 to x1, grouped by solid.
-std::vector<TriangleSolidPair> find_triangles(const ShapeScene& scene, const Positions& x0,
-                                              const Positions& x1);
-
-/// A cloth vertex and a solid that may come within d̂.
-struct VertexSolidPair {
-  int vertex;
-  int solid;
-};
+/// The triangles that may come within d̂ of a solid during the linear motion from x0 to x1, grouped by solid.
+std::vector<SolidPair> find_triangles(const ShapeScene& scene, const Positions& x0, const Positions& x1);
 
 /// The candidate pairs of a linear motion.
 struct CandidatePairs {
-  std::vector<VertexSolidPair> vertices;
+  std::vector<SolidPair> vertices;
   std::vector<ContactPair> pairs;
 };
 
 /// The candidate pairs of these triangles during the linear motion from x0 to x1.
-CandidatePairs find_candidates(const ShapeScene& scene, const std::vector<TriangleSolidPair>& triangles,
+CandidatePairs find_candidates(const ShapeScene& scene, const std::vector<SolidPair>& triangles,
                                const Positions& x0, const Positions& x1);
 
 /// Contact of a level's cloth with solids. Reported gaps are distances of cloth triangles to solids.
 /// README.md describes the barrier's pairs of vertices, edges and triangles.
-std::unique_ptr<BoundContact> bind_shapes(const Level& level, const std::vector<Solid>& solids,
-                                          const BarrierParameters& barrier, double min_gap_fraction);
+std::unique_ptr<BoundContact> bind_shapes(ShapeScene scene);
 
 }  // namespace drape::shapes

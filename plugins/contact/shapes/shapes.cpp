@@ -1,6 +1,8 @@
 #include "plugins/contact/shapes/shapes.h"
 
+#include <algorithm>
 #include <stdexcept>
+#include <utility>
 
 #include "core/kernel/plugin/bounds.h"
 #include "core/kernel/plugin/plugin.h"
@@ -45,9 +47,7 @@ Solid solid_of(const ShapeParameters& p, int index, double friction) {
 }  // namespace
 
 std::string to_string(SolidKind kind) {
-  for (const auto& [name, own] : kind_names)
-    if (own == kind) return name;
-  throw std::logic_error("a kind of solid without a name");
+  return std::ranges::find(kind_names, kind, &std::pair<std::string, SolidKind>::second)->first;
 }
 
 void ShapeParameters::declare(Declaration<ShapeParameters>& d) {
@@ -60,27 +60,19 @@ void ShapeParameters::declare(Declaration<ShapeParameters>& d) {
           "behind a plane")
       .source("this project");
   d.declared("rotate").only_with("shape", {"sphere", "box", "capsule", "cylinder"});
-  d.add("radius", &ShapeParameters::radius)
-      .unit("m")
-      .at_least(bounds::smallest_length)
-      .at_most(bounds::largest_length)
-      .only_with("shape", {"sphere", "capsule", "cylinder"})
-      .description("radius of a sphere, capsule or cylinder")
-      .source("this project");
-  d.add("size", &ShapeParameters::size)
-      .unit("m")
-      .at_least(bounds::smallest_length)
-      .at_most(bounds::largest_length)
-      .only_with("shape", {"box"})
-      .description("edge lengths of a box")
-      .source("this project");
-  d.add("height", &ShapeParameters::height)
-      .unit("m")
-      .at_least(bounds::smallest_length)
-      .at_most(bounds::largest_length)
-      .only_with("shape", {"capsule", "cylinder"})
-      .description("length along the local z axis of a cylinder, or of a capsule without its hemispheres")
-      .source("this project");
+  const auto add_length = [&](const char* name, auto member, std::vector<std::string> shapes) {
+    return d.add(name, member)
+        .unit("m")
+        .at_least(bounds::smallest_length)
+        .at_most(bounds::largest_length)
+        .only_with("shape", std::move(shapes))
+        .source("this project");
+  };
+  add_length("radius", &ShapeParameters::radius, {"sphere", "capsule", "cylinder"})
+      .description("radius of a sphere, capsule or cylinder");
+  add_length("size", &ShapeParameters::size, {"box"}).description("edge lengths of a box");
+  add_length("height", &ShapeParameters::height, {"capsule", "cylinder"})
+      .description("length along the local z axis of a cylinder, or of a capsule without its hemispheres");
   d.add("normal", &ShapeParameters::normal)
       .at_least(-1e6)
       .at_most(1e6)
@@ -105,7 +97,7 @@ Shapes::Shapes(const Parameters& parameters) : p_(parameters) {
 
 std::unique_ptr<BoundContact> Shapes::bind(const Level& level, const Material& material) const {
   if (solids_.empty()) return nullptr;
-  return bind_shapes(level, solids_, p_.barrier(material), p_.min_gap_fraction);
+  return bind_shapes(ShapeScene::of(level, solids_, p_.barrier(material), p_.min_gap_fraction));
 }
 
 }  // namespace drape::shapes

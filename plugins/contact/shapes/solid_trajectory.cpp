@@ -26,6 +26,11 @@ double ball_distance(const Solid& solid, const Corners& triangle) {
   return solid.distance(centroid) - radius;
 }
 
+bool are_same(const Solid& a, const Solid& b) {
+  return a.centre == b.centre && a.half == b.half && a.radius == b.radius &&
+         (a.kind == SolidKind::half_space ? a.plane == b.plane : a.rotate == b.rotate);
+}
+
 /// The first t in [0, 1] with a + b t + c t² ≤ 0, 1 if there is none.
 double first_root(double a, double b, double c) {
   if (!(a > 0)) return 0;
@@ -46,11 +51,6 @@ SolidTrajectory::SolidTrajectory(const Solid& from, const Solid& to) : from_(fro
   const double growth = (to.half - from.half).norm() + std::abs(to.radius - from.radius);
   acceleration_bound_ = omega * omega * size + 2 * omega * growth;
   displacement_bound_ = (to.centre - from.centre).norm() + omega * size + growth;
-}
-
-bool SolidTrajectory::is_static() const {
-  return from_.centre == to_.centre && from_.half == to_.half && from_.radius == to_.radius &&
-         (from_.kind == SolidKind::half_space ? from_.plane == to_.plane : from_.rotate == to_.rotate);
 }
 
 Solid SolidTrajectory::at(double t) const {
@@ -97,14 +97,13 @@ double SolidTrajectory::advance_plane(const Corners& triangle, double min_gap) c
   return fraction;
 }
 
-std::vector<SolidTrajectory> solid_trajectories(const std::vector<Solid>& from,
-                                                const std::vector<Solid>& to) {
+std::vector<SolidTrajectory> moving_solids(const std::vector<Solid>& from, const std::vector<Solid>& to) {
   if (from.size() != to.size()) throw std::runtime_error("shapes cannot appear or vanish during a run");
   std::vector<SolidTrajectory> trajectories;
   for (std::size_t i = 0; i < to.size(); ++i) {
     if (from[i].kind != to[i].kind)
       throw std::runtime_error(to[i].name + " cannot replace " + from[i].name + " during a run");
-    trajectories.emplace_back(from[i], to[i]);
+    if (!are_same(from[i], to[i])) trajectories.emplace_back(from[i], to[i]);
   }
   return trajectories;
 }

@@ -16,7 +16,6 @@ class SolidTrajectory {
   SolidTrajectory(const Solid& from, const Solid& to);
 
   const std::string& name() const { return to_.name; }
-  bool is_static() const;
   /// The triangle's gap at the start [m]. Beyond d̂ it may be a lower bound above d̂.
   double gap(const Corners& triangle, double dhat) const;
   /// The part of the motion that keeps the gap to a static triangle at least `min_gap` [m]; 0 if min_gap is
@@ -31,8 +30,8 @@ class SolidTrajectory {
   double acceleration_bound_, displacement_bound_;  // of the solid's points: |p''|, |p(t) - p(0)| [m]
 };
 
-/// The trajectory of each solid. Throws std::runtime_error if number or kinds differ.
-std::vector<SolidTrajectory> solid_trajectories(const std::vector<Solid>& from, const std::vector<Solid>& to);
+/// The trajectories of the solids that move. Throws std::runtime_error if number or kinds differ.
+std::vector<SolidTrajectory> moving_solids(const std::vector<Solid>& from, const std::vector<Solid>& to);
 
 /// The displacement [m] of a solid's point p as the solid moves rigidly from one placement to the other. A
 /// half-space turns by the smallest angle between its normals.
