@@ -33,40 +33,35 @@ class ConstantLoad final : public Energy {
     }
   };
 
-  struct Parameters {
-    Eigen::Vector3d force_density{0, 0, 0};
-    std::vector<PointForce> points;
-    static void declare(Declaration<Parameters>& d) {
-      d.add("force_density", &Parameters::force_density)
-          .unit("N/m²")
-          .at_least(-bounds::largest_load)
-          .at_most(bounds::largest_load)
-          .description("force per rest area on the whole cloth")
-          .source("this project");
-      d.add_sections("points", &Parameters::points)
-          .description("forces on single vertices")
-          .source("this project");
-    }
-  };
+  Eigen::Vector3d force_density{0, 0, 0};
+  std::vector<PointForce> points;
 
-  explicit ConstantLoad(const Parameters& parameters) : p_(parameters) {}
+  static void declare(Declaration<ConstantLoad>& d) {
+    d.add("force_density", &ConstantLoad::force_density)
+        .unit("N/m²")
+        .at_least(-bounds::largest_load)
+        .at_most(bounds::largest_load)
+        .description("force per rest area on the whole cloth")
+        .source("this project");
+    d.add_sections("points", &ConstantLoad::points)
+        .description("forces on single vertices")
+        .source("this project");
+  }
+
   EnergyRole role() const override { return EnergyRole::external; }
   /// On a finer mesh another vertex may be nearest to a point.
   std::optional<double> midpoint_factor() const override {
-    return p_.points.empty() ? std::optional(1.0) : std::nullopt;
+    return points.empty() ? std::optional(1.0) : std::nullopt;
   }
   std::unique_ptr<BoundEnergy> bind(const Level& level, const Material&) const override {
-    Positions forces = level.vertex_area * p_.force_density.transpose();
-    for (const PointForce& load : p_.points) {
+    Positions forces = level.vertex_area * force_density.transpose();
+    for (const PointForce& load : points) {
       Eigen::Index nearest;
       (level.rest.vertices.rowwise() - load.point.transpose()).rowwise().squaredNorm().minCoeff(&nearest);
       forces.row(nearest) += load.force.transpose();
     }
     return std::make_unique<LinearEnergy>(std::move(forces));
   }
-
- private:
-  Parameters p_;
 };
 
 }  // namespace drape

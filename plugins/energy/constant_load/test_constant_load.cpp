@@ -10,14 +10,14 @@ using namespace drape;
 
 TEST_CASE("constant_load: forces by area and on the nearest vertex") {
   const Level level = Level::of(0, grid({2, 3}, 5, 4, Diagonals::one_way));
-  ConstantLoad::Parameters parameters;
-  parameters.force_density << 1, 2, -4;
-  parameters.points = {{{2.1, 3.2, 0.5}, {0, 0, 8}}, {{0.55, 0.9, 0}, {3, 0, 0}}, {{2, 3, 0}, {0, 1, 0}}};
-  const auto bound = ConstantLoad(parameters).bind(level, Material());
+  ConstantLoad load;
+  load.force_density << 1, 2, -4;
+  load.points = {{{2.1, 3.2, 0.5}, {0, 0, 8}}, {{0.55, 0.9, 0}, {3, 0, 0}}, {{2, 3, 0}, {0, 1, 0}}};
+  const auto bound = load.bind(level, Material());
   const Positions g = gradient_of(*bound, level.rest.vertices);
 
   for (int i = 0; i < 20; ++i) {
-    Eigen::RowVector3d expected = -level.vertex_area[i] * parameters.force_density.transpose();
+    Eigen::RowVector3d expected = -level.vertex_area[i] * load.force_density.transpose();
     if (i == 19) expected -= Eigen::RowVector3d(0, 1, 8);  // the corner (2, 3)
     if (i == 6) expected -= Eigen::RowVector3d(3, 0, 0);   // (0.5, 1)
     CHECK((g.row(i) - expected).norm() <= 1e-14);
@@ -26,10 +26,10 @@ TEST_CASE("constant_load: forces by area and on the nearest vertex") {
   CHECK(bound->value(level.rest.vertices) ==
         Approx(g.cwiseProduct(level.rest.vertices).sum()).epsilon(1e-13));
   CHECK(bound->stencils().rows() == 0);
-  CHECK(ConstantLoad(parameters).role() == EnergyRole::external);
+  CHECK(load.role() == EnergyRole::external);
 }
 
 TEST_CASE("constant_load: nothing by default") {
   const Level level = Level::of(0, grid({2, 3}, 5, 4, Diagonals::one_way));
-  CHECK(gradient_of(*ConstantLoad({}).bind(level, Material()), level.rest.vertices).norm() == 0);
+  CHECK(gradient_of(*ConstantLoad().bind(level, Material()), level.rest.vertices).norm() == 0);
 }

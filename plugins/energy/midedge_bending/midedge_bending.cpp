@@ -10,39 +10,33 @@ namespace drape {
 /// ((1 - ν) tr S² + ν (tr S)²), k = E_bend d³ / (24 (1 - ν²)).
 class MidedgeBending final : public Energy {
  public:
-  struct Parameters {
-    double correction_tolerance = 0.02, sliding_curvature = 5;
+  double correction_tolerance = 0.02, sliding_curvature = 5;
 
-    static void declare(Declaration<Parameters>& d) {
-      d.add("correction_tolerance", &Parameters::correction_tolerance)
-          .at_least(0)
-          .at_most(1)
-          .description(
-              "smallest weight with which a neighbouring dihedral angle corrects an edge's normal, where "
-              "the triangles about the edge differ; with 1 normals are plain averages of the triangles'")
-          .source("this project");
-      d.add("sliding_curvature", &Parameters::sliding_curvature)
-          .unit("1/m")
-          .at_least(1e-3)
-          .at_most(1e3)
-          .description(
-              "κ0, curvature at which friction between yarns has 71 % of its moment; of cloth with "
-              "`bending_hysteresis`")
-          .source("this project");
-    }
-  };
+  static void declare(Declaration<MidedgeBending>& d) {
+    d.add("correction_tolerance", &MidedgeBending::correction_tolerance)
+        .at_least(0)
+        .at_most(1)
+        .description(
+            "smallest weight with which a neighbouring dihedral angle corrects an edge's normal, where "
+            "the triangles about the edge differ; with 1 normals are plain averages of the triangles'")
+        .source("this project");
+    d.add("sliding_curvature", &MidedgeBending::sliding_curvature)
+        .unit("1/m")
+        .at_least(1e-3)
+        .at_most(1e3)
+        .description(
+            "κ0, curvature at which friction between yarns has 71 % of its moment; of cloth with "
+            "`bending_hysteresis`")
+        .source("this project");
+  }
 
-  explicit MidedgeBending(const Parameters& parameters) : parameters_(parameters) {}
   EnergyRole role() const override { return EnergyRole::bending; }
   double plate_stiffness(const Material& material) const override { return 2 * bending_stiffness(material); }
   std::unique_ptr<BoundEnergy> bind(const Level& level, const Material& material) const override {
-    return std::make_unique<BoundMidedgeBending>(
-        level, ShapeOperators::of(level, material, parameters_.correction_tolerance),
-        BendingFriction::of(material, parameters_.sliding_curvature));
+    return std::make_unique<BoundMidedgeBending>(level,
+                                                 ShapeOperators::of(level, material, correction_tolerance),
+                                                 BendingFriction::of(material, sliding_curvature));
   }
-
- private:
-  Parameters parameters_;
 };
 
 }  // namespace drape

@@ -16,7 +16,8 @@ using namespace drape;
 
 namespace {
 
-constexpr double k = 0.7, nu = 0.3, default_tolerance = MidedgeBending::Parameters().correction_tolerance;
+constexpr double k = 0.7, nu = 0.3;
+const double default_tolerance = MidedgeBending().correction_tolerance;
 
 /// Material with this k and ν.
 const Material material = [] {
@@ -27,7 +28,7 @@ const Material material = [] {
   return m;
 }();
 
-std::unique_ptr<BoundEnergy> bind(const Level& level) { return MidedgeBending({}).bind(level, material); }
+std::unique_ptr<BoundEnergy> bind(const Level& level) { return MidedgeBending().bind(level, material); }
 
 struct NamedMesh {
   std::string name;
@@ -164,15 +165,15 @@ TEST_CASE("midedge_bending: equal rigidities are the isotropic plate, and a quar
     for (int i = 0; i < level.vertex_count(); ++i)
       x(i, 2) = 0.1 * std::sin(7 * x(i, 0)) * std::cos(5 * x(i, 1) + 1);
     const double plain = bind(level)->value(x);
-    CHECK(std::abs(MidedgeBending({}).bind(level, isotropic)->value(x) / plain - 1) < 1e-12);
+    CHECK(std::abs(MidedgeBending().bind(level, isotropic)->value(x) / plain - 1) < 1e-12);
 
     Eigen::Matrix3d turn;
     turn << 0, -1, 0, 1, 0, 0, 0, 0, 1;
     TriangleMesh turned = mesh;
     turned.vertices = mesh.vertices * turn.transpose();
     turned.warp = warp_at(turned, 90);
-    const double own = MidedgeBending({}).bind(level, woven)->value(x),
-                 after = MidedgeBending({}).bind(Level::of(0, turned), woven)->value(x * turn.transpose());
+    const double own = MidedgeBending().bind(level, woven)->value(x),
+                 after = MidedgeBending().bind(Level::of(0, turned), woven)->value(x * turn.transpose());
     CHECK(std::abs(own / plain - 1) > 0.1);
     CHECK(std::abs(after / own - 1) < 1e-12);
   }
@@ -180,13 +181,12 @@ TEST_CASE("midedge_bending: equal rigidities are the isotropic plate, and a quar
 
 TEST_CASE("midedge_bending: friction adds its moment to a bent strip's, and derivatives follow") {
   Material rubbing = material;
-  const double rigidity = 2 * k * (1 - nu * nu), moment = 0.4,
-               sliding = MidedgeBending::Parameters().sliding_curvature;
+  const double rigidity = 2 * k * (1 - nu * nu), moment = 0.4, sliding = MidedgeBending().sliding_curvature;
   rubbing.bending_hysteresis = 2 * moment;
   for (auto& [name, mesh] : triangulations(5)) {
     INFO(name);
     const Level level = Level::of(0, mesh);
-    const auto own = MidedgeBending({}).bind(level, rubbing);
+    const auto own = MidedgeBending().bind(level, rubbing);
     CHECK(own->value(mesh.vertices) == 0);
     for (const double height : {1e-4, 0.01, 0.1}) {  // sticking to sliding
       Positions x = mesh.vertices;
@@ -219,14 +219,14 @@ TEST_CASE("midedge_bending: friction adds its moment to a bent strip's, and deri
   }
   Material limp = rubbing;
   limp.bending_modulus = 0;
-  CHECK_THROWS_WITH(MidedgeBending({}).bind(Level::of(0, triangulations(5)[0].mesh), limp),
+  CHECK_THROWS_WITH(MidedgeBending().bind(Level::of(0, triangulations(5)[0].mesh), limp),
                     Catch::Contains("\"bending_hysteresis\" needs a bending rigidity"));
 }
 
 TEST_CASE("midedge_bending: a bias rigidity that no plate has is refused with its eigenvalue") {
   Material woven = material;
   woven.warp_bending = 1, woven.weft_bending = 1, woven.bias_bending = 10;
-  CHECK_THROWS_WITH(MidedgeBending({}).bind(Level::of(0, grid({1, 1}, 3, 3, Diagonals::one_way)), woven),
+  CHECK_THROWS_WITH(MidedgeBending().bind(Level::of(0, grid({1, 1}, 3, 3, Diagonals::one_way)), woven),
                     Catch::Contains("not positive definite") && Catch::Contains("eigenvalue -1"));
 }
 
