@@ -1,5 +1,6 @@
 #include <Eigen/Geometry>
-#include <array>
+#include <numeric>
+#include <vector>
 
 #include "core/kernel/interfaces/element_order.h"
 #include "core/kernel/interfaces/energy.h"
@@ -7,6 +8,7 @@
 #include "core/kernel/plugin/parameters.h"
 #include "core/kernel/plugin/plugin.h"
 #include "core/kernel/threads/parallel.h"
+#include "core/numerics/elements/element_pack.h"
 
 namespace drape {
 namespace {
@@ -37,28 +39,23 @@ class BoundPressure final : public BoundEnergy {
         all.row(next++) << v[(k + 1) % 3], v[(k + 2) % 3], v[k], -1;
       }
     order_ = ElementOrder::of(all.leftCols(2), level.rest.vertices);
-    edges_.resize(edges, 4);
-    for (Eigen::Index e = 0; e < edges; ++e) edges_.row(e) = all.row(order_.elements[e]);
+    edges_ = in_order(all, order_);
   }
 
   double value(const Positions& x) const override {
     const Vector origin = origin_at(x);
-    Sums sums;
-    parallel_for(order_.chunks(), 1, [&](int begin, int end) {
-      for (int c = begin; c < end; ++c) {
-        double sum = 0;
-        for (int e = order_.chunk_start[c]; e < order_.chunk_start[c + 1]; ++e)
-          sum += determinant(Edge(*this, x, origin, e));
-        sums[c] = sum;
-      }
-    });
-    return energy(sums);
+    return energy(parallel_sum(order_.chunks(), 1, [&](int chunk, int) {
+      double sum = 0;
+      for (int e = order_.chunk_start[chunk]; e < order_.chunk_start[chunk + 1]; ++e)
+        sum += determinant(Edge(*this, x, origin, e));
+      return sum;
+    }));
   }
 
   double add_gradient(const Positions& x, Positions& g) const override {
     const Vector origin = origin_at(x);
     const double scale = -pressure_ / 12;
-    Sums sums;
+    std::vector<double> sums(order_.chunks());
     order_.for_each_chunk([&](int c) {
       double sum = 0;
       for (int e = order_.chunk_start[c]; e < order_.chunk_start[c + 1]; ++e) {
@@ -69,7 +66,7 @@ class BoundPressure final : public BoundEnergy {
       }
       sums[c] = sum;
     });
-    return energy(sums);
+    return energy(std::accumulate(sums.begin(), sums.end(), 0.0));
   }
 
   Stencils stencils() const override { return edges_.leftCols(2); }
@@ -98,8 +95,6 @@ class BoundPressure final : public BoundEnergy {
   }
 
  private:
-  using Sums = std::array<double, ElementOrder::max_chunks>;
-
   struct Edge {
     Vector a, b, across;  ///< ends, from the origin, and c - d
     Edge(const BoundPressure& of, const Positions& x, const Vector& origin, int e) {
@@ -117,11 +112,8 @@ class BoundPressure final : public BoundEnergy {
   /// volume does not depend on it.
   Vector origin_at(const Positions& x) const { return closed_ ? Vector(x.row(0)) : centre_; }
 
-  double energy(const Sums& sums) const {
-    double result = 0;
-    for (int c = 0; c < order_.chunks(); ++c) result += sums[c];
-    return -pressure_ * result / 18;
-  }
+  /// From the sum of the determinants.
+  double energy(double sum) const { return -pressure_ * sum / 18; }
 
   double pressure_;
   Vector centre_;
@@ -136,37 +128,32 @@ class BoundPressure final : public BoundEnergy {
 /// an open cloth.
 class Pressure final : public Energy {
  public:
-  struct Parameters {
-    double pressure = 0;
-    Eigen::Vector3d centre{0, 0, 0};
-    static void declare(Declaration<Parameters>& d) {
-      d.add("pressure", &Parameters::pressure)
-          .unit("Pa")
-          .at_least(-bounds::largest_load)
-          .at_most(bounds::largest_load)
-          .required()
-          .description("pressure along the normal of every triangle; negative for suction")
-          .source("this project");
-      d.add("centre", &Parameters::centre)
-          .unit("m")
-          .at_least(-bounds::largest_coordinate)
-          .at_most(bounds::largest_coordinate)
-          .description(
-              "apex of the cone that closes an open cloth; it has no effect on a pinned border or a closed "
-              "mesh")
-          .source("this project");
-    }
-  };
+  double pressure = 0;
+  Eigen::Vector3d centre{0, 0, 0};
 
-  explicit Pressure(const Parameters& parameters) : p_(parameters) {}
+  static void declare(Declaration<Pressure>& d) {
+    d.add("pressure", &Pressure::pressure)
+        .unit("Pa")
+        .at_least(-bounds::largest_load)
+        .at_most(bounds::largest_load)
+        .required()
+        .description("pressure along the normal of every triangle; negative for suction")
+        .source("this project");
+    d.add("centre", &Pressure::centre)
+        .unit("m")
+        .at_least(-bounds::largest_coordinate)
+        .at_most(bounds::largest_coordinate)
+        .description(
+            "apex of the cone that closes an open cloth; it has no effect on a pinned border or a closed "
+            "mesh")
+        .source("this project");
+  }
+
   EnergyRole role() const override { return EnergyRole::external; }
   std::optional<double> midpoint_factor() const override { return 1; }
   std::unique_ptr<BoundEnergy> bind(const Level& level, const Material&) const override {
-    return std::make_unique<BoundPressure>(p_.pressure, p_.centre, level);
+    return std::make_unique<BoundPressure>(pressure, centre, level);
   }
-
- private:
-  Parameters p_;
 };
 
 }  // namespace drape

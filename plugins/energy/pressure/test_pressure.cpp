@@ -16,10 +16,10 @@ const Eigen::Vector3d apex(0.2, 0.3, -0.4);
 
 std::unique_ptr<BoundEnergy> bound(const Level& level, double pressure,
                                    const Eigen::Vector3d& centre = apex) {
-  Pressure::Parameters p;
+  Pressure p;
   p.pressure = pressure;
   p.centre = centre;
-  return Pressure(p).bind(level, Material());
+  return p.bind(level, Material());
 }
 
 Positions noisy(const Positions& x, double size, unsigned seed) {
