@@ -1,5 +1,7 @@
+#include <algorithm>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 #include "core/kernel/interfaces/energy.h"
 #include "core/kernel/plugin/bounds.h"
@@ -43,28 +45,19 @@ class BoundStrainLimit final : public BoundEnergy, public StretchLimited {
 
   const StretchLimited* stretch_limit() const override { return this; }
   StepLimit max_step(const Positions& x0, const Positions& x1) const override {
-    struct Shortest {
-      double fraction = 1;
-      int element = -1;
-    };
-    constexpr int grain = 256;
-    std::vector<Shortest> shortest(count() / grain + 1);
-    parallel_for(count(), grain, [&](int begin, int end) {
-      Shortest& own = shortest[begin / grain];
+    std::vector<double> fractions(count(), 1);
+    parallel_for(count(), 256, [&](int begin, int end) {
       for (int first = begin; first < end; first += W) {
         const PackMask<W> inside = stay_inside(first, x0, x1);
-        for (int i = first; i < std::min(first + W, end); ++i) {
-          if (inside[i - first]) continue;
-          if (const double fraction = reach(path(i, x0, x1)); fraction < own.fraction) own = {fraction, i};
-        }
+        for (int i = first; i < std::min(first + W, end); ++i)
+          if (!inside[i - first]) fractions[i] = reach(path(i, x0, x1));
       }
     });
-    Shortest first;
-    for (const Shortest& s : shortest)
-      if (s.fraction < first.fraction) first = s;
-    if (first.element < 0) return {};
-    const double stretch = path(first.element, x0, x1).at(first.fraction).largest;
-    return {first.fraction, to_string({limited_.triangles[first.element], stretch}, limit_)};
+    const auto shortest = std::ranges::min_element(fractions);
+    if (shortest == fractions.end() || *shortest >= 1) return {};
+    const auto i = static_cast<int>(shortest - fractions.begin());
+    const double stretch = path(i, x0, x1).at(*shortest).largest;
+    return {*shortest, to_string({limited_.triangles[i], stretch}, limit_)};
   }
 
   double limit() const override { return limit_; }
@@ -160,26 +153,24 @@ class BoundStrainLimit final : public BoundEnergy, public StretchLimited {
 /// the limit. Its bound energy has a max_step and a stretch_limit.
 class StrainLimit final : public Energy {
  public:
-  struct Parameters {
-    double limit = 1.1;
-    double stiffness = 1e3;
-    static void declare(Declaration<Parameters>& d) {
-      d.add("limit", &Parameters::limit)
-          .unit("1")
-          .at_least(1.0001)
-          .at_most(100)
-          .description("largest principal stretch s of every triangle, never reached")
-          .source("our default; cotton 1.0608 and wool-lycra 1.134: Li et al. 2021");
-      d.add("stiffness", &Parameters::stiffness)
-          .unit("Pa")
-          .at_least(1e-9)
-          .at_most(bounds::largest_modulus)
-          .description("κ_s, stiffness of the barrier: energy per volume")
-          .source("Li et al. 2021, section 5");
-    }
-  };
+  double limit = 1.1;
+  double stiffness = 1e3;
 
-  explicit StrainLimit(const Parameters& parameters) : p_(parameters) {}
+  static void declare(Declaration<StrainLimit>& d) {
+    d.add("limit", &StrainLimit::limit)
+        .unit("1")
+        .at_least(1.0001)
+        .at_most(100)
+        .description("largest principal stretch s of every triangle, never reached")
+        .source("our default; cotton 1.0608 and wool-lycra 1.134: Li et al. 2021");
+    d.add("stiffness", &StrainLimit::stiffness)
+        .unit("Pa")
+        .at_least(1e-9)
+        .at_most(bounds::largest_modulus)
+        .description("κ_s, stiffness of the barrier: energy per volume")
+        .source("Li et al. 2021, section 5");
+  }
+
   EnergyRole role() const override { return EnergyRole::limit; }
   std::unique_ptr<BoundEnergy> bind(const Level& level, const Material& material) const override {
     Limited all{level.triangle_count(),
@@ -190,16 +181,13 @@ class StrainLimit final : public Energy {
     for (int t = 0; t < level.triangle_count(); ++t) {
       const RestTriangle triangle = RestTriangle::of(level, t);
       Kernel::Rest rest;
-      rest << triangle.a, triangle.b, triangle.c, p_.stiffness * material.thickness * triangle.area,
-          1 / (p_.limit - 1);
+      rest << triangle.a, triangle.b, triangle.c, stiffness * material.thickness * triangle.area,
+          1 / (limit - 1);
       all.triangles.push_back(t);
       all.rest.push_back(rest);
     }
-    return std::make_unique<BoundStrainLimit>(p_.limit, std::move(all), level.triangle_order);
+    return std::make_unique<BoundStrainLimit>(limit, std::move(all), level.triangle_order);
   }
-
- private:
-  Parameters p_;
 };
 
 }  // namespace drape

@@ -58,9 +58,9 @@ std::vector<Check::State> states() {
 Level square() { return Level::of(0, grid({1, 1}, 5, 4, Diagonals::criss_cross)); }
 
 std::unique_ptr<BoundEnergy> bound_to(const Level& level, double own_limit = limit) {
-  StrainLimit::Parameters parameters;
-  parameters.limit = own_limit;
-  return StrainLimit(parameters).bind(level, Material());
+  StrainLimit energy;
+  energy.limit = own_limit;
+  return energy.bind(level, Material());
 }
 
 const StretchLimited& limited(const BoundEnergy& energy) { return *energy.stretch_limit(); }
