@@ -146,9 +146,4 @@ Eigen::VectorXd strongest_curvature(const VertexCurvatures& curvatures) {
       .select(curvatures.kappa1, curvatures.kappa2);
 }
 
-double integrated_square_difference(const Eigen::VectorXd& weights, const Eigen::VectorXd& a,
-                                    const Eigen::VectorXd& b) {
-  return (weights.array() * (a - b).array().square()).sum();
-}
-
 }  // namespace drape

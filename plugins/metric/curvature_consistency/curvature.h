@@ -32,8 +32,4 @@ VertexCurvatures ddg_curvatures(const Positions& x, const Triangles& triangles, 
 /// Per vertex, whichever of κ1 and κ2 is larger in magnitude, with its sign [1/m].
 Eigen::VectorXd strongest_curvature(const VertexCurvatures& curvatures);
 
-/// Σ_i w_i (a_i − b_i)², the supplement's integral over the parametric domain.
-double integrated_square_difference(const Eigen::VectorXd& weights, const Eigen::VectorXd& a,
-                                    const Eigen::VectorXd& b);
-
 }  // namespace drape

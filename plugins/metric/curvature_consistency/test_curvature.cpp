@@ -8,10 +8,12 @@
 #include <vector>
 
 #include "plugins/metric/curvature_consistency/curvature.h"
-#include "plugins/metric/curvature_consistency/curvature_consistency.h"
 #include "plugins/metric/curvature_consistency/quadric.h"
 #include "tests/support/closed_meshes.h"
 #include "tests/support/metric_check.h"
+#include "tests/support/unregistered.h"
+// After it:
+#include "plugins/metric/curvature_consistency/curvature_consistency.cpp"
 
 using namespace drape;
 using Eigen::Vector3d;

@@ -1,5 +1,3 @@
-#include "plugins/metric/distance/distance.h"
-
 #include <CGAL/AABB_traits.h>
 #include <CGAL/AABB_tree.h>
 #include <CGAL/AABB_triangle_primitive.h>
@@ -12,6 +10,7 @@
 #include <numeric>
 #include <vector>
 
+#include "core/kernel/interfaces/metric.h"
 #include "core/kernel/plugin/plugin.h"
 #include "core/kernel/threads/parallel.h"
 #include "core/numerics/collision_detection/closest.h"
@@ -82,44 +81,51 @@ double largest_squared_distance(const Positions& from, const Positions& to, cons
 
 }  // namespace
 
-MetricDeclaration Distance::declaration() const {
-  return {.columns = {{.name = "distance_rms",
-                       .label = "distance, RMS",
-                       .unit = "diagonal",
-                       .error = "rms",
-                       .error_use = ErrorUse::ranking},
-                      {.name = "distance_max",
-                       .label = "distance, largest",
-                       .unit = "diagonal",
-                       .shown = Shown::stored},
-                      {.name = "distance_hausdorff",
-                       .label = "Hausdorff distance",
-                       .unit = "diagonal",
-                       .shown = Shown::stored,
-                       .error = "hausdorff"}},
-          .text = "The distance is that of corresponding points, in units of the rest shape's diagonal."};
-}
+/// Distances between two states, in units of the rest shape's bounding-box diagonal: distance_rms,
+/// distance_max over corresponding vertices, distance_hausdorff between the surfaces.
+class Distance : public Metric {
+ public:
+  MetricScope scope() const override { return MetricScope::pair; }
+  MetricDeclaration declaration() const override {
+    return {.columns = {{.name = "distance_rms",
+                         .label = "distance, RMS",
+                         .unit = "diagonal",
+                         .error = "rms",
+                         .error_use = ErrorUse::ranking},
+                        {.name = "distance_max",
+                         .label = "distance, largest",
+                         .unit = "diagonal",
+                         .shown = Shown::stored},
+                        {.name = "distance_hausdorff",
+                         .label = "Hausdorff distance",
+                         .unit = "diagonal",
+                         .shown = Shown::stored,
+                         .error = "hausdorff"}},
+            .text = "The distance is that of corresponding points, in units of the rest shape's diagonal."};
+  }
 
-MetricResult Distance::measure(const MetricInput& input) const {
-  const Positions& x = input.x;
-  const Positions& other = *input.other;
-  const double diagonal = bounding_box_diagonal(input.level.rest.vertices);
+ private:
+  MetricResult measure(const MetricInput& input) const override {
+    const Positions& x = input.x;
+    const Positions& other = *input.other;
+    const double diagonal = bounding_box_diagonal(input.level.rest.vertices);
 
-  const Eigen::VectorXd squared = (x - other).rowwise().squaredNorm();
-  const Triangles& triangles = input.level.rest.triangles;
-  const double there = largest_squared_distance(x, other, triangles);
-  const double back = largest_squared_distance(other, x, triangles);
-  const Eigen::VectorXd& area = input.level.vertex_area;
+    const Eigen::VectorXd squared = (x - other).rowwise().squaredNorm();
+    const Triangles& triangles = input.level.rest.triangles;
+    const double there = largest_squared_distance(x, other, triangles);
+    const double back = largest_squared_distance(other, x, triangles);
+    const Eigen::VectorXd& area = input.level.vertex_area;
 
-  MetricResult result;
-  const auto add = [&](const char* name, double squared_distance) {
-    result.values.push_back({name, std::sqrt(squared_distance) / diagonal});
-  };
-  add("distance_rms", area.dot(squared) / area.sum());
-  add("distance_max", squared.maxCoeff());
-  add("distance_hausdorff", std::min(std::max(there, back), squared.maxCoeff()));  // but for rounding it is
-  return result;
-}
+    MetricResult result;
+    const auto add = [&](const char* name, double squared_distance) {
+      result.values.push_back({name, std::sqrt(squared_distance) / diagonal});
+    };
+    add("distance_rms", area.dot(squared) / area.sum());
+    add("distance_max", squared.maxCoeff());
+    add("distance_hausdorff", std::min(std::max(there, back), squared.maxCoeff()));  // but for rounding it is
+    return result;
+  }
+};
 
 }  // namespace drape
 

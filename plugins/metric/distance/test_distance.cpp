@@ -5,17 +5,22 @@
 #include <utility>
 
 #include "core/numerics/collision_detection/closest.h"
-#include "plugins/metric/distance/distance.h"
 #include "tests/support/kernel_check.h"
 #include "tests/support/metric_check.h"
+#include "tests/support/registry.h"
 
 using namespace drape;
 using Eigen::Vector3d;
 
 namespace {
 
+const Metric& distance_metric() {
+  static const auto metric = make_plugin_from<Metric>("distance");
+  return *metric;
+}
+
 MetricResult evaluate(const Level& level, const Positions& x, const Positions& other) {
-  return Distance().evaluate({level, empty_model(), x, &other});
+  return distance_metric().evaluate({level, empty_model(), x, &other});
 }
 
 /// Bumpy, folded enough that the nearest triangle is not the corresponding one.
@@ -119,7 +124,7 @@ TEST_CASE("distances are relative to the rest diagonal and ordered", "[distance]
 TEST_CASE("distance needs two finite states of the level", "[distance]") {
   const Level level = square(2);
   const Positions& x = level.rest.vertices;
-  const Distance metric({});
+  const Metric& metric = distance_metric();
   CHECK(metric.scope() == MetricScope::pair);
   CHECK_THROWS_WITH(metric.evaluate({level, empty_model(), x, nullptr}), Catch::Contains("two states"));
   CHECK_THROWS_WITH(evaluate(level, x, x.topRows(4)), Catch::Contains("9 and 4"));

@@ -1,10 +1,13 @@
-#include "plugins/metric/drape_coefficient/drape_coefficient.h"
-
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <stdexcept>
+#include <utility>
+#include <vector>
 
+#include "core/kernel/interfaces/metric.h"
+#include "core/kernel/plugin/parameters.h"
 #include "core/kernel/plugin/plugin.h"
 
 namespace drape {
@@ -43,30 +46,10 @@ struct Folds {
   }
 };
 
-}  // namespace
-
-MetricDeclaration DrapeCoefficient::declaration() const {
-  return {
-      .columns =
-          {{.name = "drape_coefficient",
-            .label = "drape coefficient",
-            .unit = "%",
-            .better = Better::neither,
-            .shown = Shown::summary},
-           {.name = "folds",
-            .label = "folds",
-            .unit = "1",
-            .better = Better::neither,
-            .shown = Shown::summary},
-           {.name = "fold_amplitude", .label = "fold amplitude", .unit = "m", .better = Better::neither}},
-      .text =
-          "The drape coefficient is the part of the overhanging ring that the cloth's shadow covers "
-          "(BS 5058, ISO 9073-9): 100 % does not drape. Fold amplitude is half the mean difference of folds "
-          "and valleys in the shadow's outline."};
-}
-
-std::vector<double> DrapeCoefficient::outline(const Level& level, const Positions& x, int count) {
-  std::vector<double> radii(static_cast<std::size_t>(count), 0);
+/// Distance of the shadow's outline from the cloth's centre, in `directions` evenly spaced directions from x
+/// on [m].
+std::vector<double> outline(const Level& level, const Positions& x) {
+  std::vector<double> radii(directions, 0);
   const Eigen::Vector2d centre = (x.leftCols<2>().transpose() * level.vertex_area) / level.vertex_area.sum();
   for (Eigen::Index e = 0; e < level.topology.edges.rows(); ++e) {
     const auto at = [&](int end) -> Eigen::Vector2d {
@@ -78,7 +61,7 @@ std::vector<double> DrapeCoefficient::outline(const Level& level, const Position
     };
     if (cross(a, b) < 0) std::swap(a, b);
     // The directions from a, counter-clockwise, to b.
-    const double turn = std::atan2(cross(a, b), a.dot(b)), spacing = 2 * pi / count,
+    const double turn = std::atan2(cross(a, b), a.dot(b)), spacing = 2 * pi / directions,
                  begin = std::atan2(a.y(), a.x());
     const int first = static_cast<int>(std::ceil(begin / spacing)),
               last = static_cast<int>(std::floor((begin + turn) / spacing));
@@ -86,31 +69,69 @@ std::vector<double> DrapeCoefficient::outline(const Level& level, const Position
       const Eigen::Vector2d m(std::cos(i * spacing), std::sin(i * spacing));
       const double across = cross(m, b - a);
       const double r = across == 0 ? std::max(a.norm(), b.norm()) : cross(a, b - a) / across;
-      double& own = radii[static_cast<std::size_t>((i % count + count) % count)];
+      double& own = radii[(i % directions + directions) % directions];
       own = std::max(own, std::min(r, std::max(a.norm(), b.norm())));
     }
   }
   return radii;
 }
 
-MetricResult DrapeCoefficient::measure(const MetricInput& input) const {
-  const std::vector<double> radii = outline(input.level, input.x, directions);
-  double shadow = 0;
-  for (std::size_t i = 0; i < radii.size(); ++i)
-    shadow += radii[i] * radii[(i + 1) % radii.size()] * std::sin(2 * pi / directions) / 2;
-  const double specimen = input.level.vertex_area.sum(), support = pi * support_radius * support_radius;
-  if (specimen <= support)
-    throw std::runtime_error(
-        "drape_coefficient: the cloth is not larger than its support; choose a smaller "
-        "\"support_radius\"");
-  const Folds folds(radii, least_fold * std::sqrt(specimen / pi));
-  MetricResult result;
-  result.values = {
-      {"drape_coefficient", 100 * (shadow - support) / (specimen - support)},
-      {"folds", static_cast<double>(folds.count)},
-      {"fold_amplitude", folds.count == 0 ? 0 : (folds.highest - folds.lowest) / folds.count / 2}};
-  return result;
-}
+}  // namespace
+
+/// Cusick's drape test, seen along z: drape_coefficient [%], folds [1] and fold_amplitude [m].
+class DrapeCoefficient : public Metric {
+ public:
+  double support_radius = 0.09;
+
+  static void declare(Declaration<DrapeCoefficient>& d) {
+    d.add("support_radius", &DrapeCoefficient::support_radius)
+        .unit("m")
+        .above(0)
+        .at_most(1e3)
+        .description("radius of the disc that carries the specimen; 0.09 m in BS 5058 and ISO 9073-9")
+        .required();
+  }
+
+  MetricDeclaration declaration() const override {
+    return {.columns = {{.name = "drape_coefficient",
+                         .label = "drape coefficient",
+                         .unit = "%",
+                         .better = Better::neither,
+                         .shown = Shown::summary},
+                        {.name = "folds",
+                         .label = "folds",
+                         .unit = "1",
+                         .better = Better::neither,
+                         .shown = Shown::summary},
+                        {.name = "fold_amplitude",
+                         .label = "fold amplitude",
+                         .unit = "m",
+                         .better = Better::neither}},
+            .text =
+                "The drape coefficient is the part of the overhanging ring that the cloth's shadow covers "
+                "(BS 5058, ISO 9073-9): 100 % does not drape. Fold amplitude is half the mean difference of "
+                "folds "
+                "and valleys in the shadow's outline."};
+  }
+
+ private:
+  MetricResult measure(const MetricInput& input) const override {
+    const std::vector<double> radii = outline(input.level, input.x);
+    double shadow = 0;
+    for (std::size_t i = 0; i < radii.size(); ++i)
+      shadow += radii[i] * radii[(i + 1) % radii.size()] * std::sin(2 * pi / directions) / 2;
+    const double specimen = input.level.vertex_area.sum(), support = pi * support_radius * support_radius;
+    if (specimen <= support)
+      throw std::runtime_error(
+          "drape_coefficient: the cloth is not larger than its support; choose a smaller "
+          "\"support_radius\"");
+    const Folds folds(radii, least_fold * std::sqrt(specimen / pi));
+    return {{{"drape_coefficient", 100 * (shadow - support) / (specimen - support)},
+             {"folds", static_cast<double>(folds.count)},
+             {"fold_amplitude", folds.count == 0 ? 0 : (folds.highest - folds.lowest) / folds.count / 2}},
+            {}};
+  }
+};
 
 }  // namespace drape
 

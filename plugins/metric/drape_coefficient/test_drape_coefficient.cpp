@@ -1,7 +1,7 @@
 #include <cmath>
 
-#include "plugins/metric/drape_coefficient/drape_coefficient.h"
 #include "tests/support/metric_check.h"
+#include "tests/support/registry.h"
 
 using namespace drape;
 
@@ -10,9 +10,8 @@ namespace {
 Level specimen(int vertices = 2000) { return Level::of(0, disc(0.15, vertices)); }
 
 MetricResult evaluate(const Level& level, const Positions& x) {
-  DrapeCoefficient metric;
-  metric.support_radius = 0.09;
-  return metric.evaluate({level, empty_model(), x});
+  static const auto metric = make_plugin_from<Metric>("{type: drape_coefficient, support_radius: 0.09}");
+  return metric->evaluate({level, empty_model(), x});
 }
 
 /// The cloth whose outline is at r(φ) for the rest radius 0.15, the rest in proportion.
