@@ -1,5 +1,4 @@
 #include <Eigen/Geometry>
-#include <array>
 #include <cmath>
 #include <numbers>
 #include <vector>
@@ -15,22 +14,18 @@ namespace drape {
 /// interpolated corners.
 class LoopRefiner : public Refiner {
  public:
-  struct Parameters {
-    double corner_angle = 30;
+  double corner_angle = 30;
 
-    static void declare(Declaration<Parameters>& d) {
-      d.add("corner_angle", &Parameters::corner_angle)
-          .unit("degree")
-          .at_least(0)
-          .at_most(360)
-          .description(
-              "border vertices whose interior rest angle differs from 180 degrees by more than this are "
-              "corners and are interpolated; others are smoothed")
-          .source("docs/theory/method.md, section 4");
-    }
-  };
-
-  explicit LoopRefiner(const Parameters& parameters) : parameters_(parameters) {}
+  static void declare(Declaration<LoopRefiner>& d) {
+    d.add("corner_angle", &LoopRefiner::corner_angle)
+        .unit("degree")
+        .at_least(0)
+        .at_most(360)
+        .description(
+            "border vertices whose interior rest angle differs from 180 degrees by more than this are "
+            "corners and are interpolated; others are smoothed")
+        .source("docs/theory/method.md, section 4");
+  }
 
   ProlongationMatrix weights(const Level& coarse) const override {
     const Topology& topology = coarse.topology;
@@ -38,17 +33,20 @@ class LoopRefiner : public Refiner {
     const auto edge_count = static_cast<int>(topology.edges.rows());
     Weights weights;
     weights.reserve(7 * static_cast<std::size_t>(n) + 4 * static_cast<std::size_t>(edge_count));
-    const auto border = border_neighbours(topology, n);
     const auto corner = corners(coarse);
     for (int v = 0; v < n; ++v) {
-      if (corner[v])
-        weights.emplace_back(v, v, 1);
-      else if (topology.on_border[v])
-        add_border_vertex(v, border[v], weights);
+      if (topology.on_border[v])
+        weights.emplace_back(v, v, corner[v] ? 1 : 0.75);
       else
         add_inner_vertex(v, topology, weights);
     }
-    for (int e = 0; e < edge_count; ++e) add_edge(e, coarse, weights);
+    for (int e = 0; e < edge_count; ++e) {
+      add_edge(e, coarse, weights);
+      if (topology.edge_triangles(e, 1) != -1) continue;
+      for (int end = 0; end < 2; ++end)  // a vertex of the border has two of its edges
+        if (const int v = topology.edges(e, end); !corner[v])
+          weights.emplace_back(v, topology.edges(e, 1 - end), 0.125);
+    }
 
     ProlongationMatrix matrix(n + edge_count, n);
     matrix.setFromTriplets(weights.begin(), weights.end());
@@ -67,7 +65,7 @@ class LoopRefiner : public Refiner {
         const Eigen::Vector3d b = level.rest.vertices.row(v[(k + 2) % 3]).transpose() - p;
         angle[v[k]] += std::atan2(a.cross(b).norm(), a.dot(b));
       }
-    const double allowed = parameters_.corner_angle * std::numbers::pi / 180;
+    const double allowed = corner_angle * std::numbers::pi / 180;
     std::vector<char> corner(level.vertex_count());
     for (int v = 0; v < level.vertex_count(); ++v)
       corner[v] = level.topology.on_border[v] && std::abs(angle[v] - std::numbers::pi) > allowed;
@@ -79,24 +77,6 @@ class LoopRefiner : public Refiner {
 
  private:
   using Weights = std::vector<Eigen::Triplet<double>>;
-
-  /// The two neighbours along the border of each border vertex.
-  static std::vector<std::array<int, 2>> border_neighbours(const Topology& topology, int vertex_count) {
-    std::vector<std::array<int, 2>> neighbours(vertex_count, {-1, -1});
-    for (int e = 0; e < topology.edges.rows(); ++e) {
-      if (topology.edge_triangles(e, 1) != -1) continue;
-      for (int end = 0; end < 2; ++end) {
-        auto& pair = neighbours[topology.edges(e, end)];
-        pair[pair[0] == -1 ? 0 : 1] = topology.edges(e, 1 - end);
-      }
-    }
-    return neighbours;
-  }
-
-  static void add_border_vertex(int v, const std::array<int, 2>& neighbours, Weights& weights) {
-    weights.emplace_back(v, v, 0.75);
-    for (int u : neighbours) weights.emplace_back(v, u, 0.125);
-  }
 
   static void add_inner_vertex(int v, const Topology& topology, Weights& weights) {
     const AdjacencyList& neighbours = topology.vertex_vertices;
@@ -117,8 +97,6 @@ class LoopRefiner : public Refiner {
         if (topology.triangle_edges(t, k) == e) weights.emplace_back(row, coarse.rest.triangles(t, k), 0.125);
     }
   }
-
-  Parameters parameters_;
 };
 
 }  // namespace drape

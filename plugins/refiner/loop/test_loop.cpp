@@ -13,7 +13,7 @@ using Row = std::map<int, double>;
 
 namespace {
 
-const LoopRefiner loop{LoopRefiner::Parameters{}};
+const LoopRefiner loop;
 
 Row row(const ProlongationMatrix& weights, int i) {
   Row entries;
@@ -78,7 +78,8 @@ TEST_CASE("corners are told by the rest angle", "[refiner][loop]") {
   // A wheel of k spokes turns by 360°/k at each border vertex.
   const auto [spokes, angle, corner] = GENERATE(table<int, double, bool>(
       {{11, 30, true}, {13, 30, false}, {4, 30, true}, {4, 91, false}, {11, 33, false}, {360, 0.5, true}}));
-  const LoopRefiner refiner{LoopRefiner::Parameters{angle}};
+  LoopRefiner refiner;
+  refiner.corner_angle = angle;
   const Level level = Level::of(0, wheel(spokes));
   const std::vector<char> corners = refiner.corners(level);
   CHECK_FALSE(corners[0]);
