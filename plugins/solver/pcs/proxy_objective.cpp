@@ -73,7 +73,12 @@ ProxyObjective::ProxyObjective(const Problem& problem, int level, const std::vec
     patterns.push_back(finer.matrices.back().pattern);
   }
   if (options_.matrix == ProxyMatrix::coarse || !own_.empty()) patterns.push_back(model().pattern());
-  build_pattern(patterns);
+  matrix_ = BlockMatrix(united(patterns));
+  for (FinerPart& finer : finer_)
+    if (!finer.matrices.empty()) finer.slots = slots_of(*finer.matrices.back().pattern, *matrix_.pattern);
+  if (options_.matrix == ProxyMatrix::coarse || own_.empty() || matrix_.pattern == model().pattern()) return;
+  own_matrix_ = BlockMatrix(model().pattern());
+  own_slots_ = slots_of(*model().pattern(), *matrix_.pattern);
 }
 
 void ProxyObjective::model_changed() {
@@ -96,15 +101,6 @@ bool ProxyObjective::switch_to_plain() {
     smooth_pattern_changed();
   }
   return true;
-}
-
-void ProxyObjective::build_pattern(const std::vector<std::shared_ptr<const BlockPattern>>& patterns) {
-  matrix_ = BlockMatrix(united(patterns));
-  for (FinerPart& finer : finer_)
-    if (!finer.matrices.empty()) finer.slots = slots_of(*finer.matrices.back().pattern, *matrix_.pattern);
-  if (options_.matrix == ProxyMatrix::coarse || own_.empty() || matrix_.pattern == model().pattern()) return;
-  own_matrix_ = BlockMatrix(model().pattern());
-  own_slots_ = slots_of(*model().pattern(), *matrix_.pattern);
 }
 
 const Positions& ProxyObjective::FinerPart::prolong(const Positions& x, int count) {

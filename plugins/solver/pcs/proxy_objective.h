@@ -65,7 +65,6 @@ class ProxyObjective : public Objective {
 
   /// The level's own energies.
   const LevelModel& own_model() const { return effective_ ? *effective_ : model(); }
-  void build_pattern(const std::vector<std::shared_ptr<const BlockPattern>>& patterns);
   void add_own_hessians(const Positions& x, Projection projection, BlockMatrix& matrix) const;
 
   const Problem& problem_;

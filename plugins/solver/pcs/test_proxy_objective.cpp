@@ -1,9 +1,11 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 
-#include "proxy_parts.h"
 #include "tests/support/evaluate.h"
 #include "tests/support/solve.h"
+#include "tests/support/unregistered.h"
+// After it:
+#include "plugins/solver/pcs/pcs.cpp"
 
 using namespace drape;
 
@@ -44,6 +46,14 @@ constexpr ProxyInterpolation by_refiner{Interpolation::refiner, Interpolation::r
 constexpr ProxyInterpolation by_midpoints;
 constexpr ProxyInterpolation mixed{Interpolation::midpoint, Interpolation::refiner, Interpolation::midpoint,
                                    Interpolation::midpoint};
+
+std::vector<ProxyPart> proxy_parts(const Problem& problem, int level, int depth,
+                                   const ProxyInterpolation& interpolation) {
+  PcsSolver solver;
+  solver.depth = depth;
+  solver.seen_by = interpolation;
+  return solver.parts(problem, level);
+}
 
 /// The proxy of a level for the finest one.
 ProxyObjective proxy_of(const Problem& problem, int level, int depth,
