@@ -170,10 +170,8 @@ class Silhouette : public Metric {
     });
     double sum = 0;
     for (const double v : values) sum += v;
-    MetricResult result;
-    result.values.push_back({"silhouette_overlap", sum / values.size()});
-    result.values.push_back({"silhouette_lowest", *std::min_element(values.begin(), values.end())});
-    return result;
+    return {{{"silhouette_overlap", sum / values.size()}, {"silhouette_lowest", std::ranges::min(values)}},
+            {}};
   }
 };
 

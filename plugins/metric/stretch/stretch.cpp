@@ -46,13 +46,10 @@ class Stretch : public Metric {
       weighted_sum += triangle.area * s.largest;
       area_sum += triangle.area;
     }
-
-    MetricResult result;
-    result.values = {{"largest_stretch", largest},
-                     {"smallest_stretch", smallest},
-                     {"mean_stretch", weighted_sum / area_sum}};
-    result.fields = {{"stretch", largest_stretch(input.level, x), "1"}};
-    return result;
+    return {{{"largest_stretch", largest},
+             {"smallest_stretch", smallest},
+             {"mean_stretch", weighted_sum / area_sum}},
+            {{"stretch", largest_stretch(input.level, x), "1"}}};
   }
 };
 
