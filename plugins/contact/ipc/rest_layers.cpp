@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <span>
 #include <stdexcept>
 
 #include "core/kernel/files/message_text.h"
@@ -54,9 +55,8 @@ class PathSearch {
       return share_a_part(pair);
     ++search_;
     open_.clear();
-    const int first = pair.vertices[0];
-    for (const int* t = around(first); t != end_around(first); ++t)
-      if (begins(pair, *t)) open(*t);
+    for (const int t : around(pair.vertices[0]))
+      if (begins(pair, t)) open(t);
     while (!open_.empty()) {
       const int t = open_.back();
       open_.pop_back();
@@ -72,8 +72,9 @@ class PathSearch {
   }
 
  private:
-  const int* around(int v) const { return level_.topology.vertex_triangles.begin(v); }
-  const int* end_around(int v) const { return level_.topology.vertex_triangles.end(v); }
+  std::span<const int> around(int v) const {
+    return {level_.topology.vertex_triangles.begin(v), level_.topology.vertex_triangles.end(v)};
+  }
   /// Whether a path from the pair's first primitive begins in triangle t, and whether one ends there.
   bool begins(const ContactPair& pair, int t) const {
     return pair.kind == PairKind::point_triangle || has(t, pair.vertices[1]);
@@ -84,10 +85,9 @@ class PathSearch {
     return reached;
   }
   bool share_a_part(const ContactPair& pair) const {
-    const int first = pair.vertices[0], last = pair.vertices[3];
-    for (const int* t = around(first); t != end_around(first); ++t)
-      for (const int* s = around(last); s != end_around(last); ++s)
-        if (part_[*t] == part_[*s] && begins(pair, *t) && ends(pair, *s)) return true;
+    for (const int t : around(pair.vertices[0]))
+      for (const int s : around(pair.vertices[3]))
+        if (part_[t] == part_[s] && begins(pair, t) && ends(pair, s)) return true;
     return false;
   }
   /// For each triangle a number of those that edges connect with it.
@@ -138,28 +138,20 @@ RestLayers RestLayers::of(const Surface& cloth, const Level& level, double dhat)
   });
   RestLayers result;
   result.dhat_ = dhat;
-  for (std::size_t i = 0; i < pairs.size(); ++i)
-    if (reach[i] > 0)
-      result.layers_.push_back({pairs[i].vertices, reach[i]});
-    else
-      result.neighbours_.push_back(pairs[i].vertices);
-  std::sort(result.neighbours_.begin(), result.neighbours_.end());
-  std::sort(result.layers_.begin(), result.layers_.end(),
-            [](const Layers& a, const Layers& b) { return a.vertices < b.vertices; });
+  for (std::size_t i = 0; i < pairs.size(); ++i) result.pairs_.push_back({pairs[i].vertices, reach[i]});
+  std::ranges::sort(result.pairs_, {}, &RestPair::vertices);
   return result;
 }
 
 double RestLayers::dhat_of(const std::array<int, 4>& vertices) const {
-  if (std::binary_search(neighbours_.begin(), neighbours_.end(), vertices)) return 0;
-  const auto layers = std::lower_bound(
-      layers_.begin(), layers_.end(), vertices,
-      [](const Layers& entry, const std::array<int, 4>& wanted) { return entry.vertices < wanted; });
-  return layers != layers_.end() && layers->vertices == vertices ? layers->dhat : dhat_;
+  const auto pair = std::ranges::lower_bound(pairs_, vertices, {}, &RestPair::vertices);
+  return pair != pairs_.end() && pair->vertices == vertices ? pair->dhat : dhat_;
 }
 
 std::string RestLayers::remark() const {
-  if (neighbours_.empty()) return "";
-  return std::to_string(neighbours_.size()) +
+  const auto neighbours = std::ranges::count(pairs_, 0.0, &RestPair::dhat);
+  if (neighbours == 0) return "";
+  return std::to_string(neighbours) +
          " pairs of the cloth's vertices, edges and triangles are closer than dhat = " + three_digits(dhat_) +
          " m at rest and neighbours along the cloth: they have no barrier, and collision detection alone "
          "keeps them apart; a dhat below the shortest edge leaves none";

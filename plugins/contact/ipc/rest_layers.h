@@ -27,13 +27,12 @@ class RestLayers {
   std::string remark() const;
 
  private:
-  struct Layers {
+  struct RestPair {
     std::array<int, 4> vertices;
-    double dhat;  ///< [m]
+    double dhat;  ///< of layers [m], 0 for neighbours
   };
-  double dhat_ = 0;
-  std::vector<std::array<int, 4>> neighbours_;  // ascending
-  std::vector<Layers> layers_;                  // ascending by vertices
+  double dhat_ = 0;              // of all other pairs [m]
+  std::vector<RestPair> pairs_;  // ascending by vertices
 };
 
 }  // namespace drape::ipc
