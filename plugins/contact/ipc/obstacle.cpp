@@ -7,23 +7,73 @@
 #include "core/kernel/files/message_text.h"
 #include "core/kernel/plugin/bounds.h"
 #include "core/kernel/plugin/refused_parameters.h"
-#include "core/numerics/mesh/rotation.h"
+#include "core/numerics/mesh/check.h"
+#include "core/numerics/mesh/repair.h"
+#include "core/numerics/mesh_files/io.h"
+#include "core/numerics/patterns/primitives.h"
 
 namespace drape::ipc {
 namespace {
 
-LoadedMeshes frames_of(const ObstacleParameters& p) {
+/// Throws RefusedParameters with a fault for each line, if there is any.
+void refuse(const std::string& file, const std::vector<std::string>& lines) {
+  std::vector<ParameterFault> faults;
+  for (const std::string& line : lines) faults.push_back({"", file + ": " + line});
+  if (!faults.empty()) throw RefusedParameters(std::move(faults));
+}
+
+/// How the triangles of another frame differ from those of the first; empty if they do not.
+std::string difference(const TriangleMesh& first, const TriangleMesh& other) {
+  if (first.triangles.rows() != other.triangles.rows())
+    return "has " + std::to_string(other.triangles.rows()) + " triangles and not " +
+           std::to_string(first.triangles.rows());
+  if (first.vertices.rows() != other.vertices.rows())
+    return "has " + std::to_string(other.vertices.rows()) + " vertices and not " +
+           std::to_string(first.vertices.rows());
+  for (Eigen::Index t = 0; t < first.triangles.rows(); ++t)
+    if (first.triangles.row(t) != other.triangles.row(t))
+      return "has other vertices in triangle " + std::to_string(t);
+  return "";
+}
+
+/// Reads the files of one mesh, or of the frames of an animation, converts their coordinates, and repairs
+/// them together. A `strict` obstacle is not repaired. Throws RefusedParameters or std::runtime_error naming
+/// the files and their faults.
+ObstacleMeshes load_meshes(const std::vector<std::string>& files, const FileCoordinates& coordinates,
+                           bool strict) {
+  std::vector<TriangleMesh> frames;
+  for (const std::string& file : files) {
+    frames.push_back(read_mesh(file));
+    coordinates.convert(frames.back().vertices);
+    refuse(file, strict ? check_mesh(frames.back()) : check_coordinates(frames.back().vertices));
+    if (const std::string what = difference(frames[0], frames.back()); !what.empty())
+      throw std::runtime_error(file + " " + what + " as " + files[0] +
+                               " has; all files of an animation must have the same triangles");
+  }
+  ObstacleMeshes loaded;
+  try {
+    RepairedMesh repaired = repair_mesh(std::move(frames));
+    loaded.repair = repaired.done.text();
+    for (TriangleMesh& mesh : repaired.frames) loaded.frames.push_back(ValidatedMesh::of(std::move(mesh)));
+  } catch (const std::runtime_error& error) {
+    throw std::runtime_error(files[0] + ": " + error.what());
+  }
+  return loaded;
+}
+
+/// The meshes without cages.
+ObstacleMeshes frames_of(const ObstacleParameters& p) {
   const int named = int(!p.mesh.empty()) + int(p.meshed_shape.has_value()) + int(!p.animation.empty());
   if (named != 1)
     throw std::runtime_error("needs exactly one of \"mesh\", \"meshed_shape\" and \"animation\"");
   if (p.meshed_shape && FileCoordinates(p) != FileCoordinates())
     throw std::runtime_error(
         "\"unit\" and \"up\" say how a mesh file is read; a meshed_shape is in metres: leave them out");
-  if (p.meshed_shape == "box") return {{validated_box()}, {}};
-  if (p.meshed_shape == "sphere") return {{validated_sphere(p.subdivisions)}, {}};
-  if (p.animation.empty()) return load_validated_meshes({p.mesh}, p, p.strict);
+  if (p.meshed_shape == "box") return {{ValidatedMesh::of(unit_box())}, {}, ""};
+  if (p.meshed_shape == "sphere") return {{ValidatedMesh::of(unit_sphere(p.subdivisions))}, {}, ""};
+  if (p.animation.empty()) return load_meshes({p.mesh}, p, p.strict);
   if (p.cages.count > 0) throw std::runtime_error("\"cages\" need a mesh without \"animation\"");
-  return load_validated_meshes(p.animation, p, p.strict);
+  return load_meshes(p.animation, p, p.strict);
 }
 
 std::string name_of(const ObstacleParameters& p, int number) {
@@ -32,10 +82,6 @@ std::string name_of(const ObstacleParameters& p, int number) {
 
 std::string fault_text(const std::string& name, const std::string& what) {
   return "obstacle \"" + name + "\": " + what;
-}
-
-std::runtime_error fault_of(const std::string& name, const std::string& what) {
-  return std::runtime_error(fault_text(name, what));
 }
 
 }  // namespace
@@ -86,8 +132,6 @@ void ObstacleParameters::declare(Declaration<ObstacleParameters>& d) {
   declare_scale(d);
 }
 
-Eigen::Matrix3d Pose::linear() const { return scale * rotation_matrix(rotate); }
-
 Positions ObstacleGeometry::local_positions(double frame) const {
   const int last = static_cast<int>(frames.size()) - 1;
   const int k = std::clamp(static_cast<int>(std::floor(frame)), 0, std::max(0, last - 1));
@@ -101,8 +145,7 @@ Positions ObstacleGeometry::local_positions(double frame) const {
 
 ObstacleMeshes ObstacleMeshes::of(const ObstacleParameters& p, int number) {
   try {
-    LoadedMeshes loaded = frames_of(p);
-    ObstacleMeshes meshes{std::move(loaded.meshes), {}, loaded.repair.text()};
+    ObstacleMeshes meshes = frames_of(p);
     if (!meshes.repair.empty()) meshes.repair = "obstacle " + name_of(p, number) + ": " + meshes.repair;
     if (p.cages.count > 0) meshes.cages = make_cages(*meshes.frames[0], p.cages);
     return meshes;
@@ -111,7 +154,7 @@ ObstacleMeshes ObstacleMeshes::of(const ObstacleParameters& p, int number) {
     for (ParameterFault& fault : faults) fault.message = fault_text(name_of(p, number), fault.message);
     throw RefusedParameters(std::move(faults));
   } catch (const std::exception& error) {
-    throw fault_of(name_of(p, number), reason_of(error));
+    throw std::runtime_error(fault_text(name_of(p, number), reason_of(error)));
   }
 }
 
@@ -133,8 +176,9 @@ Obstacle Obstacle::of(const ObstacleParameters& p, int number, const ObstacleMes
   } else if (!p.animation.empty()) {
     const std::size_t last = meshes.frames.size() - 1;
     if (p.frame > static_cast<double>(last))
-      throw fault_of(body.name, "the last frame of its animation is " + std::to_string(last) +
-                                    "; choose a \"frame\" up to that");
+      throw std::runtime_error(fault_text(
+          body.name,
+          "the last frame of its animation is " + std::to_string(last) + "; choose a \"frame\" up to that"));
     geometry.frame = p.frame;
   }
   if (level < p.cages.count) {
@@ -142,9 +186,7 @@ Obstacle Obstacle::of(const ObstacleParameters& p, int number, const ObstacleMes
     body.name += " (cage " + std::to_string(level) + ")";
   }
   body.mesh.triangles = geometry.frames[0]->mesh.triangles;
-  body.mesh.vertices =
-      (geometry.local_positions(geometry.frame) * geometry.pose.linear().transpose()).rowwise() +
-      geometry.pose.translate.transpose();
+  body.mesh.vertices = geometry.pose.applied_to(geometry.local_positions(geometry.frame));
   return body;
 }
 
@@ -157,9 +199,7 @@ Obstacles Obstacles::of(std::vector<Obstacle> bodies) {
     all.vertices.bottomRows(m) = body.mesh.vertices;
     all.first_vertex.push_back(n + m);
     all.body_friction.push_back(body.friction);
-    all.surface.append(Surface::of(body.mesh, body.geometry.frames.empty()
-                                                  ? Topology::of_any(body.mesh.triangles, m)
-                                                  : body.geometry.frames[0]->topology));
+    all.surface.append(Surface::of(body.mesh, body.geometry.frames[0]->topology));
   }
   all.dihedrals = Dihedrals::of(all.surface, all.vertices);
   all.bodies = std::move(bodies);

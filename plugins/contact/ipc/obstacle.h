@@ -7,6 +7,7 @@
 
 #include "core/numerics/collision_detection/obstacle_surface.h"
 #include "core/numerics/contact/obstacle_parameters.h"
+#include "core/numerics/mesh/rotation.h"
 #include "core/numerics/mesh_files/file_coordinates.h"
 #include "plugins/contact/ipc/cages.h"
 #include "plugins/contact/ipc/validated_mesh.h"
@@ -50,7 +51,11 @@ struct Pose {
   Eigen::Vector3d translate{0, 0, 0};  ///< [m]
 
   /// Scale and rotation.
-  Eigen::Matrix3d linear() const;
+  Eigen::Matrix3d linear() const { return scale * rotation_matrix(rotate); }
+  /// World coordinates (n×3) [m].
+  Positions applied_to(const Positions& local) const {
+    return (local * linear().transpose()).rowwise() + translate.transpose();
+  }
   bool operator==(const Pose&) const = default;
 };
 
@@ -59,7 +64,7 @@ struct ObstacleGeometry {
   ValidatedMeshes frames;                ///< one mesh, or an animation with the same triangles
   double frame = 0;                      ///< index of the frame, interpolated linearly
   Eigen::Vector3d local_scale{1, 1, 1};  ///< factors on local coordinates
-  Pose pose;
+  Pose pose{};
 
   /// The scaled local positions (n×3) [m] at a frame, which the member `frame` does not influence.
   Positions local_positions(double frame) const;
@@ -74,12 +79,10 @@ struct Obstacle {
   std::string name;
   TriangleMesh mesh;               ///< in world coordinates
   std::optional<double> friction;  ///< μ, if it has its own
-  ObstacleGeometry geometry{};     ///< without frames the obstacle is static
+  ObstacleGeometry geometry;       ///< which the mesh follows from
 
-  /// Whether both have the same geometry; false without frames.
   bool operator==(const Obstacle& other) const {
-    return !geometry.frames.empty() && geometry == other.geometry && name == other.name &&
-           friction == other.friction;
+    return geometry == other.geometry && name == other.name && friction == other.friction;
   }
   /// Places the meshes. On a level with a cage, the obstacle is the cage. Throws std::runtime_error naming
   /// the obstacle if its animation has no such frame.

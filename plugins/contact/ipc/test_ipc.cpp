@@ -258,7 +258,8 @@ TEST_CASE("ipc: whatever the obstacle's triangles, the pressure on a flat cloth 
       p.dhat = dhat;
       TriangleMesh floor = grid({0.3, 0.3}, columns, columns, Diagonals::one_way);
       floor.vertices.rowwise() -= Eigen::RowVector3d(0.0517, 0.0533, 0);
-      auto obstacles = std::make_shared<Obstacles>(Obstacles::of({{"floor", floor, {}}}));
+      auto obstacles =
+          std::make_shared<Obstacles>(Obstacles::of({{"floor", floor, {}, {{ValidatedMesh::of(floor)}}}}));
       Positions x = level.rest.vertices;
       x.col(2).setConstant(s * dhat);
       const BoundIpc contact(p, ObstacleTree::of(obstacles, dhat, p.broad_phase),

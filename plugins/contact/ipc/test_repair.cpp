@@ -8,6 +8,7 @@
 #include "core/numerics/contact/surface_contacts.h"
 #include "core/numerics/contact_forces/barrier.h"
 #include "core/numerics/mesh/check.h"
+#include "core/numerics/mesh/repair.h"
 #include "core/numerics/mesh_files/io.h"
 #include "core/numerics/patterns/generate.h"
 #include "plugins/contact/ipc/ipc.h"
@@ -82,7 +83,8 @@ struct Near {
   Eigen::VectorXd area = Eigen::VectorXd::Ones(1);
   BarrierParameters parameters;
 
-  explicit Near(const TriangleMesh& mesh) : obstacles(Obstacles::of({{"mesh", mesh, {}}})) {
+  explicit Near(const TriangleMesh& mesh)
+      : obstacles(Obstacles::of({{"mesh", mesh, {}, {{ValidatedMesh::of(mesh)}}}})) {
     parameters.dhat = dhat;
     parameters.stiffness = 1 / dhat;
     coefficients = OperatorCoefficients::of(obstacles.surface, obstacles.dihedrals, dhat);

@@ -37,7 +37,8 @@ struct Scene {
   Eigen::VectorXd area = Eigen::VectorXd::Ones(1);
   BarrierParameters parameters;
 
-  explicit Scene(const TriangleMesh& mesh) : obstacles(Obstacles::of({{"mesh", mesh, 0.5}})) {
+  explicit Scene(const TriangleMesh& mesh)
+      : obstacles(Obstacles::of({{"mesh", mesh, 0.5, {{ValidatedMesh::of(mesh)}}}})) {
     parameters.dhat = dhat;
     parameters.stiffness = 1 / dhat;  // E = Σ coefficient b
     coefficients = OperatorCoefficients::of(obstacles.surface, obstacles.dihedrals, dhat);

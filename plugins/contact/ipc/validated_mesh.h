@@ -1,12 +1,12 @@
 #pragma once
 
+#include <algorithm>
 #include <memory>
-#include <string>
+#include <utility>
 #include <vector>
 
 #include "core/kernel/interfaces/topology.h"
-#include "core/numerics/mesh/repair.h"
-#include "core/numerics/mesh_files/file_coordinates.h"
+#include "core/numerics/mesh/same_entries.h"
 
 namespace drape::ipc {
 
@@ -17,25 +17,20 @@ struct ValidatedMesh {
   Topology topology;
 
   /// Of a repaired mesh.
-  static std::shared_ptr<const ValidatedMesh> of(TriangleMesh mesh);
+  static std::shared_ptr<const ValidatedMesh> of(TriangleMesh mesh) {
+    Topology topology = Topology::of_any(mesh.triangles, static_cast<int>(mesh.vertices.rows()));
+    return std::make_shared<const ValidatedMesh>(ValidatedMesh{std::move(mesh), std::move(topology)});
+  }
 };
 
 using ValidatedMeshes = std::vector<std::shared_ptr<const ValidatedMesh>>;
-/// Whether they are the same objects, or have the same vertices and triangles.
-bool are_equal(const ValidatedMeshes& a, const ValidatedMeshes& b);
 
-/// The meshes of an obstacle's files, and how they were repaired.
-struct LoadedMeshes {
-  ValidatedMeshes meshes;
-  MeshRepair repair;
-};
-/// Reads one mesh file, or the frames of an animation, converts their coordinates, and repairs them together.
-/// A `strict` obstacle is not repaired. Throws RefusedParameters or std::runtime_error naming the files and
-/// their faults.
-LoadedMeshes load_validated_meshes(const std::vector<std::string>& files, const FileCoordinates& coordinates,
-                                   bool strict);
-/// unit_box and unit_sphere of core/numerics/patterns/primitives.h.
-std::shared_ptr<const ValidatedMesh> validated_box();
-std::shared_ptr<const ValidatedMesh> validated_sphere(int subdivisions);
+/// Whether they are the same objects, or have the same vertices and triangles.
+inline bool are_equal(const ValidatedMeshes& a, const ValidatedMeshes& b) {
+  return std::ranges::equal(a, b, [](const auto& one, const auto& other) {
+    return one == other || (same_entries(one->mesh.vertices, other->mesh.vertices) &&
+                            same_entries(one->mesh.triangles, other->mesh.triangles));
+  });
+}
 
 }  // namespace drape::ipc
