@@ -241,7 +241,7 @@ std::vector<ObstacleGap> BoundIpc::obstacle_gaps(const Positions& x) const {
 StepLimit BoundIpc::max_step(const BoundContact& before, const Positions& x) const {
   const Obstacles& from = *as_ipc(before).obstacles_;
   if (&from == obstacles_.get()) return {};
-  return ObstacleTrajectory(from, *obstacles_).max_step(cloth_, x, barrier_.dhat, broad_phase_);
+  return max_trajectory_step(from, *obstacles_, cloth_, x, barrier_.dhat, broad_phase_);
 }
 
 Eigen::Vector3d BoundIpc::displacement(const BoundContact& before, const ObstaclePoint& point) const {

@@ -8,7 +8,6 @@
 #include "core/numerics/model/active_contacts.h"
 #include "core/numerics/patterns/generate.h"
 #include "plugins/contact/ipc/bound_ipc.h"
-#include "plugins/contact/ipc/obstacle_trajectory.h"
 #include "tests/support/command.h"
 
 using namespace drape;

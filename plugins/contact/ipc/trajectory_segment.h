@@ -2,14 +2,60 @@
 
 #include <Eigen/Core>
 #include <algorithm>
+#include <cmath>
 #include <limits>
+#include <vector>
 
 #include "core/numerics/collision_detection/nonlinear_ccd.h"
 #include "core/numerics/contact/pair_geometry.h"
 #include "core/numerics/linear_algebra/interpolate.h"
-#include "plugins/contact/ipc/obstacle_trajectory.h"
+#include "plugins/contact/ipc/obstacle.h"
 
 namespace drape::ipc {
+
+inline Pose pose_between(const Pose& a, const Pose& b, double t) {
+  return {interpolate<double>(a.scale, b.scale, t), interpolate<Eigen::Vector3d>(a.rotate, b.rotate, t),
+          interpolate<Eigen::Vector3d>(a.translate, b.translate, t)};
+}
+
+/// A bound of the rotation from one pose to the other [rad].
+inline double rotation_angle(const Pose& a, const Pose& b) {
+  return (M_PI / 180) * (b.rotate - a.rotate).cwiseAbs().sum();
+}
+
+/// A segment of the obstacles' trajectory: local coordinates and transform parameters change linearly with
+/// the time t in [0, 1].
+struct TrajectorySegment {
+  /// Of one that moves.
+  struct Body {
+    Pose begin, end;
+    Eigen::Matrix3d rotation;  ///< at t = 0
+  };
+  std::vector<Body> bodies;
+  Positions local_begin, local_end;  ///< of all bodies [m]
+  Positions begin, end;              ///< in world coordinates [m]
+  double chord_error = 0;            ///< bound of a vertex's distance to the chord from begin to end [m]
+
+  Eigen::Matrix3d linear(int body, double time) const {
+    const Body& b = bodies[body];
+    if (b.begin.rotate == b.end.rotate) return interpolate(b.begin.scale, b.end.scale, time) * b.rotation;
+    return pose_between(b.begin, b.end, time).linear();
+  }
+  Eigen::Vector3d translate(int body, double time) const {
+    return interpolate<Eigen::Vector3d>(bodies[body].begin.translate, bodies[body].end.translate, time);
+  }
+  /// Bounds the acceleration |p''| of a vertex, by t [m]. p = s R b + T with s, b and the angles of R linear:
+  /// |R'| ≤ ω, |R''| ≤ ω², ω the sum of the angles' rates.
+  double acceleration_bound(int body, int vertex) const {
+    const Body& b = bodies[body];
+    const double omega = rotation_angle(b.begin, b.end), scale = std::max(b.begin.scale, b.end.scale),
+                 scaling = std::abs(b.end.scale - b.begin.scale),
+                 size = std::max(local_begin.row(vertex).norm(), local_end.row(vertex).norm()),
+                 growth = (local_end.row(vertex) - local_begin.row(vertex)).norm();
+    return omega * omega * scale * size +
+           2 * (scaling * omega * size + scale * omega * growth + scaling * growth);
+  }
+};
 
 /// A pair of the cloth at rest and an obstacle on a segment of its trajectory.
 class PairOnSegment {
