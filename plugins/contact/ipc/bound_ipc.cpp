@@ -25,42 +25,38 @@ constexpr long dense_factor = 3;                                // over the pair
 constexpr double shortening = 0.25;
 constexpr int max_tries = 20;
 
-std::unique_ptr<SelfPairSearch> make_self_search(bool self_contact, const Surface& cloth,
-                                                 BroadPhaseKind kind) {
-  return self_contact ? std::make_unique<SelfPairSearch>(cloth, kind) : nullptr;
-}
-
 const BoundIpc& as_ipc(const BoundContact& contact) {
   const auto* own = dynamic_cast<const BoundIpc*>(&contact);
   if (!own) throw std::runtime_error("obstacles of \"ipc\" cannot replace those of another contact model");
   return *own;
 }
 
-/// The candidates of a linear motion.
-class IpcCandidates final : public CollisionCandidates {
+}  // namespace
+
+/// The candidates of a linear motion, by use.
+class BoundIpc::Candidates final : public CollisionCandidates {
  public:
-  IpcCandidates(Positions x0, Positions x1, double fraction, ClassifiedPairs found,
-                std::shared_ptr<const ObstacleTree> tree, std::shared_ptr<const RestCloth> rest,
-                const BarrierParameters& barrier, double friction, double min_gap_fraction)
-      : x0_(std::move(x0)),
+  /// `found` has the pairs of the motion from x0 to x1, which is a fraction of the requested one.
+  Candidates(const BoundIpc& contact, Positions x0, Positions x1, double fraction, BroadPhasePairs found)
+      : contact_(contact),
+        x0_(std::move(x0)),
         x1_(std::move(x1)),
         fraction_(fraction),
-        found_(std::move(found)),
-        tree_(std::move(tree)),
-        obstacles_(*tree_->obstacles),
-        rest_(std::move(rest)),
-        barrier_(barrier),
-        friction_(friction),
-        min_gap_fraction_(min_gap_fraction) {}
+        vertex_triangles_(std::move(found.vertex_triangles)) {
+    for (ContactPair& pair : found.pairs) {
+      if (pair.obstacle < 0) pair.dhat = contact.rest_->layers.dhat_of(pair.vertices);
+      const bool has_barrier = pair.weight > 0 && pair.dhat > 0;
+      (!has_barrier ? ccd_only_ : pair.at_rim ? rims_ : barrier_).push_back(pair);
+    }
+  }
 
   StepLimit max_step() const override {
-    StepLimit limit{1, ""};
-    for (const std::vector<ContactPair>* pairs : {&found_.barrier, &found_.rims, &found_.ccd_only}) {
+    StepLimit limit;
+    for (const std::vector<ContactPair>* pairs : {&barrier_, &rims_, &ccd_only_}) {
       int blocking = -1;
-      const double part = additive_ccd(x0_, x1_, obstacles_.vertices, *pairs, min_gap_fraction_, blocking);
+      const double part = additive_ccd(x0_, x1_, obstacles(), *pairs, contact_.p_.min_gap_fraction, blocking);
       if (part < limit.fraction)
-        limit = {part,
-                 blocking < 0 ? "" : name_of((*pairs)[blocking], obstacles_, static_cast<int>(x0_.rows()))};
+        limit = {part, blocking < 0 ? "" : name_of((*pairs)[blocking], contact_.obstacles_, cloth_size())};
     }
     if (fraction_ < 1 && limit.fraction == 1) limit.by = "the limit on candidate pairs of one step";
     limit.fraction *= fraction_;
@@ -68,120 +64,99 @@ class IpcCandidates final : public CollisionCandidates {
   }
 
   std::unique_ptr<Collisions> build_collisions(const Positions& x) const override {
-    auto pairs = make_pair_contacts(x, obstacles_.vertices, found_.barrier, barrier_);
-    if (found_.vertex_triangles.empty() && found_.rims.empty()) return pairs;
+    const BarrierParameters& barrier = contact_.barrier_;
+    auto pairs = make_pair_contacts(x, obstacles(), barrier_, barrier);
+    if (vertex_triangles_.empty() && rims_.empty()) return pairs;
     std::vector<std::unique_ptr<Collisions>> sets;
-    sets.push_back(
-        make_surface_contacts(SurfaceContacts::of(x, obstacles_, tree_->coefficients, found_.vertex_triangles,
-                                                  rest_->surface.vertex_area, friction_, barrier_.dhat),
-                              barrier_));
-    if (!found_.rims.empty())
-      sets.push_back(make_rim_contacts(x, obstacles_.vertices, found_.rims, barrier_));
+    sets.push_back(make_surface_contacts(
+        SurfaceContacts::of(x, contact_.obstacles_, contact_.obstacle_tree_->coefficients, vertex_triangles_,
+                            contact_.cloth_.vertex_area, contact_.p_.friction, barrier.dhat),
+        barrier));
+    if (!rims_.empty()) sets.push_back(make_rim_contacts(x, obstacles(), rims_, barrier));
     sets.push_back(std::move(pairs));
     return std::make_unique<CollisionStack>(std::move(sets));
   }
 
   /// At x0, over the pairs with a barrier.
   SmallestGap smallest_gap() const {
-    const int n = static_cast<int>(x0_.rows());
     SmallestGap smallest;
-    smallest.dhat = barrier_.dhat;
-    smallest.stiffness = barrier_.stiffness;
+    smallest.dhat = contact_.barrier_.dhat;
+    smallest.stiffness = contact_.barrier_.stiffness;
     const ContactPair* nearest = nullptr;
     const auto visit = [&](const ContactPair& pair) {
-      const PairPositions at = positions_of(pair, x0_, obstacles_.vertices);
+      const PairPositions at = positions_of(pair, x0_, obstacles());
       if (!is_within_dhat(pair, at)) return;
       const double gap = contact_at(pair, at).gap();
       if (gap >= smallest.gap) return;
       smallest.gap = gap;
       nearest = &pair;
     };
-    for (const ContactPair& pair : found_.barrier) visit(pair);
-    for (const ContactPair& pair : found_.rims) visit(pair);
+    for (const ContactPair& pair : barrier_) visit(pair);
+    for (const ContactPair& pair : rims_) visit(pair);
     // The surface's barrier acts on the vertices of CCD-only pairs with an obstacle.
-    for (const ContactPair& pair : found_.ccd_only)
-      if (pair.vertices[0] >= n || pair.vertices[3] >= n) visit(pair);
-    if (nearest) smallest.between = name_of(*nearest, obstacles_, n);
+    for (const ContactPair& pair : ccd_only_)
+      if (pair.obstacle >= 0) visit(pair);
+    if (nearest) smallest.between = name_of(*nearest, contact_.obstacles_, cloth_size());
     return smallest;
   }
 
  private:
+  const Positions& obstacles() const { return contact_.obstacles_.vertices; }
+  int cloth_size() const { return static_cast<int>(x0_.rows()); }
+
+  const BoundIpc& contact_;
   Positions x0_, x1_;  // the part of the motion that was searched
   double fraction_;    // of the requested motion
-  ClassifiedPairs found_;
-  std::shared_ptr<const ObstacleTree> tree_;
-  const Obstacles& obstacles_;
-  std::shared_ptr<const RestCloth> rest_;
-  BarrierParameters barrier_;
-  double friction_, min_gap_fraction_;
+  // Pairs with a barrier, pairs at rims with theirs (rim_contacts.h), and pairs for CCD only.
+  std::vector<ContactPair> barrier_, rims_, ccd_only_;
+  // Cloth vertices with the obstacle triangles that may contribute to their barrier.
+  std::vector<VertexTriangleCandidate> vertex_triangles_;
 };
 
-}  // namespace
-
-std::shared_ptr<const RestCloth> RestCloth::of(const Level& level, double dhat, bool self_contact) {
-  auto cloth =
-      std::make_shared<RestCloth>(RestCloth{dhat, self_contact, Surface::of(level.rest, level.topology), {}});
-  if (self_contact) cloth->layers = RestLayers::of(cloth->surface, level, dhat);
-  return cloth;
+RestCloth::RestCloth(const Level& level, double dhat_in, bool self_contact_in)
+    : dhat(dhat_in), self_contact(self_contact_in), surface(Surface::of(level.rest, level.topology)) {
+  if (self_contact) layers = RestLayers::of(surface, level, dhat);
 }
 
-std::shared_ptr<const ObstacleTree> ObstacleTree::of(const std::shared_ptr<const Obstacles>& obstacles,
-                                                     double dhat, BroadPhaseKind kind) {
-  auto tree = std::make_shared<ObstacleTree>(
-      ObstacleTree{obstacles,
-                   {},
-                   OperatorCoefficients::of(obstacles->surface, obstacles->dihedrals, dhat),
-                   make_broad_phase(kind)});
-  tree->boxes.update(obstacles->surface, obstacles->vertices, obstacles->vertices, 0.5 * dhat);
-  tree->tree->update(tree->boxes.triangles);
-  return tree;
+ObstacleTree::ObstacleTree(std::shared_ptr<const Obstacles> all, double dhat, BroadPhaseKind kind)
+    : obstacles(std::move(all)),
+      coefficients(OperatorCoefficients::of(obstacles->surface, obstacles->dihedrals, dhat)),
+      tree(make_broad_phase(kind)) {
+  boxes.update(obstacles->surface, obstacles->vertices, obstacles->vertices, 0.5 * dhat);
+  tree->update(boxes.triangles);
 }
 
-BoundIpc::BoundIpc(const Ipc::Parameters& p, std::shared_ptr<const ObstacleTree> obstacles,
-                   std::shared_ptr<const RestCloth> rest, const Material& material)
-    : friction_(p.friction),
-      min_gap_fraction_(p.min_gap_fraction),
-      self_contact_(p.self_contact),
-      barrier_(p.barrier(material)),
+BoundIpc::BoundIpc(const Ipc::Parameters& parameters, const BarrierParameters& barrier,
+                   std::shared_ptr<const ObstacleTree> obstacles, std::shared_ptr<const RestCloth> rest)
+    : p_(parameters),
+      barrier_(barrier),
       obstacle_tree_(std::move(obstacles)),
-      obstacles_(obstacle_tree_->obstacles),
       rest_(std::move(rest)),
+      obstacles_(*obstacle_tree_->obstacles),
       cloth_(rest_->surface),
-      broad_phase_(p.broad_phase),
-      self_search_(make_self_search(self_contact_, cloth_, broad_phase_)),
-      cloth_tree_(make_broad_phase(p.broad_phase)) {}
-
-BoundIpc::BoundIpc(const BoundIpc& other, double stiffness)
-    : friction_(other.friction_),
-      min_gap_fraction_(other.min_gap_fraction_),
-      self_contact_(other.self_contact_),
-      barrier_(other.barrier_),
-      obstacle_tree_(other.obstacle_tree_),
-      obstacles_(other.obstacles_),
-      rest_(other.rest_),
-      cloth_(rest_->surface),
-      broad_phase_(other.broad_phase_),
-      self_search_(make_self_search(self_contact_, cloth_, broad_phase_)),
-      cloth_tree_(make_broad_phase(broad_phase_)) {
-  barrier_.stiffness = stiffness;
+      cloth_tree_(make_broad_phase(p_.broad_phase)) {
+  if (p_.self_contact) self_search_ = std::make_unique<SelfPairSearch>(cloth_, p_.broad_phase);
 }
 
 std::shared_ptr<const BoundContact> BoundIpc::with_stiffness(double stiffness) const {
-  return barrier_.stiffness_is_fixed ? nullptr : std::make_shared<const BoundIpc>(*this, stiffness);
+  if (barrier_.stiffness_is_fixed) return nullptr;
+  BarrierParameters barrier = barrier_;
+  barrier.stiffness = stiffness;
+  return std::make_shared<const BoundIpc>(p_, barrier, obstacle_tree_, rest_);
 }
 
 bool BoundIpc::search(const Positions& x0, const Positions& x1, const PairCounts& limits,
                       BroadPhasePairs& found, PairCounts& counts) const {
-  const LinearMotion motion{x0, x1, barrier_.dhat, obstacles_->vertices, obstacles_->vertices};
+  const LinearMotion motion{x0, x1, barrier_.dhat, obstacles_.vertices, obstacles_.vertices};
   found.clear();
   counts = {};
-  if (self_search_ && !self_search_->find(motion, friction_, limits, counts, found)) return false;
-  if (obstacles_->bodies.empty()) return true;
+  if (self_search_ && !self_search_->find(motion, p_.friction, limits, counts, found)) return false;
+  if (obstacles_.bodies.empty()) return true;
   boxes_.update(cloth_, x0, x1, 0.5 * barrier_.dhat);
   cloth_tree_->update(boxes_.triangles);
   if (!cloth_tree_->overlaps(*obstacle_tree_->tree, limits.boxes - counts.boxes, rows_)) return false;
   counts.boxes += static_cast<long>(rows_.items.size());
-  if (!find_obstacle_pairs(cloth_, boxes_, *obstacles_, obstacle_tree_->boxes, rows_, motion, friction_,
+  if (!find_obstacle_pairs(cloth_, boxes_, obstacles_, obstacle_tree_->boxes, rows_, motion, p_.friction,
                            limits.primitives, found))
     return false;
   counts.primitives = found.count();
@@ -202,36 +177,23 @@ std::unique_ptr<CollisionCandidates> BoundIpc::build_candidates(const Positions&
       const PairCounts default_limits = limits;
       limits = {std::max(limits.boxes, dense_factor * counts.boxes),
                 std::max(limits.primitives, dense_factor * counts.primitives)};
-      if (!(limits == default_limits)) continue;
+      if (limits != default_limits) continue;
     }
     fraction = tries < max_tries ? shortening * fraction : 0;
     if (tries >= max_tries) limits = {unlimited, unlimited};
     end = fraction > 0 ? Positions(x0 + fraction * (x1 - x0)) : x0;
   }
-  ClassifiedPairs candidates{std::move(found.pairs), {}, {}, std::move(found.vertex_triangles)};
-  std::vector<ContactPair>& pairs = candidates.barrier;
-  for (ContactPair& pair : pairs)
-    if (pair.obstacle < 0) pair.dhat = rest_->layers.dhat_of(pair.vertices);
-  const auto ccd_only = std::stable_partition(
-      pairs.begin(), pairs.end(), [](const ContactPair& pair) { return pair.weight > 0 && pair.dhat > 0; });
-  candidates.ccd_only.assign(ccd_only, pairs.end());
-  pairs.erase(ccd_only, pairs.end());
-  const auto rims =
-      std::stable_partition(pairs.begin(), pairs.end(), [](const ContactPair& pair) { return !pair.at_rim; });
-  candidates.rims.assign(rims, pairs.end());
-  pairs.erase(rims, pairs.end());
-  return std::make_unique<IpcCandidates>(x0, std::move(end), fraction, std::move(candidates), obstacle_tree_,
-                                         rest_, barrier_, friction_, min_gap_fraction_);
+  return std::make_unique<Candidates>(*this, x0, std::move(end), fraction, std::move(found));
 }
 
 SmallestGap BoundIpc::smallest_gap(const Positions& x) const {
-  return static_cast<const IpcCandidates&>(*build_candidates(x, x)).smallest_gap();
+  return static_cast<const Candidates&>(*build_candidates(x, x)).smallest_gap();
 }
 
 std::vector<ObstacleGap> BoundIpc::obstacle_gaps(const Positions& x) const {
   const TriangleMesh cloth{x, cloth_.triangles};
   std::vector<ObstacleGap> gaps;
-  for (const Obstacle& body : obstacles_->bodies) {
+  for (const Obstacle& body : obstacles_.bodies) {
     const Eigen::Vector3d connection = shortest_connection(cloth, body.mesh);
     gaps.push_back({body.name, connection.norm(), connection.normalized()});
   }
@@ -239,13 +201,13 @@ std::vector<ObstacleGap> BoundIpc::obstacle_gaps(const Positions& x) const {
 }
 
 StepLimit BoundIpc::max_step(const BoundContact& before, const Positions& x) const {
-  const Obstacles& from = *as_ipc(before).obstacles_;
-  if (&from == obstacles_.get()) return {};
-  return max_trajectory_step(from, *obstacles_, cloth_, x, barrier_.dhat, broad_phase_);
+  const Obstacles& from = as_ipc(before).obstacles_;
+  if (&from == &obstacles_) return {};
+  return max_trajectory_step(from, obstacles_, cloth_, x, barrier_.dhat, p_.broad_phase);
 }
 
 Eigen::Vector3d BoundIpc::displacement(const BoundContact& before, const ObstaclePoint& point) const {
-  const Positions &from = as_ipc(before).obstacles_->vertices, &to = obstacles_->vertices;
+  const Positions &from = as_ipc(before).obstacles_.vertices, &to = obstacles_.vertices;
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
   for (int k = 0; k < 3; ++k)
     if (const int v = point.vertices[k]; v >= 0)
@@ -256,11 +218,11 @@ Eigen::Vector3d BoundIpc::displacement(const BoundContact& before, const Obstacl
 std::vector<Intersection> BoundIpc::intersections(const Positions& x) const {
   const TriangleMesh cloth{x, cloth_.triangles};
   std::vector<Intersection> found;
-  if (self_contact_)
+  if (p_.self_contact)
     for (const TrianglePair& pair : self_intersections(cloth))
       found.push_back({"cloth triangle " + std::to_string(pair.first),
                        "cloth triangle " + std::to_string(pair.second), pair.where});
-  for (const Obstacle& body : obstacles_->bodies)
+  for (const Obstacle& body : obstacles_.bodies)
     for (const TrianglePair& pair : drape::intersections(cloth, body.mesh))
       found.push_back({"cloth triangle " + std::to_string(pair.first),
                        body.name + " triangle " + std::to_string(pair.second), pair.where});
@@ -269,7 +231,7 @@ std::vector<Intersection> BoundIpc::intersections(const Positions& x) const {
 
 std::vector<TriangleMesh> BoundIpc::obstacles() const {
   std::vector<TriangleMesh> meshes;
-  for (const Obstacle& body : obstacles_->bodies) meshes.push_back(body.mesh);
+  for (const Obstacle& body : obstacles_.bodies) meshes.push_back(body.mesh);
   return meshes;
 }
 

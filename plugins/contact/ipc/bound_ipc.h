@@ -12,22 +12,15 @@
 
 namespace drape::ipc {
 
-/// Candidates by use: pairs with a barrier, pairs at rims with theirs (rim_contacts.h), pairs for CCD only,
-/// and cloth vertices with the obstacle triangles that may contribute to their barrier.
-struct ClassifiedPairs {
-  std::vector<ContactPair> barrier, rims, ccd_only;
-  std::vector<VertexTriangleCandidate> vertex_triangles;
-};
-
 /// Data of the cloth's rest shape, shared when the level is bound again under other loads.
 struct RestCloth {
-  double dhat = 0;  ///< d̂ [m]
-  bool self_contact = true;
+  double dhat;  ///< d̂ [m]
+  bool self_contact;
   Surface surface;
   RestLayers layers;  ///< none without self-contact
 
   /// Throws std::runtime_error if too many pairs are within d̂ at rest.
-  static std::shared_ptr<const RestCloth> of(const Level& level, double dhat, bool self_contact);
+  RestCloth(const Level& level, double dhat, bool self_contact);
 };
 
 /// The obstacles with what depends on d̂ and the broad phase: their boxes, their tree and the coefficients of
@@ -38,18 +31,14 @@ struct ObstacleTree {
   OperatorCoefficients coefficients;
   std::unique_ptr<BroadPhase> tree;
 
-  static std::shared_ptr<const ObstacleTree> of(const std::shared_ptr<const Obstacles>& obstacles,
-                                                double dhat, BroadPhaseKind kind);
+  ObstacleTree(std::shared_ptr<const Obstacles> all, double dhat, BroadPhaseKind kind);
 };
 
 /// The contact model `ipc` bound to one level.
 class BoundIpc final : public BoundContact {
  public:
-  BoundIpc(const Ipc::Parameters& parameters, std::shared_ptr<const ObstacleTree> obstacles,
-           std::shared_ptr<const RestCloth> rest, const Material& material);
-
-  /// `other` with another barrier stiffness κ [Pa].
-  BoundIpc(const BoundIpc& other, double stiffness);
+  BoundIpc(const Ipc::Parameters& parameters, const BarrierParameters& barrier,
+           std::shared_ptr<const ObstacleTree> obstacles, std::shared_ptr<const RestCloth> rest);
 
   const std::shared_ptr<const RestCloth>& rest() const { return rest_; }
 
@@ -69,18 +58,18 @@ class BoundIpc final : public BoundContact {
   Eigen::Vector3d displacement(const BoundContact& before, const ObstaclePoint& point) const override;
 
  private:
+  class Candidates;
+
   /// Returns false if there are more pairs than `limits`. The caller holds busy_.
   bool search(const Positions& x0, const Positions& x1, const PairCounts& limits, BroadPhasePairs& found,
               PairCounts& counts) const;
 
-  double friction_, min_gap_fraction_;
-  bool self_contact_;
+  Ipc::Parameters p_;
   BarrierParameters barrier_;
   std::shared_ptr<const ObstacleTree> obstacle_tree_;
-  std::shared_ptr<const Obstacles> obstacles_;  // the tree's
   std::shared_ptr<const RestCloth> rest_;
-  const Surface& cloth_;
-  BroadPhaseKind broad_phase_;
+  const Obstacles& obstacles_;  // the tree's
+  const Surface& cloth_;        // the rest shape's
 
   // Reused between calls for speed; results do not depend on them.
   mutable std::mutex busy_;

@@ -46,13 +46,13 @@ std::unique_ptr<BoundContact> Ipc::bind(const Level& level, const Material& mate
                                         std::shared_ptr<const RestCloth> rest) const {
   const std::size_t k = std::min<std::size_t>(level.index, obstacles_.size() - 1);
   const std::lock_guard lock(busy_);
-  if (!trees_[k]) trees_[k] = ObstacleTree::of(obstacles_[k], p_.dhat, p_.broad_phase);
-  return std::make_unique<BoundIpc>(p_, trees_[k], std::move(rest), material);
+  if (!trees_[k]) trees_[k] = std::make_shared<const ObstacleTree>(obstacles_[k], p_.dhat, p_.broad_phase);
+  return std::make_unique<BoundIpc>(p_, p_.barrier(material), trees_[k], std::move(rest));
 }
 
 std::unique_ptr<BoundContact> Ipc::bind(const Level& level, const Material& material) const {
   if (!p_.self_contact && p_.obstacles.empty()) return nullptr;
-  return bind(level, material, RestCloth::of(level, p_.dhat, p_.self_contact));
+  return bind(level, material, std::make_shared<const RestCloth>(level, p_.dhat, p_.self_contact));
 }
 
 std::unique_ptr<BoundContact> Ipc::rebind(const Level& level, const Material& material,

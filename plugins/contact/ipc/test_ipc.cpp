@@ -262,8 +262,9 @@ TEST_CASE("ipc: whatever the obstacle's triangles, the pressure on a flat cloth 
           std::make_shared<Obstacles>(Obstacles::of({{"floor", floor, {}, {{ValidatedMesh::of(floor)}}}}));
       Positions x = level.rest.vertices;
       x.col(2).setConstant(s * dhat);
-      const BoundIpc contact(p, ObstacleTree::of(obstacles, dhat, p.broad_phase),
-                             RestCloth::of(level, dhat, p.self_contact), Material());
+      const BoundIpc contact(p, p.barrier(Material()),
+                             std::make_shared<ObstacleTree>(obstacles, dhat, p.broad_phase),
+                             std::make_shared<RestCloth>(level, dhat, p.self_contact));
       const auto set = contact.build_candidates(x, x)->build_collisions(x);
       const Positions force = -gradient_of(*set, x);
       CAPTURE(dhat, columns);
