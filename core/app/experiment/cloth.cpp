@@ -112,27 +112,6 @@ bool is_grid(const ClothParameters& c) {
 
 }  // namespace
 
-void GrainRegionParameters::declare(Declaration<GrainRegionParameters>& d) {
-  const auto corner = [&](const char* name, Eigen::Vector3d GrainRegionParameters::*member,
-                          const char* description) {
-    d.add(name, member)
-        .unit("m")
-        .at_least(-bounds::largest_coordinate)
-        .at_most(bounds::largest_coordinate)
-        .required()
-        .description(description);
-  };
-  corner("lower", &GrainRegionParameters::lower,
-         "lower corner of a box of the rest shape; triangles belong to it by their centroids");
-  corner("upper", &GrainRegionParameters::upper, "upper corner of the box");
-  d.add("grain", &GrainRegionParameters::grain)
-      .unit("degree")
-      .at_least(-bounds::largest_angle)
-      .at_most(bounds::largest_angle)
-      .required()
-      .description("direction of warp there, as `cloth.grain`");
-}
-
 std::optional<TriangleMesh> checked_cloth(const Experiment& e, ConfigErrors& errors) {
   const ClothParameters& c = e.parameters.cloth;
   try {

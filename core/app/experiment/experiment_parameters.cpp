@@ -8,24 +8,22 @@ namespace drape {
 namespace {
 
 ParameterHandle coordinate(ParameterHandle p) {
-  return p.unit("m").at_least(-bounds::largest_coordinate).at_most(bounds::largest_coordinate);
+  return p.unit("m").between(-bounds::largest_coordinate, bounds::largest_coordinate);
 }
 /// The width, height or radius of a cloth.
-ParameterHandle extent(ParameterHandle p) {
-  return p.unit("m").at_least(1e-6).at_most(bounds::largest_length);
+ParameterHandle extent(ParameterHandle p) { return p.unit("m").between(1e-6, bounds::largest_length); }
+ParameterHandle angle(ParameterHandle p) {
+  return p.unit("degree").between(-bounds::largest_angle, bounds::largest_angle);
 }
 /// A number that counts from 0.
-ParameterHandle natural(ParameterHandle p, double most = bounds::largest_int) {
-  return p.at_least(0).at_most(most);
-}
+ParameterHandle natural(ParameterHandle p, double most = bounds::largest_int) { return p.between(0, most); }
 
 }  // namespace
 
 void LoopParameters::declare(Declaration<LoopParameters>& d) {
   d.add("points", &LoopParameters::points)
       .unit("m")
-      .at_least(-bounds::largest_length)
-      .at_most(bounds::largest_length)
+      .between(-bounds::largest_length, bounds::largest_length)
       .description("x0, y0, x1, y1, … around the outline")
       .required();
 }
@@ -40,6 +38,16 @@ void MaterialParameters::declare(Declaration<MaterialParameters>& d) {
       .description(
           "the `fabric` that gave numbers of this material, which drape writes to the config of a run, where "
           "all of them stand; a record, from which nothing is taken");
+}
+
+void GrainRegionParameters::declare(Declaration<GrainRegionParameters>& d) {
+  coordinate(d.add("lower", &GrainRegionParameters::lower))
+      .required()
+      .description("lower corner of a box of the rest shape; triangles belong to it by their centroids");
+  coordinate(d.add("upper", &GrainRegionParameters::upper)).required().description("upper corner of the box");
+  angle(d.add("grain", &GrainRegionParameters::grain))
+      .required()
+      .description("direction of warp there, as `cloth.grain`");
 }
 
 void ClothParameters::declare(Declaration<ClothParameters>& d) {
@@ -81,8 +89,7 @@ void ClothParameters::declare(Declaration<ClothParameters>& d) {
       .only_with("shape", {"square", "rectangle"})
       .description("triangulation of a square or rectangle; discs and polygons are Delaunay meshes");
   d.add("vertices", &ClothParameters::vertices)
-      .at_least(3)
-      .at_most(bounds::most_vertices)
+      .between(3, bounds::most_vertices)
       .only_with("shape", {"square", "rectangle", "disc", "polygon"})
       .description("approximate number of vertices of the coarsest level; not beside `columns` and `rows`");
   natural(d.add("columns", &ClothParameters::columns), bounds::most_vertices)
@@ -92,10 +99,7 @@ void ClothParameters::declare(Declaration<ClothParameters>& d) {
       .only_with("shape", {"square", "rectangle"})
       .description("number of vertices along the height of a grid; 0 derives it from `vertices`");
   natural(d.add("seed", &ClothParameters::seed)).description("seed of a random triangulation");
-  d.add("grain", &ClothParameters::grain)
-      .unit("degree")
-      .at_least(-bounds::largest_angle)
-      .at_most(bounds::largest_angle)
+  angle(d.add("grain", &ClothParameters::grain))
       .description(
           "direction of warp on the rest shape, from `grain_along` counter-clockwise seen from the cloth's "
           "front; null: that of the file's faces, or along x, neither exported nor drawn");
@@ -119,21 +123,18 @@ void StartParameters::declare(Declaration<StartParameters>& d) {
   d.declared("unit").description("unit of the start's file; null: that of the cloth's file");
   d.declared("up").description("axis of the start's file that points up; null: that of the cloth's file");
   d.add("scale", &StartParameters::scale)
-      .at_least(-bounds::largest_scale)
-      .at_most(bounds::largest_scale)
+      .between(-bounds::largest_scale, bounds::largest_scale)
       .description("scale factors along x, y, z, applied first");
   declare_placement(d);
   d.add("perturbation", &StartParameters::perturbation)
       .unit("m")
-      .at_least(0)
-      .at_most(bounds::largest_length)
+      .between(0, bounds::largest_length)
       .description(
           "amplitude of smooth noise along z, added after `scale` and before `rotate`, so normal to a flat "
           "pattern; a function of the rest shape's x and y, equal on every level; pinned vertices have none");
   d.add("perturbation_wavelength", &StartParameters::perturbation_wavelength)
       .unit("m")
-      .at_least(bounds::smallest_length)
-      .at_most(bounds::largest_length)
+      .between(bounds::smallest_length, bounds::largest_length)
       .description("wavelength of the noise");
   natural(d.add("seed", &StartParameters::seed)).description("seed of the noise");
 }
@@ -156,8 +157,7 @@ void declare_selection(Declaration<Condition>& d) {
       .description("point of `nearest`, centre of `ball`, in the rest shape");
   d.add("radius", member(&VertexSelection::radius))
       .unit("m")
-      .at_least(0)
-      .at_most(bounds::largest_coordinate)
+      .between(0, bounds::largest_coordinate)
       .only_with("region", {"ball"})
       .description("radius of `ball`");
   coordinate(d.add("lower", member(&VertexSelection::lower)))
@@ -173,10 +173,7 @@ void declare_selection(Declaration<Condition>& d) {
       .description(
           "translation from the rest position to the target, applied after `rotate`; without both, the "
           "target is the position at the start, without its noise");
-  d.add("rotate", member(&VertexSelection::rotate))
-      .unit("degree")
-      .at_least(-bounds::largest_angle)
-      .at_most(bounds::largest_angle)
+  angle(d.add("rotate", member(&VertexSelection::rotate)))
       .description("rotation of the rest position about x, then y, then z through `centre`");
   coordinate(d.add("centre", member(&VertexSelection::centre)))
       .description("centre of `rotate`, in the rest shape");
@@ -206,8 +203,7 @@ void HandleParameters::declare(Declaration<HandleParameters>& d) {
   declare_selection(d);
   d.add("stiffness", &HandleParameters::stiffness)
       .unit("1/s²")
-      .at_least(0)
-      .at_most(bounds::largest_modulus)
+      .between(0, bounds::largest_modulus)
       .description(
           "κ_B of the penalty κ_B/2 m ‖x − x̃‖², m the mass on the coarsest level (a departure); by default "
           "the numerical value of the membrane modulus")
@@ -220,8 +216,7 @@ void ReferenceParameters::declare(Declaration<ReferenceParameters>& d) {
           "method whose finest state is the reference; `lowest` chooses the converged finest state of lowest "
           "energy");
   d.add("force_tolerance", &ReferenceParameters::force_tolerance)
-      .at_least(0)
-      .at_most(1e12)
+      .between(0, 1e12)
       .description("force tolerance to which the reference is solved after all methods; 0 takes it as it is");
   d.add("file", &ReferenceParameters::file)
       .path()
@@ -236,8 +231,7 @@ void ExperimentParameters::declare(Declaration<ExperimentParameters>& d) {
   d.add("description", &ExperimentParameters::description).description("one sentence for the report");
   d.add_section("cloth", &ExperimentParameters::cloth).description("the coarsest level");
   d.add("levels", &ExperimentParameters::levels)
-      .at_least(1)
-      .at_most(10)
+      .between(1, 10)
       .description("number of levels; each splits every triangle of the last into four");
   d.add_section("material", &ExperimentParameters::material).description("material of the cloth");
   d.add_section("start", &ExperimentParameters::start)
@@ -280,8 +274,7 @@ void ExperimentParameters::declare(Declaration<ExperimentParameters>& d) {
           "state that errors are measured against, beside each method's own finest one; the name of a method "
           "or `lowest` is a shorthand");
   d.add("snapshots", &ExperimentParameters::snapshots)
-      .at_least(0)
-      .at_most(1000)
+      .between(0, 1000)
       .description("largest number of intermediate states per level to record and to measure errors of");
   d.add_choice(
        "check_intersections", &ExperimentParameters::check_intersections,

@@ -12,8 +12,7 @@ void ScheduleKey::declare(Declaration<ScheduleKey>& d) {
           "path of the parameter, as for --set, in material, energies, contact, obstacles, friction, pins or "
           "handles; an index or a name selects an item of a list, as in energies.gravity.acceleration");
   d.add("times", &ScheduleKey::times)
-      .at_least(0)
-      .at_most(1e9)
+      .between(0, 1e9)
       .required()
       .description("pseudo-times, ascending; the scene begins at 0");
   d.add("values", &ScheduleKey::written)
@@ -28,12 +27,10 @@ void ScheduleKey::declare(Declaration<ScheduleKey>& d) {
 
 void ScheduleParameters::declare(Declaration<ScheduleParameters>& d) {
   d.add("duration", &ScheduleParameters::duration)
-      .at_least(0)
-      .at_most(1e9)
+      .between(0, 1e9)
       .description("total pseudo-time, in the unit of `times`; 0 takes the last time of all keys");
   d.add("steps", &ScheduleParameters::steps)
-      .at_least(1)
-      .at_most(1e6)
+      .between(1, 1e6)
       .description("number of equal load increments")
       .source("supplement, section 4");
   d.add("equilibrate", &ScheduleParameters::equilibrate)

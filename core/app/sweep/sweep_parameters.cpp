@@ -18,8 +18,7 @@ void Variation::declare(Declaration<Variation>& d) {
   d.add("set", &Variation::set)
       .description("map from paths of keys in the experiment (methods.pcs.hessian, energies.0) to values");
   d.add("levels", &Variation::levels)
-      .at_least(1)
-      .at_most(10)
+      .between(1, 10)
       .description("number of levels, in place of the experiment's");
   d.add("methods", &Variation::methods).description("methods to run; by default those of the sweep");
   d.add_section("expect", &Variation::expect)
@@ -39,16 +38,14 @@ void SweepParameters::declare(Declaration<SweepParameters>& d) {
   d.add("set", &SweepParameters::set)
       .description("map from paths of keys in the experiment to values, for every variation");
   d.add("seeds", &SweepParameters::seeds)
-      .at_least(0)
-      .at_most(bounds::largest_int)
+      .between(0, bounds::largest_int)
       .description(
           "every variation is run with each of these as start.seed; the experiment's alone if not given");
   d.add("repeats", &SweepParameters::repeats)
-      .at_least(1)
-      .at_most(10000)
+      .between(1, 10000)
       .description("shorthand for seeds 1, 2, … up to this");
   d.add("methods", &SweepParameters::methods).description("methods of the experiment to run; all by default");
-  d.add("threads", &SweepParameters::threads).at_least(1).at_most(1024).description("threads of each run");
+  d.add("threads", &SweepParameters::threads).between(1, 1024).description("threads of each run");
   d.add("time_limit", &SweepParameters::time_limit)
       .unit("s")
       .above(0)

@@ -90,6 +90,7 @@ class ParameterHandle {
   ParameterHandle& source(std::string text) { return set(&Parameter::source, std::move(text)); }
   ParameterHandle& at_least(double v) { return set(&Parameter::minimum, v); }
   ParameterHandle& at_most(double v) { return set(&Parameter::maximum, v); }
+  ParameterHandle& between(double least, double most) { return at_least(least).at_most(most); }
   ParameterHandle& above(double v) { return at_least(v).set(&Parameter::open_minimum, true); }
   ParameterHandle& below(double v) { return at_most(v).set(&Parameter::open_maximum, true); }
   ParameterHandle& size(int n) { return set(&Parameter::size, n); }
