@@ -31,9 +31,8 @@ struct RunRequest : RunOptions, ConfigArguments {
 
 /// Says which methods a run left out because the user named none.
 void show_other_methods(const Experiment& experiment, const std::string& run) {
-  std::vector<std::string> others;
-  for (const auto& [name, solver] : experiment.methods)
-    if (name != run) others.push_back(name);
+  std::vector<std::string> others = experiment.method_names();
+  std::erase(others, run);
   if (!others.empty())
     std::cerr << "only " << run << " was run; --method all adds " << joined(others) << "\n";
 }

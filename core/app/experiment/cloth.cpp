@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <stdexcept>
 
 #include "core/app/files/machine.h"
 #include "core/kernel/files/message_text.h"
+#include "core/kernel/files/number_text.h"
 #include "core/kernel/plugin/bounds.h"
 #include "core/numerics/mesh/check.h"
 #include "core/numerics/mesh/grain.h"
@@ -18,11 +18,8 @@ namespace drape {
 
 namespace {
 
-TriangleMesh make_grid(const ClothParameters& c, const Eigen::Vector2d& size) {
-  const GridSize counts = grid_size(c);
-  if (c.triangulation == "equilateral") return equilateral(size, counts.columns, counts.rows);
-  return grid(size, counts.columns, counts.rows,
-              c.triangulation == "one_way" ? Diagonals::one_way : Diagonals::criss_cross);
+Eigen::Vector2d size_of(const ClothParameters& c) {
+  return c.shape == "square" ? Eigen::Vector2d(c.side, c.side) : c.size;
 }
 
 TriangleMesh read_cloth(const ClothParameters& c) {
@@ -59,8 +56,7 @@ std::vector<std::string> cut(TriangleMesh& cloth, const ClothParameters& c) {
   return {};
 }
 
-TriangleMesh make_cloth(const Experiment& e) {
-  const ClothParameters& c = e.parameters.cloth;
+TriangleMesh make_cloth(const ClothParameters& c) {
   if (c.shape == "file") {
     if (c.file.empty()) throw std::runtime_error("\"shape: file\" needs \"file\", the mesh to read");
     return read_cloth(c);
@@ -81,9 +77,11 @@ TriangleMesh make_cloth(const Experiment& e) {
     c.convert(mesh.vertices);
     return mesh;
   }
-  const Eigen::Vector2d size = c.shape == "square" ? Eigen::Vector2d(c.side, c.side) : c.size;
-  if (c.triangulation == "random") return random_triangulation(size, c.vertices, c.seed);
-  return make_grid(c, size);
+  if (c.triangulation == "random") return random_triangulation(size_of(c), c.vertices, c.seed);
+  const Eigen::Vector2i counts = grid_counts(c);
+  if (c.triangulation == "equilateral") return equilateral(size_of(c), counts.x(), counts.y());
+  return grid(size_of(c), counts.x(), counts.y(),
+              c.triangulation == "one_way" ? Diagonals::one_way : Diagonals::criss_cross);
 }
 
 /// A hinge's Hessian takes 16 blocks and a vertex has 3 hinges: their numbers must fit an int.
@@ -96,11 +94,7 @@ constexpr double max_vertex_ratio = 2;
 // in benchmarks/results/table1.json (peak_memory_bytes) and scale.json (peak_bytes) take 500 to 1300 bytes.
 constexpr double program = 1e8, bytes_each = 2000;
 
-std::string about(double number) {
-  char text[32];
-  std::snprintf(text, sizeof text, number < 1e6 ? "%.0f" : "%.2g", number);
-  return text;
-}
+std::string about(double number) { return number < 1e6 ? fixed_text(number, 0) : general_text(number, 2); }
 
 std::string levels_text(std::ptrdiff_t count) {
   return std::to_string(count) + (count == 1 ? " level" : " levels");
@@ -115,7 +109,7 @@ bool is_grid(const ClothParameters& c) {
 std::optional<TriangleMesh> checked_cloth(const Experiment& e, ConfigErrors& errors) {
   const ClothParameters& c = e.parameters.cloth;
   try {
-    TriangleMesh cloth = make_cloth(e);
+    TriangleMesh cloth = make_cloth(c);
     std::vector<std::string> faults = check_mesh(cloth);
     if (faults.empty()) faults = cut(cloth, c);
     for (const std::string& fault : faults)
@@ -141,20 +135,17 @@ std::optional<TriangleMesh> start_mesh(const Experiment& e, ConfigErrors& errors
   return std::nullopt;
 }
 
-GridSize grid_size(const ClothParameters& c) {
-  const Eigen::Vector2d size = c.shape == "square" ? Eigen::Vector2d(c.side, c.side) : c.size;
+Eigen::Vector2i grid_counts(const ClothParameters& c) {
+  const Eigen::Vector2d size = size_of(c);
   const double density = std::sqrt(c.vertices / size.prod());
   const auto along = [&](int set, double length) {
     return set > 0 ? set : std::max(2.0, std::round(density * length));
   };
-  double columns = along(c.columns, size.x()), rows = along(c.rows, size.y());
-  if (c.triangulation == "equilateral") {
-    const Eigen::Vector2i counts = equilateral_counts(size, c.vertices, c.columns, c.rows);
-    columns = counts.x();
-    rows = counts.y();
-  }
-  const double all = columns * rows;
-  const std::string made = about(columns) + " × " + about(rows);
+  Eigen::Vector2d counts(along(c.columns, size.x()), along(c.rows, size.y()));
+  if (c.triangulation == "equilateral")
+    counts = equilateral_counts(size, c.vertices, c.columns, c.rows).cast<double>();
+  const double all = counts.prod();
+  const std::string made = about(counts.x()) + " × " + about(counts.y());
   if (c.columns == 0 && c.rows == 0 &&
       (all > max_vertex_ratio * c.vertices || max_vertex_ratio * all < c.vertices))
     throw std::runtime_error(c.shape + ": about " + std::to_string(c.vertices) +
@@ -164,20 +155,20 @@ GridSize grid_size(const ClothParameters& c) {
     throw std::runtime_error(c.shape + ": a grid of " + made +
                              " vertices is too large; a coarsest level has at most " +
                              about(bounds::most_vertices));
-  return {static_cast<int>(columns), static_cast<int>(rows)};
+  return counts.cast<int>();
 }
 
 std::vector<double> estimated_vertices(const ExperimentParameters& p) {
   std::vector<double> vertices;
   try {
     const bool grid = is_grid(p.cloth);
-    const GridSize size = grid ? grid_size(p.cloth) : GridSize();
+    const Eigen::Vector2i counts = grid ? grid_counts(p.cloth) : Eigen::Vector2i(0, 0);
     const double coarsest = p.cloth.shape == "file"
                                 ? static_cast<double>(read_mesh(p.cloth.file).vertices.rows())
                                 : p.cloth.vertices;
     for (int l = 0; l < p.levels; ++l) {
       const double cells = std::pow(2.0, l);  // of the level, along a cell of the coarsest one
-      vertices.push_back(grid ? (cells * (size.columns - 1) + 1) * (cells * (size.rows - 1) + 1)
+      vertices.push_back(grid ? (cells * (counts.x() - 1) + 1) * (cells * (counts.y() - 1) + 1)
                               : cells * cells * coarsest);
     }
   } catch (const std::exception&) {
@@ -190,11 +181,7 @@ double estimated_memory(double vertices) {
   return program + bytes_each * vertices * std::log2(std::max(vertices, 2.0));
 }
 
-std::string memory_text(double bytes) {
-  char text[32];
-  std::snprintf(text, sizeof text, bytes < 9.95e9 ? "%.1f GB" : "%.0f GB", bytes / 1e9);
-  return text;
-}
+std::string memory_text(double bytes) { return fixed_text(bytes / 1e9, bytes < 9.95e9 ? 1 : 0) + " GB"; }
 
 void refuse_too_large(const Experiment& e, LargeMemory large, ConfigErrors& errors) {
   const std::vector<double> vertices = estimated_vertices(e.parameters);

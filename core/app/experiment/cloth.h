@@ -13,14 +13,9 @@ std::optional<TriangleMesh> checked_cloth(const Experiment& experiment, ConfigEr
 std::optional<TriangleMesh> start_mesh(const Experiment& experiment, ConfigErrors& errors);
 
 /// Columns and rows of vertices of a square's or rectangle's grid: as set, otherwise about `vertices`
-/// vertices with square cells.
-struct GridSize {
-  int columns = 0, rows = 0;
-};
-
-/// Throws std::runtime_error if the result is far from the requested vertices or too large for a coarsest
-/// level.
-GridSize grid_size(const ClothParameters& cloth);
+/// vertices with square cells. Throws std::runtime_error if the result is far from the requested vertices or
+/// too large for a coarsest level.
+Eigen::Vector2i grid_counts(const ClothParameters& cloth);
 
 /// Estimated vertices of each level, without building any; reads only a mesh file. Empty if the cloth cannot
 /// be made, which checked_cloth reports.

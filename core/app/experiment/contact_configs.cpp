@@ -18,11 +18,6 @@ std::vector<ConfigNode> contact_sections(const ExperimentParameters& p) {
   return p.contact.kind == NodeKind::list ? p.contact.items : std::vector<ConfigNode>{p.contact};
 }
 
-const RegistryEntry* model_of(const Registry& registry, const ConfigNode& node) {
-  const ConfigNode* type = node.kind == NodeKind::map ? node.find("type") : &node;
-  return type ? registry.find("contact", type->scalar) : nullptr;
-}
-
 /// The model's declared list of obstacles, or null.
 const Parameter* obstacles_of(const RegistryEntry& model) {
   for (const Parameter& p : model.schema.parameters)
@@ -147,7 +142,7 @@ std::vector<ContactConfig> contact_configs(const Registry& registry, const Exper
                                            std::vector<ConfigNode>& obstacles) {
   const std::vector<ConfigNode> written = contact_sections(p);
   std::vector<const RegistryEntry*> entries;
-  for (const ConfigNode& node : written) entries.push_back(model_of(registry, node));
+  for (const ConfigNode& node : written) entries.push_back(registry.find("contact", node.plugin_name()));
   std::vector<ContactConfig> configs(written.size());
   check_models(written, entries, errors);
   check_names(p.obstacles, errors);

@@ -92,12 +92,19 @@ void check_name(const std::string& what, const std::string& name, const Location
       !name.empty() && name[0] != '.' && std::all_of(name.begin(), name.end(), [](unsigned char c) {
         return c >= 0x80 || std::isalnum(c) || c == '_' || c == '-' || c == '.';
       });
-  if (!usable)
-    errors.push_back({where, what + " \"" + excerpt(name) +
-                                 "\" names files: write it with letters, digits, \"_\", \"-\" and \".\", "
-                                 "not beginning with \".\""});
-  else if (const std::string fault = fault_of_file_name(name); !fault.empty())
-    errors.push_back({where, what + " \"" + excerpt(name) + "\" names files: it " + fault});
+  const std::string fault = fault_of_file_name(name);
+  if (!usable || !fault.empty())
+    errors.push_back({where, what + " \"" + excerpt(name) + "\" names files: " +
+                                 (usable ? "it " + fault
+                                         : "write it with letters, digits, \"_\", \"-\" and \".\", not "
+                                           "beginning with \".\"")});
+}
+
+void sort_by_place(ConfigErrors& errors, const std::string& file) {
+  std::stable_sort(errors.begin(), errors.end(), [&](const ConfigError& a, const ConfigError& b) {
+    const auto order = [&](const Location& l) { return std::tuple(l.file != file, l.line, l.column); };
+    return order(a.where) < order(b.where);
+  });
 }
 
 std::optional<Experiment> read_experiment(const std::filesystem::path& file, const Overrides& overrides,
@@ -125,15 +132,15 @@ std::optional<Experiment> read_experiment(ConfigNode source, const Registry& reg
   make_plugins(registry, errors, e);
   read_keys(e, errors);
   if (!errors.empty()) check_mesh_files(e, errors);
-  // In the order of the file; faults of values from the command line come after.
-  std::stable_sort(errors.begin(), errors.end(), [&](const ConfigError& a, const ConfigError& b) {
-    const auto order = [&](const Location& l) {
-      return std::tuple(l.file != e.source.where.file, l.line, l.column);
-    };
-    return order(a.where) < order(b.where);
-  });
+  sort_by_place(errors, e.source.where.file);
   if (!errors.empty()) return std::nullopt;
   return e;
+}
+
+std::vector<std::string> Experiment::method_names() const {
+  std::vector<std::string> names;
+  for (const auto& [name, solver] : methods) names.push_back(name);
+  return names;
 }
 
 const Solver& Experiment::solver_of(const std::string& method) const {
@@ -175,8 +182,7 @@ std::string default_method(const std::vector<std::string>& methods) {
 }
 
 std::vector<std::string> chosen_methods(const Experiment& experiment, const std::vector<std::string>& asked) {
-  std::vector<std::string> known, chosen;
-  for (const auto& [name, solver] : experiment.methods) known.push_back(name);
+  const std::vector<std::string> known = experiment.method_names();
   for (const std::string& name : asked)
     if (name != all_methods && !contains(known, name))
       throw std::runtime_error("--method " + name + ": the experiment's methods are " + joined(known));
@@ -188,8 +194,8 @@ std::vector<std::string> chosen_methods(const Experiment& experiment, const std:
                                joined(known) + " with --method, or run them all with --method all");
     return {name};
   }
-  std::copy_if(known.begin(), known.end(), std::back_inserter(chosen),
-               [&](const std::string& name) { return contains(asked, name); });
+  std::vector<std::string> chosen = known;
+  std::erase_if(chosen, [&](const std::string& name) { return !contains(asked, name); });
   return chosen;
 }
 

@@ -31,6 +31,7 @@ struct Experiment {
   std::vector<std::pair<std::string, std::shared_ptr<Metric>>> metrics;
   const Registry* registry = nullptr;  ///< of the plugins
 
+  std::vector<std::string> method_names() const;
   /// The solver of a method. Throws std::logic_error for an unknown method.
   const Solver& solver_of(const std::string& method) const;
   /// The type of that solver, which is not always the method's name.
@@ -46,6 +47,9 @@ struct Experiment {
 /// Appends an error unless the name (of an experiment, a method or a sweep) can be part of file names.
 void check_name(const std::string& what, const std::string& name, const Location& where,
                 ConfigErrors& errors);
+
+/// Sorts errors by their places in this file; those of values from the command line come after.
+void sort_by_place(ConfigErrors& errors, const std::string& file);
 
 /// A value from the command line.
 struct Override {

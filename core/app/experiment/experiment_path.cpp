@@ -69,10 +69,9 @@ void lead_to_constant(const ConfigNode& experiment, std::vector<std::string>& wo
 std::vector<std::string> words_of_path(const ConfigNode& experiment, const std::string& path) {
   std::vector<std::string> words = split(path, '.');
   lead_to_constant(experiment, words);
-  if (words.size() < 3 || !chooses_plugin(words[0])) return words;
+  if (words.size() < 3 || words[1].empty() || !chooses_plugin(words[0])) return words;
   const ConfigNode* plugin = experiment.find(words[0]);
-  const ConfigNode* type = plugin && plugin->kind == NodeKind::map ? plugin->find("type") : plugin;
-  if (type && type->kind == NodeKind::scalar && type->scalar == words[1]) words.erase(words.begin() + 1);
+  if (plugin && plugin->plugin_name() == words[1]) words.erase(words.begin() + 1);
   return words;
 }
 

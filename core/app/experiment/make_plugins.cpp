@@ -11,8 +11,6 @@ namespace drape {
 
 namespace {
 
-ConfigNode scalar_node(const std::string& text) { return ConfigNode::of(text); }
-
 /// Gives a solver's `newton` what the experiment's own sets, as defaults for the solver's.
 void take_newton(const ConfigNode& written, const NewtonParameters& common, const Schema& schema,
                  void* solver) {
@@ -53,10 +51,11 @@ class PluginMaker {
       for (const RegistryEntry* entry : registry_.of_kind("metric")) {
         const std::vector<Parameter>& own = entry->schema.parameters;
         if (std::none_of(own.begin(), own.end(), [](const Parameter& p) { return p.required; }))
-          e_.parameters.metrics.push_back(scalar_node(entry->name));
+          e_.parameters.metrics.push_back(ConfigNode::of(entry->name));
       }
     for (const ConfigNode& node : e_.parameters.metrics)
-      if (auto metric = make<Metric>(node, metrics)) e_.metrics.emplace_back(name_of(node), metric);
+      if (auto metric = make_from<Metric>(registry_, node, errors_, &metrics.items.emplace_back()))
+        e_.metrics.emplace_back(node.plugin_name(), metric);
     check_metrics();
     set("metrics", metrics);
     make_methods();
@@ -72,31 +71,17 @@ class PluginMaker {
     }
   }
 
-  static std::string name_of(const ConfigNode& node) {
-    const ConfigNode* type = node.kind == ConfigNode::Kind::map ? node.find("type") : &node;
-    return type ? type->scalar : "";
-  }
-
   /// The name that a plugin gives itself, else its type.
   static std::string label_of(const ConfigNode& node) {
-    const ConfigNode* name = node.kind == ConfigNode::Kind::map ? node.find("name") : nullptr;
-    return name && name->kind == ConfigNode::Kind::scalar ? name->scalar : name_of(node);
-  }
-
-  template <class Interface>
-  std::shared_ptr<Interface> make(const ConfigNode& node, ConfigNode& resolved_list) {
-    ConfigNode resolved;
-    auto object = make_from<Interface>(registry_, node, errors_, &resolved);
-    resolved_list.items.push_back(resolved);
-    return object;
+    const ConfigNode* name = node.find("name");
+    return name && name->kind == ConfigNode::Kind::scalar ? name->scalar : node.plugin_name();
   }
 
   void make_refiner() {
-    const ConfigNode& node = e_.parameters.refiner;
+    ConfigNode& node = e_.parameters.refiner;
+    if (node.kind == ConfigNode::Kind::null) node = ConfigNode::of(default_refiner);
     ConfigNode resolved;
-    e_.refiner = make_from<Refiner>(registry_,
-                                    node.kind == ConfigNode::Kind::null ? scalar_node(default_refiner) : node,
-                                    errors_, &resolved);
+    e_.refiner = make_from<Refiner>(registry_, node, errors_, &resolved);
     set("refiner", resolved);
   }
 
@@ -135,13 +120,11 @@ class PluginMaker {
     std::set<std::string> names;
     for (const auto& [name, written] : methods.entries) {
       ConfigNode node = written;
-      if (node.kind == ConfigNode::Kind::null) node.kind = ConfigNode::Kind::map;
-      if (node.kind == ConfigNode::Kind::map) {
-        if (!node.find("type")) {
-          ConfigNode type = scalar_node(name);
-          type.where = written.where;
-          node.add("type", type);
-        }
+      const bool is_map = node.kind == ConfigNode::Kind::map || node.kind == ConfigNode::Kind::null;
+      if (is_map && !node.find("type")) {
+        ConfigNode type = ConfigNode::of(name);
+        type.where = written.where;
+        node.add("type", type);
       }
       ConfigNode resolved;
       check_name("method", name, written.where, errors_);

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <map>
 #include <set>
-#include <tuple>
 
 #include "core/app/experiment/cloth.h"
 #include "core/app/experiment/describe.h"
@@ -138,8 +137,7 @@ class Reader {
 
   static void check_methods(const Experiment& experiment, const std::vector<std::string>& chosen,
                             const Location& where, ConfigErrors& errors) {
-    std::vector<std::string> known;
-    for (const auto& method : experiment.methods) known.push_back(method.first);
+    const std::vector<std::string> known = experiment.method_names();
     for (const std::string& name : chosen)
       if (std::find(known.begin(), known.end(), name) == known.end())
         errors.push_back({where, "there is no method \"" + excerpt(name) +
@@ -203,12 +201,7 @@ class Reader {
       errors_.push_back(fault);
     }
     if (errors_.empty()) errors_ = same_;
-    std::stable_sort(errors_.begin(), errors_.end(), [&](const ConfigError& a, const ConfigError& b) {
-      const auto order = [&](const Location& l) {
-        return std::tuple(l.file != source_.where.file, l.line, l.column);
-      };
-      return order(a.where) < order(b.where);
-    });
+    sort_by_place(errors_, source_.where.file);
   }
 
   const Registry& registry_;

@@ -93,6 +93,11 @@ const ConfigNode* ConfigNode::find(const std::string& key) const {
   return nullptr;
 }
 
+const std::string& ConfigNode::plugin_name() const {
+  const ConfigNode* type = find("type");
+  return (type ? *type : *this).scalar;
+}
+
 void ConfigNode::add(const std::string& key, ConfigNode value) {
   kind = Kind::map;
   key_locations.push_back(value.where);

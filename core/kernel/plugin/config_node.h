@@ -36,6 +36,9 @@ struct ConfigNode {
   /// Index of the list's item that a word of a path names by its index from 0, its type or its name.
   std::optional<std::size_t> index_of(const std::string& word) const;
 
+  /// The plugin that the node chooses: a scalar's text, or that of a map's `type`; empty for others.
+  const std::string& plugin_name() const;
+
   void add(const std::string& key, ConfigNode value);  ///< appends an entry, making a null node a map
 
   void name_keys(const std::string& own = "");  ///< sets each location's key; own: this node's

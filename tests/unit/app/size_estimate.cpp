@@ -32,24 +32,22 @@ std::string refusal(const Experiment& e, LargeMemory large = LargeMemory::refuse
 }  // namespace
 
 TEST_CASE("A grid has about as many vertices as were asked for, or is refused with both numbers") {
-  const GridSize size = grid_size(rectangle(2, 0.5, 1024));
-  CHECK(size.columns == 64);
-  CHECK(size.rows == 16);
-  CHECK_THROWS_WITH(grid_size(rectangle(1e6, 1e-6, 1024)),
+  CHECK(grid_counts(rectangle(2, 0.5, 1024)) == Eigen::Vector2i(64, 16));
+  CHECK_THROWS_WITH(grid_counts(rectangle(1e6, 1e-6, 1024)),
                     "rectangle: about 1024 vertices are asked for, but its grid of even cells has "
                     "3.2e+07 × 2 = 6.4e+07; set columns and rows, or ask for another number of vertices");
   ClothParameters c = rectangle(1e6, 1e-6, 1024);
   c.columns = 512;
   c.rows = 2;
-  CHECK(grid_size(c).columns == 512);
+  CHECK(grid_counts(c).x() == 512);
   c.triangulation = "equilateral";
   c.columns = 0;
-  CHECK_THROWS_WITH(grid_size(c),
+  CHECK_THROWS_WITH(grid_counts(c),
                     "rectangle: a grid of 1e+09 × 2 vertices is too large; a coarsest level has "
                     "at most 1e+07");
   c.triangulation = "one_way";
   c.columns = c.rows = 10000;
-  CHECK_THROWS_WITH(grid_size(c),
+  CHECK_THROWS_WITH(grid_counts(c),
                     "rectangle: a grid of 10000 × 10000 vertices is too large; a coarsest level has at most "
                     "1e+07");
 }
