@@ -8,7 +8,7 @@
 
 namespace drape {
 
-/// Names of the fabrics that come with drape (fabric_table.h), in its order.
+/// Names of the fabrics that come with drape, in its order.
 std::vector<std::string> fabric_names();
 
 /// A fabric's values for keys of `material`, and its `source`: of NAME in the table that comes with drape, or
