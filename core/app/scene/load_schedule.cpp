@@ -5,7 +5,6 @@
 
 #include "core/app/experiment/read_experiment.h"
 #include "core/app/scene/boundary_conditions.h"
-#include "core/app/scene/following_pins.h"
 #include "core/kernel/files/message_text.h"
 #include "core/numerics/model/stretch_limit.h"
 
@@ -58,6 +57,147 @@ std::vector<double> times_with_between(const std::vector<double>& times) {
   return all;
 }
 
+/// The faults of load_stepping_of.
+void check_on_levels(const Experiment& e, const Scene& scene, const LoadSchedule& schedule,
+                     ConfigErrors& errors) {
+  const std::vector<ScheduleKey>& keys = e.parameters.schedule.keys;
+  const std::vector<Level>& levels = scene.hierarchy.levels;
+  for (std::size_t k = 0; k < keys.size(); ++k) {
+    const LoadPart part = keys[k].targets[0].part;
+    const std::size_t item = keys[k].targets[0].item;
+    if (part == LoadPart::contact) continue;
+    const bool of_vertices = part == LoadPart::pins || part == LoadPart::handles;
+    const Location where = e.source.find("schedule")->find("keys")->items[k].find("values")->where;
+    // Whether check(load, faults) finds no fault at any of these times; appends those of the first that has.
+    const auto hold_at = [&](const std::vector<double>& times, const auto& check) {
+      for (const double time : times) {
+        ConfigErrors own;
+        try {
+          // With the values that all other keys have at that time: two keys may move the bounds of one
+          // region.
+          check(*schedule.at(schedule.keys().values_at(time)), own);
+        } catch (const std::runtime_error& problem) {
+          own.push_back({where, problem.what()});
+        }
+        for (const ConfigError& error : own)
+          errors.push_back({where, "key \"" + excerpt(keys[k].parameter) + "\" at pseudo-time " +
+                                       three_digits(time) + ": " + error.message});
+        if (!own.empty()) return false;
+      }
+      return true;
+    };
+    const bool bound = hold_at(keys[k].times, [&](const LoadState& load, ConfigErrors& own) {
+      if (of_vertices) check_selection(*load.parameters, part, item, where, levels, own);
+      if (own.empty() && part != LoadPart::pins) bind_energies(load, scene);
+    });
+    if (bound && of_vertices)
+      hold_at(times_with_between(keys[k].times), [&](const LoadState& load, ConfigErrors& own) {
+        check_shared_vertices(*load.parameters, part, item, where, levels, scene.placed, own);
+      });
+  }
+}
+
+/// Load stepping along a scene's schedule: how far it has come, and the load and model of each level. A
+/// level's model is made when it is asked for.
+class ScheduleStepping final : public LoadStepping {
+ public:
+  ScheduleStepping(LoadSchedule schedule, const Scene& scene)
+      : schedule_(std::move(schedule)), load_(schedule_.first()) {
+    for (const auto& model : scene.models) levels_.push_back({load_, load_, model});
+  }
+
+  int increment_count() const override { return schedule_.keys().steps; }
+  bool equilibrates() const override { return schedule_.keys().equilibrate; }
+  LoadSteppingState state() const override { return {increment_, load_->values}; }
+  int increment() const override { return increment_; }
+  bool complete() const override { return load_->values == schedule_.values(increment_); }
+  double time() const override { return schedule_.keys().time(increment_); }
+
+  void begin(int level, bool from_start) override {
+    if (from_start)
+      restore(level, {0, schedule_.values(0)});
+    else
+      set_load(level, load_);
+  }
+
+  void restore(int level, const LoadSteppingState& state) override {
+    increment_ = state.increment;
+    set_load(level, load_at(state.values));
+  }
+
+  std::shared_ptr<const LevelModel> model(int level) override {
+    LoadedLevel& l = levels_[level];
+    if (l.made_of != l.load) {
+      l.model = schedule_.model(*l.load, level, *l.model);
+      l.made_of = l.load;
+    }
+    return l.model;
+  }
+
+  StepLimit advance(int level, const Positions& x) override {
+    if (complete()) ++increment_;
+    StepLimit limit{0, {}};
+    double part = 1;
+    for (int tries = 0; tries < max_tries && part >= min_fraction; ++tries) {
+      StepLimit allowed = try_fraction(part, level, x);
+      if (allowed.fraction == 1) return {part, std::move(limit.by)};
+      if (!allowed.by.empty()) limit.by = std::move(allowed.by);
+      part *= allowed.fraction;
+    }
+    return limit;
+  }
+
+  bool advance_by(double fraction, int level, const Positions& x) override {
+    return try_fraction(fraction, level, x).fraction == 1;
+  }
+
+ private:
+  /// A level's load, and its model, which was made for the load `made_of`.
+  struct LoadedLevel {
+    std::shared_ptr<const LoadState> load, made_of;
+    std::shared_ptr<const LevelModel> model;
+  };
+
+  /// The load with these values of all keys. Throws std::runtime_error naming the pseudo-time and the fault.
+  std::shared_ptr<const LoadState> load_at(std::vector<double> values) const {
+    try {
+      return schedule_.at(std::move(values), *load_);
+    } catch (const std::exception& error) {
+      throw std::runtime_error("the schedule at pseudo-time " + std::to_string(time()) + ": " + error.what());
+    }
+  }
+
+  /// Gives this level and all finer ones a load.
+  void set_load(int level, std::shared_ptr<const LoadState> load) {
+    load_ = std::move(load);
+    for (std::size_t l = level; l < levels_.size(); ++l) levels_[l].load = load_;
+  }
+
+  /// Applies a fraction of the remaining increment if a cloth at x allows it. Returns 1 if so, else an
+  /// estimate of the feasible part of that fraction.
+  StepLimit try_fraction(double fraction, int level, const Positions& x) {
+    std::vector<double> values = schedule_.values(increment_);
+    if (fraction < 1)
+      for (std::size_t c = 0; c < values.size(); ++c)
+        values[c] = load_->values[c] + fraction * (values[c] - load_->values[c]);
+    if (fraction < 1 && values == load_->values) return {0, {}};  // less than the numbers can express
+    const std::shared_ptr<const LoadState> next = load_at(std::move(values));
+    const std::shared_ptr<const LevelModel> now = model(level);
+    std::shared_ptr<const LevelModel> then = schedule_.model(*next, level, *now);
+    if (std::string refused = strain_limit_violations(then->limits(), x, 1); !refused.empty())
+      return {0.5, std::move(refused)};  // a limit gives no fraction: try half
+    if (StepLimit limit = obstacle_step_limit(*now, *then, x); limit.fraction < 1) return limit;
+    set_load(level, next);
+    levels_[level] = {next, next, std::move(then)};
+    return {};
+  }
+
+  const LoadSchedule schedule_;
+  int increment_ = 0;
+  std::shared_ptr<const LoadState> load_;
+  std::vector<LoadedLevel> levels_;
+};
+
 }  // namespace
 
 LoadSchedule::LoadSchedule(const Experiment& e, const Scene& scene)
@@ -69,9 +209,7 @@ LoadSchedule::LoadSchedule(const Experiment& e, const Scene& scene)
     first += key.values[0].size();
   }
   auto parameters = std::make_shared<const ExperimentParameters>(e.parameters);
-  std::vector<double> values;
-  for (const ScheduleKey& key : e.parameters.schedule.keys)
-    values.insert(values.end(), key.values[0].begin(), key.values[0].end());
+  std::vector<double> values = parameters->schedule.values_at(0);
   first_ = std::make_shared<const LoadState>(
       LoadState{std::move(values), std::move(parameters), scene.energies, e.contacts});
 }
@@ -128,120 +266,13 @@ std::shared_ptr<const LevelModel> LoadSchedule::model(const LoadState& load, int
   return with(std::move(dirichlet), *moved);
 }
 
-ScheduleStepping::ScheduleStepping(LoadSchedule schedule, const Scene& scene)
-    : schedule_(std::move(schedule)), load_(schedule_.first()) {
-  for (const auto& model : scene.models) levels_.push_back({load_, load_, model});
-}
-
-std::shared_ptr<const LevelModel> ScheduleStepping::model(int level) {
-  LoadedLevel& l = levels_[level];
-  if (l.made_of != l.load) {
-    l.model = schedule_.model(*l.load, level, *l.model);
-    l.made_of = l.load;
-  }
-  return l.model;
-}
-
-std::shared_ptr<const LoadState> ScheduleStepping::load_at(std::vector<double> values) const {
-  try {
-    return schedule_.at(std::move(values), *load_);
-  } catch (const std::exception& error) {
-    throw std::runtime_error("the schedule at pseudo-time " + std::to_string(time()) + ": " + error.what());
-  }
-}
-
-void ScheduleStepping::set_load(int level, std::shared_ptr<const LoadState> load) {
-  load_ = std::move(load);
-  for (std::size_t l = level; l < levels_.size(); ++l) levels_[l].load = load_;
-}
-
-void ScheduleStepping::begin(int level, bool from_start) {
-  if (from_start)
-    restore(level, {0, schedule_.values(0)});
-  else
-    set_load(level, load_);
-}
-
-void ScheduleStepping::restore(int level, const LoadSteppingState& state) {
-  increment_ = state.increment;
-  set_load(level, load_at(state.values));
-}
-
-StepLimit ScheduleStepping::advance(int level, const Positions& x) {
-  if (complete()) ++increment_;
-  StepLimit limit;
-  double part = 1;
-  for (int tries = 0; tries < max_tries && part >= min_fraction; ++tries) {
-    StepLimit allowed = try_fraction(part, level, x);
-    if (allowed.fraction == 1) {
-      limit.fraction = part;
-      return limit;
-    }
-    if (!allowed.by.empty()) limit.by = std::move(allowed.by);
-    part *= allowed.fraction;
-  }
-  limit.fraction = 0;
-  return limit;
-}
-
-bool ScheduleStepping::advance_by(double fraction, int level, const Positions& x) {
-  return try_fraction(fraction, level, x).fraction == 1;
-}
-
-StepLimit ScheduleStepping::try_fraction(double fraction, int level, const Positions& x) {
-  std::vector<double> values = schedule_.values(increment_);
-  if (fraction < 1)
-    for (std::size_t c = 0; c < values.size(); ++c)
-      values[c] = load_->values[c] + fraction * (values[c] - load_->values[c]);
-  if (fraction < 1 && values == load_->values) return {0, {}};  // less than the numbers can express
-  const std::shared_ptr<const LoadState> next = load_at(std::move(values));
-  const std::shared_ptr<const LevelModel> now = model(level);
-  std::shared_ptr<const LevelModel> then = schedule_.model(*next, level, *now);
-  if (std::string refused = strain_limit_violations(then->limits(), x, 1); !refused.empty())
-    return {0.5, std::move(refused)};  // a limit gives no fraction: try half
-  if (StepLimit limit = obstacle_step_limit(*now, *then, x); limit.fraction < 1) return limit;
-  set_load(level, next);
-  levels_[level] = {next, next, std::move(then)};
-  return {};
-}
-
-void check_schedule_on_levels(const Experiment& e, const Scene& scene, const LoadSchedule& schedule,
-                              ConfigErrors& errors) {
-  const std::vector<ScheduleKey>& keys = e.parameters.schedule.keys;
-  const std::vector<Level>& levels = scene.hierarchy.levels;
-  for (std::size_t k = 0; k < keys.size(); ++k) {
-    const LoadPart part = keys[k].targets[0].part;
-    const std::size_t item = keys[k].targets[0].item;
-    if (part == LoadPart::contact) continue;
-    const bool of_vertices = part == LoadPart::pins || part == LoadPart::handles;
-    const Location where = e.source.find("schedule")->find("keys")->items[k].find("values")->where;
-    // Whether check(load, faults) finds no fault at any of these times; appends those of the first that has.
-    const auto hold_at = [&](const std::vector<double>& times, const auto& check) {
-      for (const double time : times) {
-        ConfigErrors own;
-        try {
-          // With the values that all other keys have at that time: two keys may move the bounds of one
-          // region.
-          check(*schedule.at(schedule.keys().values_at(time)), own);
-        } catch (const std::runtime_error& problem) {
-          own.push_back({where, problem.what()});
-        }
-        for (const ConfigError& error : own)
-          errors.push_back({where, "key \"" + excerpt(keys[k].parameter) + "\" at pseudo-time " +
-                                       three_digits(time) + ": " + error.message});
-        if (!own.empty()) return false;
-      }
-      return true;
-    };
-    const bool bound = hold_at(keys[k].times, [&](const LoadState& load, ConfigErrors& own) {
-      if (of_vertices) check_selection(*load.parameters, part, item, where, levels, own);
-      if (own.empty() && part != LoadPart::pins) bind_energies(load, scene);
-    });
-    if (bound && of_vertices)
-      hold_at(times_with_between(keys[k].times), [&](const LoadState& load, ConfigErrors& own) {
-        check_shared_vertices(*load.parameters, part, item, where, levels, scene.placed, own);
-      });
-  }
+std::unique_ptr<LoadStepping> load_stepping_of(const Experiment& e, const Scene& scene,
+                                               ConfigErrors& errors) {
+  LoadSchedule schedule(e, scene);
+  const std::size_t before = errors.size();
+  check_on_levels(e, scene, schedule, errors);
+  if (errors.size() > before) return nullptr;
+  return std::make_unique<ScheduleStepping>(std::move(schedule), scene);
 }
 
 }  // namespace drape

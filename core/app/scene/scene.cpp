@@ -6,7 +6,6 @@
 
 #include "core/app/experiment/cloth.h"
 #include "core/app/scene/boundary_conditions.h"
-#include "core/app/scene/following_pins.h"
 #include "core/app/scene/load_schedule.h"
 #include "core/kernel/files/message_text.h"
 #include "core/numerics/mesh/check.h"
@@ -195,12 +194,7 @@ std::unique_ptr<Scene> build_scene(const Experiment& e, ConfigErrors& errors,
     if (!errors.empty()) return nullptr;
   }
   scene->following = following_vertices(e, *scene, errors);
-  if (!p.schedule.keys.empty()) {
-    LoadSchedule schedule(e, *scene);
-    check_schedule_on_levels(e, *scene, schedule, errors);
-    if (!errors.empty()) return nullptr;
-    scene->load_stepping = std::make_unique<ScheduleStepping>(std::move(schedule), *scene);
-  }
+  if (!p.schedule.keys.empty()) scene->load_stepping = load_stepping_of(e, *scene, errors);
   if (!errors.empty()) return nullptr;
   scene->reference = read_reference(e, scene->hierarchy, errors);
   return errors.empty() ? std::move(scene) : nullptr;

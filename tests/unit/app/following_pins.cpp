@@ -1,6 +1,6 @@
 // Pins that follow an obstacle, by a mesh, an animation or a shape.
 
-#include "core/app/scene/following_pins.h"
+#include "core/app/scene/boundary_conditions.h"
 
 #include <Eigen/Geometry>
 #include <catch2/catch.hpp>
