@@ -173,9 +173,9 @@ int run_fit(FitRequest r, const Registry& registry) {
   try {
     const FitEnd end = find_factor(
         [&](double factor) -> std::optional<double> {
-          const bool is_new = !runs.has(factor);
+          const std::size_t before = runs.samples().size();
           const FitSample& sample = runs.at(factor);
-          if (is_new) tell(setup, sample);
+          if (runs.samples().size() > before) tell(setup, sample);
           if (sample.values.empty()) return std::nullopt;
           const double residual = sample.median() - r.target;
           return std::abs(residual) <= r.tolerance / 100 * std::abs(r.target) ? 0 : residual;

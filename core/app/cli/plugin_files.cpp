@@ -1,6 +1,5 @@
 #include <unistd.h>
 
-#include <chrono>
 #include <cstdlib>
 #include <functional>
 #include <iostream>
@@ -12,6 +11,7 @@
 #include "core/kernel/files/file.h"
 #include "core/kernel/files/message_text.h"
 #include "core/kernel/files/string_utils.h"
+#include "core/kernel/threads/stopwatch.h"
 
 namespace drape {
 
@@ -65,10 +65,9 @@ fs::path compiled(const fs::path& source) {
   const fs::path made = folder / (std::to_string(getpid()) + ".part");
   words.insert(words.end(), {"-o", made.string(), "-L" + libraries.string(), "-ldrape"});
   std::cerr << "compiling " << printable(source.string()) << std::flush;
-  const auto begin = std::chrono::steady_clock::now();
+  const Stopwatch clock;
   const ProgramOutput said = run_program(words);
-  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-  std::cerr << ": " << three_digits(seconds) << " s\n" << printable_lines(said.err);
+  std::cerr << ": " << three_digits(clock.seconds()) << " s\n" << printable_lines(said.err);
   if (said.exit.code == 127)
     throw std::runtime_error("--plugin: there is no compiler " + words[0] +
                              "; install it, or name one of its kind in the variable CXX");

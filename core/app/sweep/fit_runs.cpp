@@ -2,13 +2,64 @@
 
 #include <algorithm>
 
+#include "core/app/experiment/experiment_path.h"
+#include "core/app/files/csv.h"
 #include "core/app/report/run_data.h"
 #include "core/app/sweep/local_engine.h"
+#include "core/kernel/files/message_text.h"
 #include "core/kernel/files/number_text.h"
+#include "core/kernel/files/string_utils.h"
 #include "core/kernel/plugin/parameters.h"
 
 namespace drape {
 namespace {
+
+OptionalNumber value_of(const ConfigNode* node) {
+  return node && !node->quoted ? number_of(node->scalar) : std::nullopt;
+}
+
+/// Appends the paths of all numbers in a node.
+void list_numbers(const ConfigNode& node, const std::string& path, std::vector<std::string>& paths) {
+  if (value_of(&node)) paths.push_back(path);
+  const std::string before = path.empty() ? "" : path + ".";
+  for (const auto& [key, value] : node.entries) list_numbers(value, before + key, paths);
+  for (std::size_t k = 0; k < node.items.size(); ++k)
+    list_numbers(node.items[k], before + std::to_string(k), paths);
+}
+
+/// The numbers of a group: of a section's path with a part of a key's name.
+std::vector<ScaledKey> group(const ConfigNode& resolved, const std::string& path) {
+  static const ConfigNode plain = [] {
+    const ExperimentParameters parameters;
+    return experiment_schema().write(&parameters);
+  }();
+  std::vector<ScaledKey> changed, defaults;
+  const std::size_t dot = path.rfind('.');
+  const ConfigNode* section = dot == std::string::npos ? nullptr : value_at(resolved, path.substr(0, dot));
+  if (!section) return {};
+  for (const auto& [key, node] : section->entries) {
+    const OptionalNumber value = value_of(&node);
+    if (!value || *value == 0 || key.find(path.substr(dot + 1)) == std::string::npos) continue;
+    const std::string own = path.substr(0, dot + 1) + key;
+    const bool is_default = value_of(value_at(plain, own)) == value;
+    (is_default ? defaults : changed).push_back({own, *value});
+  }
+  return changed.empty() ? defaults : changed;
+}
+
+std::string fault(const ConfigNode& resolved, const std::string& path) {
+  const std::string name = "\"" + excerpt(path) + "\"";
+  if (const ConfigNode* node = value_at(resolved, path)) {
+    if (node->kind == ConfigNode::Kind::null)
+      return name + " is not set, so there is nothing to scale; give it a value with --set";
+    return name + " is " + (value_of(node) ? "0, which no factor changes" : node->shown() + ", not a number");
+  }
+  std::vector<std::string> all;
+  list_numbers(resolved, "", all);
+  const std::string near = nearest_word(path, all);
+  return "the experiment has no number " + name +
+         (near.empty() ? "; `drape describe experiment` lists its keys" : "; did you mean \"" + near + "\"?");
+}
 
 const std::string prefix = "factor=";
 
@@ -20,6 +71,23 @@ double six_digits(double value) { return parse_number(general_text(value, 6)).va
 std::string first_line(const std::string& text) { return text.substr(0, text.find('\n')); }
 
 }  // namespace
+
+std::vector<ScaledKey> scaled_keys(const Experiment& experiment, const std::vector<std::string>& paths,
+                                   const std::string& option, ConfigErrors& errors) {
+  std::vector<ScaledKey> keys;
+  for (const std::string& path : paths) {
+    const ConfigNode* node = value_at(experiment.resolved, path);
+    const double value = value_of(node).value_or(0);
+    std::vector<ScaledKey> named{{path, value}};
+    if (!node) named = group(experiment.resolved, path);
+    if (named.empty() || (node && value == 0))
+      errors.push_back({{option, 0, 0}, fault(experiment.resolved, path)});
+    for (const ScaledKey& key : named)
+      if (std::none_of(keys.begin(), keys.end(), [&](const ScaledKey& own) { return own.path == key.path; }))
+        keys.push_back(key);
+  }
+  return keys;
+}
 
 std::optional<Sweep> FitSetup::sweep(const std::set<double>& factors, const Registry& registry,
                                      ConfigErrors& errors) const {
@@ -83,11 +151,6 @@ const FitSample& FitRuns::at(double factor) {
   folder_.refresh();
   if (options_.stop && options_.stop()) throw FitStopped();
   return samples_.emplace_back(measured(*sweep, factor));
-}
-
-bool FitRuns::has(double factor) const {
-  return std::any_of(samples_.begin(), samples_.end(),
-                     [&](const FitSample& sample) { return sample.factor == factor; });
 }
 
 FitSample FitRuns::measured(const Sweep& sweep, double factor) const {

@@ -2,10 +2,22 @@
 
 #include <set>
 
-#include "core/app/experiment/scaled_keys.h"
 #include "core/app/sweep/sweep_folder.h"
 
 namespace drape {
+
+/// A number of an experiment that a fit scales.
+struct ScaledKey {
+  std::string path;
+  double value;  ///< in the experiment
+};
+
+/// The numbers that paths name, each once. A path may also be that of a section with a part of its keys'
+/// names: "material.bending" stands for all numbers of `material` with "bending" in their names that are not
+/// defaults or, if all are, for the defaults. Appends an error for a path that names no number, with the
+/// nearest one, and for 0, which no factor changes; `option` is its place.
+std::vector<ScaledKey> scaled_keys(const Experiment& experiment, const std::vector<std::string>& paths,
+                                   const std::string& option, ConfigErrors& errors);
 
 /// The runs of a fit: one experiment with some of its numbers times a factor, from several starts.
 struct FitSetup {
@@ -45,7 +57,6 @@ class FitRuns {
 
   /// Executes what is missing. Throws FitStopped, and std::runtime_error for a folder that holds other runs.
   const FitSample& at(double factor);
-  bool has(double factor) const;                                      ///< whether the sample is made already
   const std::vector<FitSample>& samples() const { return samples_; }  ///< in the order of evaluation
 
  private:

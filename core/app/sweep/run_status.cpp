@@ -1,6 +1,5 @@
 #include "core/app/sweep/run_status.h"
 
-#include <chrono>
 #include <cstring>
 #include <fstream>
 #include <iterator>
@@ -21,10 +20,6 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr const char* words[] = {"pending", "running", "converged", "not_converged", "failed", "cancelled"};
-
-double now() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
 
 /// The results of a run in `files`, and what to do if they are damaged.
 JsonFile results_file(const RunFiles& files) {
@@ -152,14 +147,14 @@ RunProcess::RunProcess(RunFiles files, const SweepOptions& options, double time_
     : files_(std::move(files)),
       resumes_(is_resumable(files_, read_status(files_), options.threads)),
       status_(begin(files_, options.threads, resumes_)),
-      began_(now() - status_.seconds),
+      clock_(status_.seconds),
       time_limit_(time_limit),
       process_(command(files_, options, resumes_), files_.log(), files_.log()) {}
 
 bool RunProcess::ended() {
   if (status_.state != RunState::running) return true;
   const std::optional<Exit> exit = process_.poll();
-  const double seconds = now() - began_;
+  const double seconds = clock_.seconds();
   if (!exit) {
     if (time_limit_ > 0 && seconds > time_limit_ && !too_slow_) {
       too_slow_ = true;

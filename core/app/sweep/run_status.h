@@ -8,6 +8,7 @@
 #include "core/app/experiment/exit_codes.h"
 #include "core/app/sweep/process.h"
 #include "core/app/sweep/sweep.h"
+#include "core/kernel/threads/stopwatch.h"
 
 namespace drape {
 
@@ -68,7 +69,7 @@ class RunProcess {
   RunFiles files_;
   bool resumes_;
   RunStatus status_;
-  double began_;  // as if it had run without a break
+  Stopwatch clock_;  // of all starts that it resumes
   double time_limit_;
   Process process_;
   bool stopped_ = false, too_slow_ = false;
