@@ -165,7 +165,7 @@ int show_result(const SweepFolder& folder, const FitRequest& request, const FitS
 int run_fit(FitRequest r, const Registry& registry) {
   const FitSetup setup = setup_of(r, registry);
   const SweepFolder folder(r.folder);
-  const FolderLock lock(folder.path());
+  const auto lock = folder.lock();
   r.stop = [] { return stop_signal() != 0; };
   r.workers = std::max<int>(1, core_count() / r.threads);
   FitRuns runs(setup, folder, r, registry);

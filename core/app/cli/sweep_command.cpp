@@ -70,7 +70,7 @@ void check_options(const SweepRequest& r) {
 
 int run_local(const Sweep& sweep, const SweepFolder& folder, SweepRequest r) {
   if (!r.allow_memory) MemoryEstimate(sweep, folder).require(sweep, folder, machine_memory());
-  const FolderLock lock(folder.path());
+  const auto lock = folder.lock();
   refuse_while_queued(folder);
   if (r.workers == 0) r.workers = core_count() / r.threads;
   folder.prepare(sweep, r.threads);
@@ -92,7 +92,7 @@ int run_on_slurm(const Sweep& sweep, const SweepFolder& folder, const SweepReque
   }
   std::optional<SlurmJobs> jobs;
   {
-    const FolderLock lock(folder.path());
+    const auto lock = folder.lock();
     refuse_while_queued(folder);
     folder.prepare(sweep, r.threads);
     const int submitted = begun(folder, [&] {

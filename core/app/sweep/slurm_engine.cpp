@@ -72,6 +72,19 @@ bool in_queue(const SlurmJobs& jobs) {
                            (said.exit.code == 127 ? "squeue is not installed here" : one_line(said.err)));
 }
 
+/// As `in_queue`, but tolerates minutes without an answer of Slurm's controller.
+bool still_in_queue(const SlurmJobs& jobs, int& silent) {
+  try {
+    const bool queued = in_queue(jobs);
+    silent = 0;
+    return queued;
+  } catch (const std::runtime_error& error) {
+    if (++silent > 600) throw;
+    if (silent == 1) std::fprintf(stderr, "warning: %s; asking again\n", printable(error.what()).c_str());
+    return true;
+  }
+}
+
 }  // namespace
 
 std::optional<SlurmJobs> submitted_jobs(const SweepFolder& folder) {
@@ -130,23 +143,6 @@ SlurmJobs submit(const Sweep& sweep, const SweepFolder& folder, const std::vecto
   remember();
   return jobs;
 }
-
-namespace {
-
-/// As `in_queue`, but tolerates minutes without an answer of Slurm's controller.
-bool still_in_queue(const SlurmJobs& jobs, int& silent) {
-  try {
-    const bool queued = in_queue(jobs);
-    silent = 0;
-    return queued;
-  } catch (const std::runtime_error& error) {
-    if (++silent > 600) throw;
-    if (silent == 1) std::fprintf(stderr, "warning: %s; asking again\n", printable(error.what()).c_str());
-    return true;
-  }
-}
-
-}  // namespace
 
 bool wait_for(const SweepFolder& folder, const SlurmJobs& jobs, const std::function<bool()>& stop,
               bool quiet) {

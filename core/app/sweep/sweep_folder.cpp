@@ -1,12 +1,12 @@
 #include "core/app/sweep/sweep_folder.h"
 
 #include <algorithm>
-#include <cstdio>
 #include <set>
 #include <sstream>
 
 #include "core/app/files/json_file.h"
 #include "core/kernel/files/file.h"
+#include "core/kernel/files/number_text.h"
 #include "core/kernel/files/string_utils.h"
 
 namespace drape {
@@ -164,35 +164,23 @@ Json SweepFolder::finalize() const {
   return refresh();
 }
 
-namespace {
-
-fs::path lock_in(const fs::path& folder) {
+std::unique_ptr<FileLock> SweepFolder::lock() const {
   std::error_code error;
-  fs::create_directories(folder, error);
-  if (!fs::is_directory(folder))
-    throw std::runtime_error(folder.string() + ": cannot make the sweep's folder" +
+  fs::create_directories(path_, error);
+  if (!fs::is_directory(path_))
+    throw std::runtime_error(path_.string() + ": cannot make the sweep's folder" +
                              (error ? " (" + error.message() + ")" : "") + "; name another with --out");
-  return folder / "sweep.lock";
-}
-
-}  // namespace
-
-FolderLock::FolderLock(const fs::path& folder) : lock_(lock_in(folder)) {
+  auto lock = std::make_unique<FileLock>(path_ / "sweep.lock");
   // Wait a moment for the runs of a sweep that has just been killed.
-  if (!lock_.acquire(1))
-    throw std::runtime_error(folder.string() + ": another `drape sweep` uses this folder (" + lock_.holder() +
+  if (!lock->acquire(1))
+    throw std::runtime_error(path_.string() + ": another `drape sweep` uses this folder (" + lock->holder() +
                              "); wait for it, or name another folder with --out");
+  return lock;
 }
 
 std::string duration_text(double seconds) {
-  char text[32];
-  if (seconds < 90)
-    std::snprintf(text, sizeof text, "%.1f s", seconds);
-  else if (seconds < 5400)
-    std::snprintf(text, sizeof text, "%.0f min", seconds / 60);
-  else
-    std::snprintf(text, sizeof text, "%.1f h", seconds / 3600);
-  return text;
+  if (seconds < 90) return fixed_text(seconds, 1) + " s";
+  return seconds < 5400 ? fixed_text(seconds / 60, 0) + " min" : fixed_text(seconds / 3600, 1) + " h";
 }
 
 std::string list_of_runs(const nlohmann::ordered_json& sweep) {

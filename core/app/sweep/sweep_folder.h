@@ -1,5 +1,7 @@
 #pragma once
 
+#include <memory>
+
 #include "core/app/files/file_lock.h"
 #include "core/app/sweep/run_status.h"
 #include "core/app/sweep/sweep.h"
@@ -17,9 +19,12 @@ class SweepFolder {
   std::filesystem::path jobs() const { return slurm() / "jobs.json"; }  ///< the submitted ones
   RunFiles files(const std::string& folder) const { return {path_ / folder}; }
 
+  /// Locks the folder, which is made if necessary, for this process and its runs. Throws std::runtime_error,
+  /// naming the process, if another one holds it.
+  std::unique_ptr<FileLock> lock() const;
   /// Prepares the folder for a sweep: updates the statuses of interrupted runs and writes every run's config
   /// and sweep.json. Throws std::runtime_error for a folder with other contents, with runs of a different
-  /// experiment or number of threads. Only under a FolderLock.
+  /// experiment or number of threads. Only under its lock.
   void prepare(const Sweep& sweep, int threads) const;
   /// Indices of the runs without results; failed ones only with `retry_failed`, expected refusals never.
   std::vector<std::size_t> missing(const Sweep& sweep, bool retry_failed) const;
@@ -42,16 +47,6 @@ inline bool refused_as_expected(const SweepRun& run, const RunStatus& status) {
 
 /// The same of an entry of sweep.json's runs.
 bool is_refused_as_expected(const nlohmann::ordered_json& run);
-
-/// Locks a sweep's folder for one process and its runs.
-class FolderLock {
- public:
-  /// Creates the folder if necessary. Throws std::runtime_error, naming the process, if another one holds it.
-  explicit FolderLock(const std::filesystem::path& folder);
-
- private:
-  FileLock lock_;
-};
 
 /// "3.2 s", "4 min", "1.5 h"
 std::string duration_text(double seconds);
