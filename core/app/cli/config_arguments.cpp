@@ -1,11 +1,11 @@
 #include "core/app/cli/config_arguments.h"
 
 #include <algorithm>
-#include <cmath>
 #include <cstdio>
 #include <iostream>
 #include <limits>
 
+#include "core/app/files/csv.h"
 #include "core/app/run/start_repair.h"
 #include "core/app/scene/scene_summary.h"
 #include "core/kernel/files/message_text.h"
@@ -26,8 +26,8 @@ OptionCheck positive_integer() {
 
 OptionCheck number_of_at_least(double least) {
   return [least](const std::string& text) {
-    const std::optional<double> number = parse_number(text);
-    return number && std::isfinite(*number) && *number >= least
+    const OptionalNumber number = number_of(text);
+    return number && *number >= least
                ? ""
                : "must be a number of at least " + three_digits(least) + ", not " + excerpt(text);
   };

@@ -8,6 +8,7 @@
 #include "core/app/cli/config_arguments.h"
 #include "core/app/experiment/declared_metrics.h"
 #include "core/app/experiment/exit_codes.h"
+#include "core/app/files/csv.h"
 #include "core/app/files/json_file.h"
 #include "core/app/files/machine.h"
 #include "core/app/files/yaml_file.h"
@@ -18,7 +19,6 @@
 #include "core/kernel/files/message_text.h"
 #include "core/kernel/files/number_text.h"
 #include "core/kernel/files/string_utils.h"
-#include "core/kernel/plugin/parameters.h"
 #include "core/kernel/threads/parallel.h"
 
 namespace drape {
@@ -207,10 +207,7 @@ void add_fit_command(Commands& commands) {
       ->type_name("NUMBER")
       ->required()
       ->check([](const std::string& text) {
-        const std::optional<double> number = parse_number(text);
-        return number && std::isfinite(*number) && *number != 0
-                   ? ""
-                   : "must be a number other than 0, not " + excerpt(text);
+        return number_of(text).value_or(0) != 0 ? "" : "must be a number other than 0, not " + excerpt(text);
       });
   command
       .add_option("--by", r.by,

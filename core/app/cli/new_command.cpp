@@ -1,5 +1,3 @@
-#include <cerrno>
-#include <cstdio>
 #include <filesystem>
 #include <iostream>
 #include <stdexcept>
@@ -8,6 +6,7 @@
 #include "core/app/cli/commands.h"
 #include "core/app/experiment/exit_codes.h"
 #include "core/app/experiment/experiment.h"
+#include "core/kernel/files/file.h"
 #include "core/kernel/files/message_text.h"
 
 namespace drape {
@@ -85,19 +84,15 @@ int write_first_experiment(std::filesystem::path file) {
   ConfigErrors errors;
   check_name("the experiment's name", name, {}, errors);
   if (!errors.empty()) throw std::runtime_error(errors[0].message);
-  // "x": fails if the file exists.
-  std::FILE* out = std::fopen(file.c_str(), "wx");
-  if (!out && errno == EEXIST)
+  std::error_code unknown;
+  if (std::filesystem::exists(std::filesystem::symlink_status(file, unknown)))
     throw std::runtime_error(printable(file.string()) +
                              ": exists already; name another file, as in drape new " + printable(name) +
                              "_2.yaml");
-  const std::string text = out ? text_of(file.string(), name) : "";
-  const bool written = out && std::fwrite(text.data(), 1, text.size(), out) == text.size();
-  const int error = errno;
-  if (!out || std::fclose(out) != 0 || !written) {
-    if (out) std::remove(file.c_str());
-    throw std::runtime_error("cannot write " + printable(file.string()) + ": " +
-                             std::generic_category().message(error));
+  try {
+    write_file(file, text_of(file.string(), name));
+  } catch (const WriteError& error) {
+    throw std::runtime_error(error.what());  // a refusal: no run was begun
   }
   std::cout << "written: " << printable(file.string()) << "\nnext: drape run " << printable(file.string())
             << "\n";

@@ -1,41 +1,45 @@
-// The commands that read results: export, report, compare and table.
+// The commands that read results: export, figures, report, compare and table.
 
-#include <cmath>
+#include <unistd.h>
+
+#include <cstdlib>
 #include <iostream>
 #include <map>
 
 #include "core/app/cli/commands.h"
 #include "core/app/cli/config_arguments.h"
 #include "core/app/experiment/exit_codes.h"
+#include "core/app/files/csv.h"
 #include "core/app/report/compare.h"
 #include "core/app/report/pictures.h"
 #include "core/app/report/report.h"
 #include "core/app/report/run_collection.h"
 #include "core/app/report/run_export.h"
 #include "core/app/report/run_table.h"
+#include "core/app/sweep/process.h"
 #include "core/kernel/files/message_text.h"
 #include "core/kernel/files/string_utils.h"
-#include "core/kernel/plugin/parameters.h"
 
 namespace drape {
 
 namespace {
 
-using Folders = std::vector<std::filesystem::path>;
+namespace fs = std::filesystem;
+using Folders = std::vector<fs::path>;
 
 const std::map<std::string, TableFormat> formats = {
     {"md", TableFormat::markdown}, {"csv", TableFormat::csv}, {"json", TableFormat::json}};
 
 /// The vector that "X,Y,Z" spells; nothing for another text, and for a vector whose length says no direction.
 std::optional<Eigen::Vector3d> direction_of(const std::string& text) {
-  std::vector<double> numbers;
-  for (const std::string& part : split(text, ',')) {
-    const std::optional<double> number = parse_number(part);
-    if (!number || !std::isfinite(*number)) return {};
-    numbers.push_back(*number);
+  const std::vector<std::string> parts = split(text, ',');
+  if (parts.size() != 3) return {};
+  Eigen::Vector3d direction;
+  for (int k = 0; k < 3; ++k) {
+    const OptionalNumber number = number_of(parts[k]);
+    if (!number) return {};
+    direction[k] = *number;
   }
-  if (numbers.size() != 3) return {};
-  const Eigen::Vector3d direction(numbers[0], numbers[1], numbers[2]);
   const double length = direction.norm();
   if (!(length > 1e-9 && length < 1e9)) return {};
   return direction;
@@ -57,7 +61,34 @@ int export_states(const std::string& folder, const std::string& file, const Expo
   return exit_done;
 }
 
-int report(const Folders& folders, std::filesystem::path page, std::optional<int> picture_width) {
+constexpr const char* figures_program = R"(import sys
+try:
+    import matplotlib
+    import drape.figures as figures
+except ImportError as error:
+    print(f'error: figures are made by the Python module of drape and matplotlib, which {sys.executable} lacks '
+          f'({error}); build it with make python, or name its folder in PYTHONPATH', file=sys.stderr)
+    sys.exit(2)
+sys.exit(figures.main())
+)";
+
+/// Becomes python3, whose exit code is the command's. Throws std::runtime_error for a folder without results,
+/// and if python3 does not start.
+int make_figures(const std::string& folder, const std::string& out) {
+  require_run_or_sweep(folder);
+  // In the build tree the package lies beside bin/, once installed where Python looks for it.
+  if (const fs::path built = own_program().parent_path().parent_path() / "python";
+      fs::exists(built / "drape")) {
+    const char* path = std::getenv("PYTHONPATH");
+    setenv("PYTHONPATH", (built.string() + (path && *path ? std::string(":") + path : "")).c_str(), 1);
+  }
+  const char* python = std::getenv("DRAPE_PYTHON");
+  python = python && *python ? python : "/usr/bin/python3";  // for which `make python` builds the module
+  execl(python, python, "-c", figures_program, folder.c_str(), "--out", out.c_str(), nullptr);
+  throw std::runtime_error(std::string(python) + ": cannot be started; name a Python in DRAPE_PYTHON");
+}
+
+int report(const Folders& folders, fs::path page, std::optional<int> picture_width) {
   const bool several = folders.size() > 1 || is_sweep(folders.front());
   if (!several && !page.empty())
     throw std::runtime_error(
@@ -129,10 +160,24 @@ void add_export_command(Commands& commands) {
   command.add_flag("--overwrite", o->overwrite, "replace existing files");
 }
 
+void add_figures_command(Commands& commands) {
+  struct Options {
+    std::string folder, out;
+  };
+  const auto o = std::make_shared<Options>();
+  CLI::App& command = commands.add(
+      "figures", "write a paper's figures of a run or a sweep: SVG, PNG, CSV and LaTeX",
+      "drape figures results/sphere -o figures", [o] { return make_figures(o->folder, o->out); });
+  command.add_option("folder", o->folder, "results folder, or a sweep's")->required();
+  command.add_option("-o,--out", o->out, "folder of the figures, which is made")
+      ->type_name("DIR")
+      ->required();
+}
+
 void add_report_commands(Commands& commands) {
   struct Options {
     Folders folders;
-    std::filesystem::path out;
+    fs::path out;
     std::optional<int> picture_width;
     std::vector<std::string> bounds, columns;
     std::string format = "md";

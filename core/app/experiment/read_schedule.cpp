@@ -1,9 +1,9 @@
 #include <algorithm>
-#include <cmath>
 #include <set>
 
 #include "core/app/experiment/experiment_path.h"
 #include "core/app/experiment/read_experiment.h"
+#include "core/app/files/csv.h"
 #include "core/kernel/files/message_text.h"
 #include "core/kernel/files/string_utils.h"
 
@@ -24,14 +24,11 @@ bool is_changeable(const std::string& path) {
 /// A number or a list of them; empty for anything else.
 std::vector<double> numbers_of(const ConfigNode& node) {
   std::vector<double> numbers;
-  const auto add = [&](const ConfigNode& scalar) {
-    const auto number = scalar.kind == NodeKind::scalar ? parse_number(scalar.scalar) : std::nullopt;
-    if (number && std::isfinite(*number)) numbers.push_back(*number);
-    return number && std::isfinite(*number);
-  };
-  if (node.kind != NodeKind::list) return add(node) ? numbers : std::vector<double>();
-  for (const ConfigNode& item : node.items)
-    if (!add(item)) return {};
+  for (const ConfigNode& item : node.kind == NodeKind::list ? node.items : std::vector{node}) {
+    const OptionalNumber number = number_of(item.scalar);
+    if (!number) return {};
+    numbers.push_back(*number);
+  }
   return numbers;
 }
 
