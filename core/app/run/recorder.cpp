@@ -7,7 +7,6 @@
 #include "core/app/experiment/declared_metrics.h"
 #include "core/app/files/json_file.h"
 #include "core/app/files/machine.h"
-#include "core/app/run/iteration_columns.h"
 #include "core/app/run/recorder_files.h"
 #include "core/kernel/files/file.h"
 #include "core/kernel/files/number_text.h"
@@ -20,11 +19,30 @@ namespace drape {
 
 namespace {
 
-std::string cell_text(int value, int) { return std::to_string(value); }
-std::string cell_text(double value, int digits) { return general_text(value, digits); }
-template <class Number>
-std::string cell_text(const std::optional<Number>& value, int digits) {
-  return value && std::isfinite(double(*value)) ? cell_text(*value, digits) : "";
+/// To so many significant digits; empty for a number that is absent or not finite.
+std::string cell(const std::optional<double>& value, int digits) {
+  return value && std::isfinite(*value) ? general_text(*value, digits) : "";
+}
+
+/// The cells of iterations.csv after `method`, each behind its column's name; `intersections` is the number
+/// of pairs, where every iteration is checked.
+std::vector<std::pair<const char*, std::string>> cells_of(const IterationRow& row,
+                                                          std::optional<int> intersections) {
+  return {{"level", std::to_string(row.level)},
+          {"step", std::to_string(row.step)},
+          {"iteration", std::to_string(row.iteration)},
+          {"seconds", general_text(row.seconds, 9)},
+          {"energy", general_text(row.energy, 17)},
+          {"decrement", general_text(row.decrement, 9)},
+          {"force_residual", general_text(row.force_residual, 9)},
+          {"step_length", general_text(row.step_length, 9)},
+          {"proxy_energy", cell(row.proxy_energy, 17)},
+          {"step_size", general_text(row.step_size, 9)},
+          {"contacts", cell(row.contacts, 10)},
+          {"smallest_gap", cell(row.smallest_gap, 6)},
+          {"intersections", cell(intersections, 10)},
+          {"flops", general_text(row.flops, 9)},
+          {"time", cell(row.time, 9)}};
 }
 
 }  // namespace
@@ -42,8 +60,7 @@ Recorder::Recorder(const RunFolder& folder, const Experiment& experiment, const 
 Recorder::Recorder(const RunFolder& folder, const Experiment& experiment, const Scene& scene)
     : Recorder(folder, experiment, scene, std::ios::out) {
   iterations_ << "method";
-  RecordedIteration none;
-  for_each_column(none, [&](const char* name, const auto&, int) { iterations_ << ',' << name; });
+  for (const auto& [name, cell] : cells_of({}, {})) iterations_ << ',' << name;
   iterations_ << std::endl;
   require_written(iterations_, "iterations.csv");
   const ExperimentParameters& p = experiment.parameters;
@@ -76,7 +93,8 @@ Recorder::Recorder(const RunFolder& folder, const Experiment& experiment, const 
   if (scene_.load_stepping && !s_.last_load.values.empty())
     scene_.load_stepping->restore(scene_.finest(), s_.last_load);
   reset_peak_memory();
-  restored_ = write_again();
+  write_again();
+  restored_ = std::exchange(written_, {});
   save();
   log({{"event", "run_resumed"}, {"method", s_.method}});
   for (const std::string& file : restored_) log({{"event", "file_restored"}, {"file", file}});
@@ -129,11 +147,11 @@ void Recorder::level_started(int level) {
   log({{"event", "level_started"}, {"method", s_.method}, {"level", level}});
 }
 
-Recorder::Json Recorder::intersections(int level, const Positions& x) {
+std::optional<int> Recorder::intersections(int level, const Positions& x) {
   const auto& contacts = scene_.model(level)->contacts();
-  if (contacts.empty()) return nullptr;
+  if (contacts.empty()) return std::nullopt;
   constexpr std::size_t max_logged = 10;  // of each contact model
-  std::size_t count = 0;
+  int count = 0;
   for (const auto& contact : contacts) {
     const std::vector<Intersection> found = contact->intersections(x);
     for (std::size_t k = 0; k < std::min(found.size(), max_logged); ++k)
@@ -141,24 +159,23 @@ Recorder::Json Recorder::intersections(int level, const Positions& x) {
            {"method", s_.method},
            {"level", level},
            {"pair", to_string(found[k])}});
-    count += found.size();
+    count += static_cast<int>(found.size());
   }
   if (count > 0) s_.intersection_free = s_.method_intersection_free = false;
   return count;
 }
 
 void Recorder::iteration(const IterationRow& r, const Positions& x) {
-  RecordedIteration row{r, {}};
+  IterationRow row = r;
   row.seconds -= s_.overhead;
   s_.last = {std::max(row.seconds - s_.spent.seconds, 0.0), s_.last.iterations + 1, r.flops};
   row.flops += s_.spent.flops;
   if (snapshots_.any()) snapshots_.iteration(s_.last, x);
+  std::optional<int> crossing;
   if (experiment_.parameters.check_intersections == IntersectionCheck::every_step)
-    if (const Json count = intersections(r.level, x); !count.is_null()) row.intersections = count.get<int>();
+    crossing = intersections(r.level, x);
   iterations_ << s_.method;
-  for_each_column(row, [&](const char*, const auto& value, int digits) {
-    iterations_ << ',' << cell_text(value, digits);
-  });
+  for (const auto& [name, cell] : cells_of(row, crossing)) iterations_ << ',' << cell;
   iterations_ << std::endl;
   require_written(iterations_, "iterations.csv");
 }
@@ -172,35 +189,34 @@ Recorder::Json Recorder::state_entry(const LevelResult& r) {
   for (const auto& [name, joules] : model.energy_parts(scene_.placed[r.level]))
     released_parts[name] =
         parts[name].is_null() ? Json() : finite_or_null(joules - parts[name].get<double>());
-  const Json crossing = intersections(r.level, r.x);
-  const bool apart = crossing.is_null() || crossing == 0;
+  const std::optional<int> crossing = intersections(r.level, r.x);
+  const bool apart = crossing.value_or(0) == 0;
   const auto& weights = scene_.hierarchy.weights(experiment_.solver_of(s_.method).interpolation());
   const double on_finest = energy_on_finest(scene_, weights, r.level, r.x);
-  Json entry = {{"level", r.level},
-                {"vertices", level.vertex_count()},
-                {"triangles", level.triangle_count()},
-                {"status", to_string(apart ? r.outcome : Outcome::infeasible)},
-                {"message", apart ? r.message : "the state has intersections; log.jsonl names them"},
-                {"steps", r.steps},
-                {"iterations", r.iterations},
-                {"from_initial_state", r.from_initial_state},
-                {"factorisations", r.factorisations},
-                {"flops", r.flops},
-                {"analyses", r.analyses},
-                {"seconds", r.seconds},
-                {"seconds_by_phase", r.seconds_by_phase},
-                {"energy", finite_or_null(energy)},
-                {"energy_parts", parts},
-                {"energy_on_finest", finite_or_null(on_finest)},
-                {"energy_released", finite_or_null(energy_of_start(scene_) - on_finest)},
-                {"energy_parts_released", released_parts},
-                {"decrement", finite_or_null(r.decrement)},
-                {"force_residual", finite_or_null(r.force_residual)},
-                {"intersections", crossing},
-                {"smallest_gap", r.smallest_gap ? finite_or_null(*r.smallest_gap) : Json()},
-                {"contact_stiffness", r.contact_stiffness},
-                {"mesh", level_file(s_.method, r.level, ".ply")}};
-  return entry;
+  return {{"level", r.level},
+          {"vertices", level.vertex_count()},
+          {"triangles", level.triangle_count()},
+          {"status", to_string(apart ? r.outcome : Outcome::infeasible)},
+          {"message", apart ? r.message : "the state has intersections; log.jsonl names them"},
+          {"steps", r.steps},
+          {"iterations", r.iterations},
+          {"from_initial_state", r.from_initial_state},
+          {"factorisations", r.factorisations},
+          {"flops", r.flops},
+          {"analyses", r.analyses},
+          {"seconds", r.seconds},
+          {"seconds_by_phase", r.seconds_by_phase},
+          {"energy", finite_or_null(energy)},
+          {"energy_parts", parts},
+          {"energy_on_finest", finite_or_null(on_finest)},
+          {"energy_released", finite_or_null(energy_of_start(scene_) - on_finest)},
+          {"energy_parts_released", released_parts},
+          {"decrement", finite_or_null(r.decrement)},
+          {"force_residual", finite_or_null(r.force_residual)},
+          {"intersections", crossing ? Json(*crossing) : Json()},
+          {"smallest_gap", r.smallest_gap ? finite_or_null(*r.smallest_gap) : Json()},
+          {"contact_stiffness", r.contact_stiffness},
+          {"mesh", level_file(s_.method, r.level, ".ply")}};
 }
 
 void Recorder::increment_finished(const IncrementRow& r, const Positions& x) {

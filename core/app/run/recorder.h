@@ -84,26 +84,26 @@ class Recorder : public Observer {
 
   Recorder(const RunFolder& folder, const Experiment& experiment, const Scene& scene,
            std::ios::openmode mode);
-  using Names = std::vector<std::string>;  // of files
-  // These return the names of files that were missing or different.
-  Names write_scene();
+  /// Writes a file of the folder unless it has these bytes already; `written_` takes its name.
+  void write(const std::string& name, const std::string& bytes);
+  void write_scene();
   /// The obstacles under the load that the finest level has reached.
-  Names write_obstacles();
-  Names write_state(const RecordedState& state, const std::string& ply) const;
+  void write_obstacles();
+  void write_state(const RecordedState& state, const std::string& ply);
   std::string ply_of(const RecordedState& state) const;
   /// The states of a method as a ParaView collection.
-  Names write_collection(const std::string& method) const;
+  void write_collection(const std::string& method);
   /// Measures the fields of finished methods again whose file is not as recorded.
-  Names restore_fields();
-  Names write_again();
+  void restore_fields();
+  void write_again();
   /// Writes the obstacles again if load stepping has moved them on.
   void follow_schedule();
   /// Throws WriteError if the last write to iterations.csv or log.jsonl failed.
   void require_written(const std::ofstream& stream, const char* name) const;
   Json& method_entry() { return results_["methods"][s_.method]; }
   Json state_entry(const LevelResult& result);
-  /// Counts intersecting pairs and logs the first ones; null without contact.
-  Json intersections(int level, const Positions& x);
+  /// Counts intersecting pairs and logs the first ones; nothing without contact.
+  std::optional<int> intersections(int level, const Positions& x);
   /// A metric's result; the error of a metric that throws goes to `entry`.
   MetricResult measure(const std::string& name, const Metric& metric, const MetricInput& input, Json& entry);
   /// What the metrics of pairs tell of x and another state of the level; `fields` takes their fields.
@@ -125,7 +125,7 @@ class Recorder : public Observer {
   std::ofstream iterations_, log_;
   Json results_;
   std::map<std::string, std::string> not_measured_;
-  std::vector<std::string> restored_;
+  std::vector<std::string> written_, restored_;  // names of files that were missing or different
   SnapshotRecorder snapshots_;
   ErrorTable errors_;
   State s_;  // without what is kept above: results, snapshots and measured

@@ -92,20 +92,18 @@ void record_abort(const RunFolder& folder, const std::string& cause) {
   }
 }
 
-Recorder::Names Recorder::write_scene() {
-  Names written = write_rest(folder_, scene_);
-  const char* reference = "reference.ply";
-  if (scene_.reference &&
-      write_where_other(folder_.file(reference),
-                        ply_bytes({*scene_.reference, scene_.hierarchy.levels.back().rest.triangles})))
-    written.push_back(reference);
-  const Names obstacles = write_obstacles();
-  written.insert(written.end(), obstacles.begin(), obstacles.end());
-  return written;
+void Recorder::write(const std::string& name, const std::string& bytes) {
+  if (write_where_other(folder_.file(name), bytes)) written_.push_back(name);
 }
 
-Recorder::Names Recorder::write_obstacles() {
-  Names written;
+void Recorder::write_scene() {
+  written_ = write_rest(folder_, scene_);
+  if (scene_.reference)
+    write("reference.ply", ply_bytes({*scene_.reference, scene_.hierarchy.levels.back().rest.triangles}));
+  write_obstacles();
+}
+
+void Recorder::write_obstacles() {
   results_["obstacles"] = Json::array();
   results_["obstacle_names"] = experiment_.obstacle_names();
   for (const TriangleMesh& obstacle : obstacles_of(scene_.finest_model().contacts())) {
@@ -113,9 +111,9 @@ Recorder::Names Recorder::write_obstacles() {
     results_["obstacles"].push_back(name);
     // A run that was killed after its last checkpoint may have moved them since: that is no damage.
     const bool may_differ = scene_.load_stepping && std::filesystem::exists(folder_.file(name));
-    if (write_where_other(folder_.file(name), ply_bytes(obstacle)) && !may_differ) written.push_back(name);
+    write(name, ply_bytes(obstacle));
+    if (may_differ) std::erase(written_, name);
   }
-  return written;
 }
 
 void Recorder::follow_schedule() {
@@ -130,37 +128,33 @@ std::string Recorder::ply_of(const RecordedState& state) const {
   return ply_bytes({state.x, scene_.hierarchy.levels[state.level].rest.triangles}, fields_of(state));
 }
 
-Recorder::Names Recorder::write_state(const RecordedState& state, const std::string& ply) const {
-  Names written;
-  const auto write = [&](const char* extension, const std::string& bytes) {
+void Recorder::write_state(const RecordedState& state, const std::string& ply) {
+  const auto write_level = [&](const char* extension, const std::string& bytes) {
     const std::string name = level_file(state.method, state.level, extension);
-    if (write_where_other(folder_.file(name), bytes)) written.push_back(name);
+    write(name, bytes);
     sync_to_disk(folder_.file(name));  // later checkpoints rely on it
   };
-  write(".ply", ply);
-  write(".vtp", vtp_text({state.x, scene_.hierarchy.levels[state.level].rest.triangles}, fields_of(state)));
-  return written;
+  write_level(".ply", ply);
+  write_level(".vtp",
+              vtp_text({state.x, scene_.hierarchy.levels[state.level].rest.triangles}, fields_of(state)));
 }
 
-Recorder::Names Recorder::write_collection(const std::string& method) const {
+void Recorder::write_collection(const std::string& method) {
   std::vector<std::pair<double, std::string>> meshes;
   for (const RecordedState& state : s_.states)
     if (state.method == method)
       meshes.emplace_back(state.level,  // the collection is in levels/ too
                           level_file(method, state.level, ".vtp").substr(std::strlen("levels/")));
-  const std::string name = "levels/" + method + ".pvd";
-  return write_where_other(folder_.file(name), pvd_text(meshes)) ? Names{name} : Names();
+  write("levels/" + method + ".pvd", pvd_text(meshes));
 }
 
-Recorder::Names Recorder::write_again() {
+void Recorder::write_again() {
   for (const char* part : {"levels", "fields", "obstacles"}) make_folder(folder_.file(part));
-  Names all = write_scene();
-  const auto add = [&](const Names& names) { all.insert(all.end(), names.begin(), names.end()); };
-  for (const RecordedState& state : s_.states) add(write_state(state, ply_of(state)));
+  write_scene();
+  for (const RecordedState& state : s_.states) write_state(state, ply_of(state));
   for (const auto& [name, method] : results_["methods"].items())
-    if (method["status"].get<std::string>() != "running") add(write_collection(name));
-  add(restore_fields());
-  return all;
+    if (method["status"].get<std::string>() != "running") write_collection(name);
+  restore_fields();
 }
 
 }  // namespace drape

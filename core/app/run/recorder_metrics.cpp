@@ -115,8 +115,7 @@ void Recorder::method_finished(const std::vector<LevelResult>& results,
   log({{"event", "method_finished"}, {"method", s_.method}, {"status", entry["status"]}});
 }
 
-Recorder::Names Recorder::restore_fields() {
-  Names written;
+void Recorder::restore_fields() {
   const std::string current = s_.method;
   for (const RecordedState* fine : finest_states())
     for (const RecordedState& coarse : s_.states) {
@@ -130,11 +129,10 @@ Recorder::Names Recorder::restore_fields() {
           continue;
         s_.method = fine->method;  // whose metrics these are
         pair_entry(coarse, *fine);
-        written.push_back(name);
+        written_.push_back(name);
       }
     }
   s_.method = current;
-  return written;
 }
 
 }  // namespace drape
