@@ -6,7 +6,6 @@
 #include <limits>
 
 #include "core/app/files/csv.h"
-#include "core/app/run/start_repair.h"
 #include "core/app/scene/scene_summary.h"
 #include "core/kernel/files/message_text.h"
 #include "core/kernel/plugin/parameters.h"

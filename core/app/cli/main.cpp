@@ -15,9 +15,16 @@
 #include "core/kernel/files/file.h"
 #include "core/kernel/files/message_text.h"
 
+namespace drape {
+
 namespace {
 
-using namespace drape;
+volatile std::sig_atomic_t received = 0;
+
+void on_signal(int number) {
+  if (received) std::_Exit(exit_by_signal + number);
+  received = number;
+}
 
 int run(int argc, char** argv) {
   Commands commands;
@@ -42,7 +49,19 @@ void open_standard_streams() {
 
 }  // namespace
 
+void stop_on_signals() {
+  std::signal(SIGPIPE, SIG_IGN);
+  std::signal(SIGINT, on_signal);
+  std::signal(SIGTERM, on_signal);
+  if (std::signal(SIGHUP, on_signal) == SIG_IGN) std::signal(SIGHUP, SIG_IGN);  // by nohup
+}
+
+int stop_signal() { return received; }
+
+}  // namespace drape
+
 int main(int argc, char** argv) {
+  using namespace drape;
   // Exceeding a file size limit is reported as an error instead of ending the process.
   std::signal(SIGXFSZ, SIG_IGN);
   open_standard_streams();

@@ -1,8 +1,7 @@
-#include "core/app/experiment/contact_configs.h"
-
 #include <algorithm>
 #include <map>
 
+#include "core/app/experiment/read_experiment.h"
 #include "core/kernel/files/message_text.h"
 #include "core/kernel/files/string_utils.h"
 

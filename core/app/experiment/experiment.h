@@ -7,15 +7,27 @@
 #include <utility>
 #include <vector>
 
-#include "core/app/experiment/contact_configs.h"
+#include "core/app/experiment/experiment_parameters.h"
 #include "core/kernel/interfaces/contact_model.h"
 #include "core/kernel/interfaces/metric.h"
 #include "core/kernel/interfaces/refiner.h"
 #include "core/kernel/interfaces/solver.h"
-#include "core/kernel/plugin/registry.h"
+#include "core/kernel/plugin/make.h"
 #include "core/numerics/model/level_model.h"
 
 namespace drape {
+
+/// Everything that one contact model is made from: its own section of an experiment's `contact`, and what it
+/// takes of `obstacles` and `friction`.
+///
+/// An experiment describes its obstacles once, in one list, and friction once. Contact models declare what
+/// they take of it (Parameter::from_experiment): `friction` goes to every model that declares it, an obstacle
+/// to the first model that knows one of its keys (Parameter::identifies_item), such as `shape` or `mesh`. A
+/// plugin sees a single struct of parameters and no experiment.
+struct ContactConfig {
+  PluginParameters parameters;
+  std::vector<std::size_t> obstacles;  ///< its obstacles' indices in the experiment's list, ascending
+};
 
 /// A validated experiment with its plugins, before any level is built.
 struct Experiment {

@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <set>
 
-#include "core/app/experiment/contact_configs.h"
 #include "core/app/experiment/declared_metrics.h"
 #include "core/app/experiment/read_experiment.h"
 #include "core/kernel/files/message_text.h"

@@ -118,7 +118,7 @@ void ErrorTable::write(const Positions* reference, const std::function<bool()>& 
               "," + std::to_string(vertices) + cells(to_own) + cells(to_standard) + "\n";
     }
   }
-  folder_.write_text("errors.csv", text);
+  write_file(folder_.file("errors.csv"), text);
 }
 
 }  // namespace drape

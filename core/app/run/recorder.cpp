@@ -126,7 +126,7 @@ void Recorder::log(Json entry) {
   require_written(log_, "log.jsonl");
 }
 
-void Recorder::save() const { folder_.write_text("results.json", json_text(results_, 1) + "\n"); }
+void Recorder::save() const { write_file(folder_.file("results.json"), json_text(results_, 1) + "\n"); }
 
 void Recorder::method_started(const std::string& method) {
   s_.method = method;

@@ -84,7 +84,7 @@ void record_abort(const RunFolder& folder, const std::string& cause) {
     results["aborted"] = cause;
     for (auto& [name, method] : results.at("methods").items())
       if (method.at("status").get<std::string>() == "running") method["status"] = "aborted";
-    folder.write_text("results.json", json_text(results, 1) + "\n");
+    write_file(folder.file("results.json"), json_text(results, 1) + "\n");
     std::ofstream(folder.file("log.jsonl"), std::ios::app)
         << json_text({{"event", "run_aborted"}, {"message", cause}, {"time", wall_clock()}}) << std::endl;
   } catch (const std::exception&) {

@@ -70,11 +70,9 @@ fs::path left_there(const RunFolder& folder) {
   for (const char* own : own_files)
     if (fs::path path = folder.file(own); fs::exists(path)) return path;
   for (const auto& [own, pattern] : own_folders) {
-    fs::path path = folder.file(own);
-    if (!fs::is_directory(path)) {
-      if (fs::exists(path)) return path;
-      continue;
-    }
+    const fs::path path = folder.file(own);
+    if (fs::exists(path) && !fs::is_directory(path)) return path;
+    if (!fs::is_directory(path)) continue;
     for (const auto& entry : fs::directory_iterator(path))
       if (entry.path() != folder.file(lock_name)) return path;
   }
@@ -167,9 +165,8 @@ void clear(const RunFolder& folder) {
 }  // namespace
 
 void refuse_long_names(const fs::path& folder, const std::vector<std::string>& methods) {
-  std::error_code error;
-  fs::path there = fs::absolute(folder);
-  while (!fs::exists(there, error) && there.has_relative_path()) there = there.parent_path();
+  const std::vector<fs::path> missing = missing_folders(folder);
+  const fs::path there = missing.empty() ? folder : missing.back().parent_path();
   const auto limit = [&](int which, std::size_t usual) {
     const long most = pathconf(there.c_str(), which);
     return most > 0 ? static_cast<std::size_t>(most) : usual;
@@ -231,10 +228,6 @@ void RunFolder::lock() {
   if (!lock_->acquire(0))
     throw std::runtime_error(path_.string() + ": " + lock_->holder() +
                              " uses this folder; wait for it, or stop it");
-}
-
-void RunFolder::write_text(const std::string& name, const std::string& text) const {
-  write_file(file(name), text);
 }
 
 }  // namespace drape

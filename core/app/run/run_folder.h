@@ -21,15 +21,13 @@ class RunFolder {
   /// change, if the folder is not writable, is a sweep's, has results and `overwrite` is false, has foreign
   /// files with names of a run, or if one of the `inputs`, which the new run reads, is among the results.
   /// Throws WriteError if a later write fails.
-  RunFolder(std::filesystem::path path, bool overwrite,
-            const std::vector<std::filesystem::path>& inputs = {});
+  RunFolder(std::filesystem::path path, bool overwrite, const std::vector<std::filesystem::path>& inputs);
   /// The folder of a run to be resumed. Throws std::runtime_error if it has no run, or one that is still
   /// running.
   static RunFolder of_run(std::filesystem::path path);
 
   const std::filesystem::path& path() const { return path_; }
   std::filesystem::path file(const std::string& name) const { return path_ / name; }
-  void write_text(const std::string& name, const std::string& text) const;
 
  private:
   explicit RunFolder(std::filesystem::path path) : path_(std::move(path)) {}

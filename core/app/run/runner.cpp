@@ -252,7 +252,7 @@ bool run_experiment(const Experiment& experiment, const Scene& scene, const RunO
     begun.methods = methods;
     begun.first_level = options.first_level;
     if (!options.warm_started_from.empty()) begun.start = scene.starts[options.first_level];
-    folder.write_text("config.yaml", begun.config);
+    write_file(folder.file("config.yaml"), begun.config);
     if (!start_file.empty()) write_ply(folder.file("start.ply"), start);
     Recorder recorder(folder, experiment, scene);
     if (options.verbosity != Verbosity::quiet)

@@ -1,10 +1,9 @@
-#include "core/app/scene/boundary_conditions.h"
-
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
+#include "core/app/scene/boundary_conditions.h"
 #include "core/kernel/files/message_text.h"
 #include "core/kernel/files/string_utils.h"
 #include "core/numerics/collision_detection/closest.h"

@@ -1,4 +1,4 @@
-#include "core/app/experiment/contact_configs.h"
+#include "core/app/experiment/experiment.h"
 
 #include <catch2/catch.hpp>
 

@@ -1,11 +1,10 @@
-#include "core/app/run/start_repair.h"
-
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include "core/app/files/yaml_file.h"
+#include "core/app/scene/scene.h"
 #include "core/kernel/files/message_text.h"
 
 namespace drape {
