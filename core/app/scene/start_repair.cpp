@@ -51,10 +51,9 @@ class StartProbe {
   explicit StartProbe(const Scene& scene)
       : scene_(scene),
         components_(scene.hierarchy.levels[0].topology.components()),
-        obstacles_(obstacles_of(scene.model(0)->contacts())),
-        diagonal_(bounding_box_diagonal(scene.starts[0])) {}
+        obstacles_(obstacles_of(scene.model(0)->contacts())) {}
 
-  double diagonal() const { return diagonal_; }
+  double diagonal() const { return bounding_box_diagonal(scene_.starts[0]); }
 
   Clearance at(const Vector3d& translation) const {
     Clearance clearance;
@@ -85,22 +84,26 @@ class StartProbe {
   const Scene& scene_;
   std::vector<int> components_;
   std::vector<TriangleMesh> obstacles_;
-  double diagonal_ = 0;
 };
 
 /// Searches for a translation; remembers pairs that intersect after every one.
 class TranslationSearch {
  public:
-  TranslationSearch(const StartProbe& probe, const Clearance& start) : probe_(probe), persistent_(start) {
-    if (start.intersections.empty()) best_contacts_ = start.contacts, found_ = true;
+  TranslationSearch(const StartProbe& probe, const Clearance& start) : persistent(start), probe_(probe) {
+    if (start.intersections.empty()) best_contacts_ = start.contacts, found = true;
   }
 
+  bool found = false;
+  Vector3d translation = Vector3d::Zero();
+  Clearance persistent;  ///< with the pairs that intersected initially and after every trial
+
   void run() {
+    const double diagonal = probe_.diagonal();
     for (const Vector3d& direction :
          {Vector3d(0, 0, 1), Vector3d(1, 0, 0), Vector3d(-1, 0, 0), Vector3d(0, 1, 0), Vector3d(0, -1, 0)}) {
       double before = 0;
       for (double part = shortest_part; part < growth; part *= growth) {
-        const double distance = std::min(part, 1.0) * probe_.diagonal();
+        const double distance = std::min(part, 1.0) * diagonal;
         if (is_better(distance * direction)) {
           shorten(direction, before, distance);
           // Without contacts this is the best; otherwise another direction may be better.
@@ -111,24 +114,19 @@ class TranslationSearch {
     }
   }
 
-  bool found() const { return found_; }
-  const Vector3d& translation() const { return translation_; }
-  /// The pairs that intersected initially and after every trial.
-  const std::vector<Intersection>& persistent() const { return persistent_.intersections; }
-
  private:
   /// Accepts a translation without intersections if it has fewer contacts than any before.
-  bool is_better(const Vector3d& translation, bool or_as_good = false) {
-    const Clearance clearance = probe_.at(translation);
+  bool is_better(const Vector3d& trial, bool or_as_good = false) {
+    const Clearance clearance = probe_.at(trial);
     if (!clearance.intersections.empty()) {
       intersect_persistent(clearance);
       return false;
     }
-    if (found_ && clearance.contacts >= best_contacts_ + (or_as_good ? 1 : 0)) return false;
-    if (probe_.enclosed(translation)) return false;
-    found_ = true;
+    if (found && clearance.contacts >= best_contacts_ + (or_as_good ? 1 : 0)) return false;
+    if (probe_.enclosed(trial)) return false;
+    found = true;
     best_contacts_ = clearance.contacts;
-    translation_ = translation;
+    translation = trial;
     return true;
   }
 
@@ -140,18 +138,15 @@ class TranslationSearch {
   }
 
   void intersect_persistent(const Clearance& other) {
-    if (other.level != persistent_.level) return;  // the triangles of another level are not comparable
-    std::erase_if(persistent_.intersections, [&](const Intersection& pair) {
+    if (other.level != persistent.level) return;  // the triangles of another level are not comparable
+    std::erase_if(persistent.intersections, [&](const Intersection& pair) {
       return std::none_of(other.intersections.begin(), other.intersections.end(),
                           [&](const Intersection& now) { return same_pair(pair, now); });
     });
   }
 
   const StartProbe& probe_;
-  Clearance persistent_;
-  bool found_ = false;
   int best_contacts_ = 0;
-  Vector3d translation_ = Vector3d::Zero();
 };
 
 std::string pinned_text(const Clearance& start) {
@@ -163,21 +158,18 @@ std::string pinned_text(const Clearance& start) {
 std::string hopeless_text(const Clearance& start, const TranslationSearch& search, double diagonal) {
   const std::string attempt = "moving the start by up to " + three_digits(diagonal) + " m up or to a side";
   const std::string level = " on level " + std::to_string(start.level);
-  if (!search.persistent().empty())
-    return attempt + " does not part " + to_string(search.persistent()[0]) + level +
+  if (const auto& pairs = search.persistent.intersections; !pairs.empty())
+    return attempt + " does not part " + to_string(pairs[0]) + level +
            "; change the start's shape or the obstacle";
   return attempt + " finds no position without intersections; at the start these intersect: " +
          to_string(start.intersections[0]) + level;
 }
 
 void move(Experiment& experiment, const Vector3d& translation) {
-  Vector3d& translate = experiment.parameters.start.translate;
-  translate += translation;
-  ConfigNode list;
-  list.kind = ConfigNode::Kind::list;
-  for (const double t : translate) list.items.push_back(ConfigNode::of(t));
+  StartParameters& start = experiment.parameters.start;
+  start.translate += translation;
   ConfigErrors none;
-  set_path(experiment.resolved, "start.translate", std::move(list), {}, none);
+  set_path(experiment.resolved, "start", schema_of<StartParameters>().write(&start), {}, none);
 }
 
 }  // namespace
@@ -193,12 +185,12 @@ Vector3d repair_start(Experiment& experiment, const Scene& scene, ConfigErrors& 
   }
   TranslationSearch search(probe, start);
   search.run();
-  if (!search.found()) {
+  if (!search.found) {
     errors.push_back({experiment.location_of("start"), hopeless_text(start, search, probe.diagonal())});
     return Vector3d::Zero();
   }
-  if (!search.translation().isZero(0)) move(experiment, search.translation());
-  return search.translation();
+  if (!search.translation.isZero(0)) move(experiment, search.translation);
+  return search.translation;
 }
 
 }  // namespace drape
