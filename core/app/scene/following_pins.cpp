@@ -75,87 +75,77 @@ class FollowedSurface {
   std::vector<Sphere> spheres_;
 };
 
-/// Attaches the vertices of one pin on every level.
-class PinAttacher {
- public:
-  PinAttacher(const Experiment& e, const Scene& scene, std::size_t pin)
-      : e_(e), scene_(scene), pin_(static_cast<int>(pin)), follow_(e.parameters.pins[pin].follow) {}
+std::string unknown_obstacle(const Experiment& e, const std::string& obstacle) {
+  std::vector<std::string> names = e.obstacle_names();
+  std::erase(names, "");
+  const std::string near = nearest_word(obstacle, names);
+  if (!near.empty()) return "does not exist; did you mean \"" + excerpt(near) + "\"?";
+  return "does not exist; " + (names.empty() ? "give an obstacle a \"name\", or follow it by its index from 0"
+                                             : "the names are " + joined(names));
+}
 
-  /// Returns the first fault; empty without one.
-  std::string attach(std::vector<FollowingVertices>& levels) {
-    const auto index = e_.resolved.find("obstacles")->index_of(follow_.obstacle);
-    if (!index) return unknown_obstacle();
-    const std::vector<std::size_t> order = e_.obstacle_order();
-    const Eigen::Index place = std::find(order.begin(), order.end(), *index) - order.begin();
-    for (std::size_t l = 0; l < levels.size(); ++l) {
-      const std::vector<TriangleMesh> meshes = obstacles_of(scene_.models[l]->contacts());
-      if (meshes.size() != order.size() || meshes[place].triangles.rows() == 0)
-        return "has no surface that a pin can follow: its contact model shows no mesh of it";
-      if (std::string fault = attach_level(*scene_.models[l], meshes[place], place, levels[l]);
-          !fault.empty())
-        return fault;
-    }
-    return "";
+/// Another pin of a pin's vertices on a level that does not follow its obstacle; empty without one.
+std::string conflict(const std::vector<PinParameters>& pins, int pin, const Level& level,
+                     const Level& coarsest) {
+  std::vector<char> own(level.vertex_count(), 0);
+  for (const int v : selected_vertices(pins[pin], level, coarsest)) own[v] = 1;
+  for (std::size_t k = 0; k < pins.size(); ++k) {
+    if (pins[k].follow.obstacle == pins[pin].follow.obstacle) continue;
+    for (const int v : selected_vertices(pins[k], level, coarsest))
+      if (own[v])
+        return "pin " + std::to_string(k) + " does not follow, but both select vertex " + std::to_string(v) +
+               " of level " + std::to_string(level.index) + "; let their regions share no vertex";
   }
+  return "";
+}
 
- private:
-  std::string unknown_obstacle() const {
-    std::vector<std::string> names = e_.obstacle_names();
-    std::erase(names, "");
-    const std::string near = nearest_word(follow_.obstacle, names);
-    if (!near.empty()) return "does not exist; did you mean \"" + excerpt(near) + "\"?";
-    return "does not exist; " + (names.empty()
-                                     ? "give an obstacle a \"name\", or follow it by its index from 0"
-                                     : "the names are " + joined(names));
+/// Attaches a pin's vertices on one level to the mesh of the obstacle at this place; returns the first fault,
+/// empty without one.
+std::string attach(const std::vector<PinParameters>& pins, int pin, const Scene& scene,
+                   const LevelModel& model, const TriangleMesh& mesh, Eigen::Index place,
+                   FollowingVertices& attached) {
+  const FollowParameters& follow = pins[pin].follow;
+  const std::vector<TriangleMesh> finest = obstacles_of(scene.models.back()->contacts());
+  if (!follow.vertices.empty() && mesh.vertices.rows() != finest[place].vertices.rows())
+    return "has cages, which replace it on coarse levels, so \"vertices\" name none of theirs; remove them";
+  for (const int v : follow.vertices)
+    if (v >= mesh.vertices.rows())
+      return "has no vertex " + std::to_string(v) + "; they go from 0 to " +
+             std::to_string(mesh.vertices.rows() - 1);
+  if (std::string other = conflict(pins, pin, model.level(), scene.hierarchy.levels[0]); !other.empty())
+    return other;
+  const FollowedSurface surface(mesh, follow.vertices);
+  const double size = bounding_box_diagonal(model.level().rest.vertices);
+  for (const DirichletVertex& d : model.dirichlet()) {
+    if (d.pin != pin) continue;
+    FollowingVertex vertex{pin, d.vertex, place, follow.obstacle};
+    const double distance = surface.attach(d.target, vertex);
+    if (distance > size)
+      return "is " + three_digits(distance) + " m away from vertex " + std::to_string(d.vertex) +
+             " of level " + std::to_string(model.level().index) +
+             ", farther than the cloth is large; place the obstacle or the start so that it is near";
+    attached.push_back(std::move(vertex));
   }
+  return "";
+}
 
-  /// Another pin of the level's vertices that does not follow the obstacle; empty without one.
-  std::string conflict(const Level& level) const {
-    const Level& coarsest = scene_.hierarchy.levels[0];
-    const std::vector<PinParameters>& pins = e_.parameters.pins;
-    std::vector<char> own(level.vertex_count(), 0);
-    for (const int v : selected_vertices(pins[pin_], level, coarsest)) own[v] = 1;
-    for (std::size_t k = 0; k < pins.size(); ++k) {
-      if (pins[k].follow.obstacle == follow_.obstacle) continue;
-      for (const int v : selected_vertices(pins[k], level, coarsest))
-        if (own[v])
-          return "pin " + std::to_string(k) + " does not follow, but both select vertex " +
-                 std::to_string(v) + " of level " + std::to_string(level.index) +
-                 "; let their regions share no vertex";
-    }
-    return "";
+/// The same on every level.
+std::string attach(const Experiment& e, const Scene& scene, int pin, std::vector<FollowingVertices>& levels) {
+  const std::string& obstacle = e.parameters.pins[pin].follow.obstacle;
+  const auto index = e.resolved.find("obstacles")->index_of(obstacle);
+  if (!index) return unknown_obstacle(e, obstacle);
+  const std::vector<std::size_t> order = e.obstacle_order();
+  const Eigen::Index place = std::find(order.begin(), order.end(), *index) - order.begin();
+  for (std::size_t l = 0; l < levels.size(); ++l) {
+    const LevelModel& model = *scene.models[l];
+    const std::vector<TriangleMesh> meshes = obstacles_of(model.contacts());
+    if (meshes.size() != order.size() || meshes[place].triangles.rows() == 0)
+      return "has no surface that a pin can follow: its contact model shows no mesh of it";
+    std::string fault = attach(e.parameters.pins, pin, scene, model, meshes[place], place, levels[l]);
+    if (!fault.empty()) return fault;
   }
-
-  std::string attach_level(const LevelModel& model, const TriangleMesh& mesh, Eigen::Index place,
-                           FollowingVertices& level) const {
-    const std::vector<TriangleMesh> finest = obstacles_of(scene_.models.back()->contacts());
-    if (!follow_.vertices.empty() && mesh.vertices.rows() != finest[place].vertices.rows())
-      return "has cages, which replace it on coarse levels, so \"vertices\" name none of theirs; remove them";
-    for (const int v : follow_.vertices)
-      if (v >= mesh.vertices.rows())
-        return "has no vertex " + std::to_string(v) + "; they go from 0 to " +
-               std::to_string(mesh.vertices.rows() - 1);
-    if (std::string other = conflict(model.level()); !other.empty()) return other;
-    const FollowedSurface surface(mesh, follow_.vertices);
-    const double size = bounding_box_diagonal(model.level().rest.vertices);
-    for (const DirichletVertex& d : model.dirichlet()) {
-      if (d.pin != pin_) continue;
-      FollowingVertex vertex{pin_, d.vertex, place, follow_.obstacle};
-      const double distance = surface.attach(d.target, vertex);
-      if (distance > size)
-        return "is " + three_digits(distance) + " m away from vertex " + std::to_string(d.vertex) +
-               " of level " + std::to_string(model.level().index) +
-               ", farther than the cloth is large; place the obstacle or the start so that it is near";
-      level.push_back(std::move(vertex));
-    }
-    return "";
-  }
-
-  const Experiment& e_;
-  const Scene& scene_;
-  int pin_;
-  const FollowParameters& follow_;
-};
+  return "";
+}
 
 }  // namespace
 
@@ -165,7 +155,7 @@ std::vector<FollowingVertices> following_vertices(const Experiment& e, const Sce
   for (std::size_t k = 0; k < e.parameters.pins.size(); ++k) {
     const FollowParameters& follow = e.parameters.pins[k].follow;
     if (follow.obstacle.empty()) continue;
-    const std::string fault = PinAttacher(e, scene, k).attach(levels);
+    const std::string fault = attach(e, scene, static_cast<int>(k), levels);
     if (fault.empty()) continue;
     const ConfigNode& pin = e.source.find("pins")->items[k];
     const ConfigNode* written = pin.find("follow");
