@@ -74,16 +74,15 @@ ConfigNode own_keys(const RegistryEntry* model, const ConfigNode& section, const
 }
 
 bool has_friction(const RegistryEntry& model) {
-  const auto& parameters = model.schema.parameters;
-  return std::any_of(parameters.begin(), parameters.end(),
-                     [](const Parameter& p) { return p.from_experiment && p.name == "friction"; });
+  const Parameter* friction = parameter_named(model.schema, "friction");
+  return friction && friction->from_experiment;
 }
 
 /// Friction that no model of an experiment has, which would be ignored.
 void check_friction(const Registry& registry, const ExperimentParameters& p,
                     const std::vector<const RegistryEntry*>& models, ConfigErrors& errors) {
   const auto has = [](const RegistryEntry* model) { return !model || has_friction(*model); };
-  if (p.friction == 0 || std::any_of(models.begin(), models.end(), has)) return;
+  if (p.friction == 0 || std::ranges::any_of(models, has)) return;
   Location where = p.contact.where;
   if (where.line == 0) where.key = "friction";
   errors.push_back({where, refusal_of_friction(registry)});
@@ -115,13 +114,12 @@ void share_obstacles(const Registry& registry, const std::vector<ConfigNode>& ob
                      const std::vector<const RegistryEntry*>& models, std::vector<ContactConfig>& configs,
                      ConfigErrors& errors) {
   for (std::size_t i = 0; i < obstacles.size(); ++i) {
-    const auto takes = std::find_if(models.begin(), models.end(), [&](const RegistryEntry* model) {
+    const auto takes = std::ranges::find_if(models, [&](const RegistryEntry* model) {
       return model && !known_key(*model, obstacles[i]).empty();
     });
     if (takes != models.end())
       configs[takes - models.begin()].obstacles.push_back(i);
-    else if (std::find(models.begin(), models.end(), nullptr) ==
-             models.end())  // else a model's name is wrong
+    else if (std::ranges::find(models, nullptr) == models.end())  // else a model's name is wrong
       errors.push_back({obstacles[i].where, refusal(registry, obstacles[i], i)});
   }
 }

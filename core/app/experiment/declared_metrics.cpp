@@ -57,8 +57,7 @@ MetricColumn column_of(const Json& json) {
 template <class Named>
 void add_new(std::vector<Named>& all, const std::vector<Named>& more) {
   for (const Named& one : more)
-    if (std::none_of(all.begin(), all.end(), [&](const Named& n) { return n.name == one.name; }))
-      all.push_back(one);
+    if (std::ranges::find(all, one.name, &Named::name) == all.end()) all.push_back(one);
 }
 
 }  // namespace
@@ -94,7 +93,7 @@ void check_declarations(const std::vector<DeclaredMetric>& metrics, const Locati
       const auto [owner, is_new] = owners.insert({{metric.scope, column.name}, metric.name});
       if (column.name.empty())
         refuse("a value needs a name");
-      else if (std::find(taken.begin(), taken.end(), first) != taken.end() && metric.name != "energy")
+      else if (std::ranges::find(taken, first) != taken.end() && metric.name != "energy")
         refuse(value + " needs another name: results.json has a key \"" + first + "\" of its own");
       else if (!is_new)
         refuse(value + (owner->second == metric.name ? " is declared twice"
@@ -158,8 +157,8 @@ bool beats(Better better, double a, double b) {
 std::vector<ErrorMeasure> error_measures(const std::vector<DeclaredMetric>& metrics) {
   std::vector<ErrorMeasure> measures;
   for (const MetricColumn& column : columns_of(metrics, MetricScope::pair, Shown::stored)) {
-    const auto same = [&](const ErrorMeasure& m) { return m.name == column.error; };
-    if (column.error.empty() || std::any_of(measures.begin(), measures.end(), same)) continue;
+    const auto same = std::ranges::find(measures, column.error, &ErrorMeasure::name);
+    if (column.error.empty() || same != measures.end()) continue;
     const std::string label = (column.better == Better::higher ? "1 − " : "") + column.label +
                               (column.unit == "1" ? "" : " [" + column.unit + "]");
     measures.push_back({column.error, label, column.error_use, column.name, column.better});

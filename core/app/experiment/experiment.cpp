@@ -57,7 +57,7 @@ void check_mesh_files(const Experiment& e, ConfigErrors& errors) {
 }
 
 bool contains(const std::vector<std::string>& names, const std::string& name) {
-  return std::find(names.begin(), names.end(), name) != names.end();
+  return std::ranges::find(names, name) != names.end();
 }
 
 /// A number of the material that others hide or that has no meaning without them is refused, unless it is the
@@ -88,10 +88,9 @@ void check_material(const Experiment& e, ConfigErrors& errors) {
 
 void check_name(const std::string& what, const std::string& name, const Location& where,
                 ConfigErrors& errors) {
-  const bool usable =
-      !name.empty() && name[0] != '.' && std::all_of(name.begin(), name.end(), [](unsigned char c) {
-        return c >= 0x80 || std::isalnum(c) || c == '_' || c == '-' || c == '.';
-      });
+  const bool usable = !name.empty() && name[0] != '.' && std::ranges::all_of(name, [](unsigned char c) {
+    return c >= 0x80 || std::isalnum(c) || c == '_' || c == '-' || c == '.';
+  });
   const std::string fault = fault_of_file_name(name);
   if (!usable || !fault.empty())
     errors.push_back({where, what + " \"" + excerpt(name) + "\" names files: " +

@@ -47,11 +47,9 @@ class PluginMaker {
     make_contacts();
 
     if (!e_.source.find("metrics"))
-      for (const RegistryEntry* entry : registry_.of_kind("metric")) {
-        const std::vector<Parameter>& own = entry->schema.parameters;
-        if (std::none_of(own.begin(), own.end(), [](const Parameter& p) { return p.required; }))
+      for (const RegistryEntry* entry : registry_.of_kind("metric"))
+        if (std::ranges::none_of(entry->schema.parameters, &Parameter::required))
           e_.parameters.metrics.push_back(ConfigNode::of(entry->name));
-      }
     for (const ConfigNode& node : e_.parameters.metrics)
       if (auto metric = make_from<Metric>(registry_, node, errors_, &metrics.items.emplace_back()))
         e_.metrics.emplace_back(node.plugin_name(), metric);

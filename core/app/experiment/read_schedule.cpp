@@ -18,7 +18,7 @@ const std::vector<std::string> changeable = {"material", "energies", "contact", 
                                              "friction", "pins",     "handles"};
 
 bool is_changeable(const std::string& path) {
-  return std::find(changeable.begin(), changeable.end(), path.substr(0, path.find('.'))) != changeable.end();
+  return std::ranges::find(changeable, path.substr(0, path.find('.'))) != changeable.end();
 }
 
 /// A number or a list of them; empty for anything else.
@@ -86,9 +86,7 @@ class KeyReader {
     ScheduleKey& key = keys_[k];
     if (key.parameter.empty()) return;  // the schema has reported it
     key.values = values_of(key);
-    const auto not_positive = [](const std::vector<double>& value) {
-      return *std::min_element(value.begin(), value.end()) <= 0;
-    };
+    const auto not_positive = [](const std::vector<double>& value) { return std::ranges::min(value) <= 0; };
     if (!is_changeable(key.parameter))
       refuse(k, "cannot change while a level is solved; keys are for parameters of " + joined(changeable));
     else if (!std::is_sorted(key.times.begin(), key.times.end(), std::less_equal<>()))
@@ -98,8 +96,7 @@ class KeyReader {
           k,
           "must have as many \"values\" as \"times\", all numbers or all lists of equally many numbers, as "
           "in {times: [0, 1], values: [[0, 0, 0], [0, 0, 0.1]]}");
-    else if (key.interpolation == KeyInterpolation::log &&
-             std::any_of(key.values.begin(), key.values.end(), not_positive))
+    else if (key.interpolation == KeyInterpolation::log && std::ranges::any_of(key.values, not_positive))
       refuse(k, "is interpolated by its logarithm: all its values must be above 0");
   }
 
@@ -124,7 +121,7 @@ class KeyReader {
     } else if (key == "obstacles" && item) {
       for (std::size_t c = 0; c < e_.contact_configs.size(); ++c) {
         const std::vector<std::size_t>& own = e_.contact_configs[c].obstacles;
-        const auto place = std::find(own.begin(), own.end(), *item);
+        const auto place = std::ranges::find(own, *item);
         if (place == own.end()) continue;
         std::vector<std::string> path = {key, std::to_string(place - own.begin())};
         path.insert(path.end(), within.begin(), within.end());
@@ -163,8 +160,7 @@ class KeyReader {
                   target.numbers.at(parameters_of(e_, target.part, target.item).values.get(), c))
             numbers[k].insert(number);
       for (std::size_t j = 0; j < k; ++j)
-        if (std::any_of(numbers[k].begin(), numbers[k].end(),
-                        [&](const double* number) { return numbers[j].contains(number); }))
+        if (std::ranges::any_of(numbers[k], [&](const double* own) { return numbers[j].contains(own); }))
           refuse(k, "sets what key \"" + excerpt(keys_[j].parameter) + "\" sets; remove one of them");
     }
   }

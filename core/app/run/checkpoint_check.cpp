@@ -50,10 +50,9 @@ class Check {
 
   void methods() const {
     require(c_.method >= 0 && c_.method < static_cast<int>(c_.methods.size()), "the method under way");
+    const std::vector<std::string> known = experiment_.method_names();
     for (const std::string& name : c_.methods)
-      require(std::any_of(experiment_.methods.begin(), experiment_.methods.end(),
-                          [&](const auto& method) { return method.first == name; }),
-              "the experiment has no method " + name);
+      require(std::ranges::find(known, name) != known.end(), "the experiment has no method " + name);
   }
 
   void levels() const {

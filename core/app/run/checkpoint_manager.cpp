@@ -139,8 +139,8 @@ bool is_complete(const fs::path& folder) {
 
 bool all_methods_succeeded(const fs::path& folder) {
   const RunData run = read_run(folder);
-  return run.complete && std::all_of(run.methods.begin(), run.methods.end(),
-                                     [](const MethodRecord& m) { return has_converged(m.status); });
+  const auto converged = [](const MethodRecord& method) { return has_converged(method.status); };
+  return run.complete && std::ranges::all_of(run.methods, converged);
 }
 
 void refuse_damaged_results(const fs::path& folder) {
@@ -209,7 +209,7 @@ SavedState saved_state(const fs::path& folder, const std::string& method, std::o
   const std::string whose = folder.string() + ": holds no state of method " + state.method;
   if (levels.empty()) throw std::runtime_error(whose + "; name another with --method");
   state.level = level.value_or(levels.back());
-  if (std::find(levels.begin(), levels.end(), state.level) == levels.end())
+  if (std::ranges::find(levels, state.level) == levels.end())
     throw std::runtime_error(whose + " on level " + std::to_string(state.level) +
                              "; the last level that it has is " + std::to_string(levels.back()));
   state.x = under_way && checkpoint->state.level == state.level

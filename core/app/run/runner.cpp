@@ -72,7 +72,7 @@ class RunObserver : public Observer {
  private:
   template <class Asked>
   bool any(const Asked& asked) const {
-    return std::any_of(viewers_.begin(), viewers_.end(), [&](Observer* viewer) { return asked(*viewer); });
+    return std::ranges::any_of(viewers_, [&](Observer* viewer) { return asked(*viewer); });
   }
 
   Recorder& recorder_;

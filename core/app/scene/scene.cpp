@@ -123,8 +123,7 @@ void refuse_intersecting_start(const Experiment& e, const LevelModel& model, con
                                ConfigErrors& errors) {
   constexpr std::size_t max_listed = 3;  // of each contact model
   const auto& pins = e.parameters.pins;
-  const bool moved =
-      std::any_of(pins.begin(), pins.end(), [](const auto& pin) { return pin.has_transform(); });
+  const bool moved = std::ranges::any_of(pins, &PinParameters::has_transform);
   const std::string remark = moved ? " (pinned vertices begin at their targets)" : "";
   for (const auto& contact : model.contacts()) {
     const std::vector<Intersection> found = contact->intersections(start);

@@ -81,9 +81,8 @@ SceneSummary summary_of(const Scene& scene) {
   summary.parts = static_cast<int>(coarsest.level().topology.components().size());
   summary.mass = coarsest.masses().sum();
   add_edges(scene.hierarchy.levels.back(), summary);
-  const bool bends = std::any_of(scene.energies.begin(), scene.energies.end(), [](const NamedEnergy& named) {
-    return named.energy->role() == EnergyRole::bending;
-  });
+  const bool bends = std::ranges::any_of(
+      scene.energies, [](const NamedEnergy& named) { return named.energy->role() == EnergyRole::bending; });
   const double gravity = gravity_of(coarsest, scene.energies), stiffness = 2 * bending_stiffness(material);
   if (bends && gravity > 0 && stiffness > 0)
     summary.bending_length = std::cbrt(stiffness / (material.area_density() * gravity));

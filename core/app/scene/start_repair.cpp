@@ -73,10 +73,10 @@ class StartProbe {
 
   /// Whether a component of the cloth lies inside an obstacle without intersecting it.
   bool enclosed(const Vector3d& translation) const {
-    return std::any_of(components_.begin(), components_.end(), [&](int v) {
+    return std::ranges::any_of(components_, [&](int v) {
       const Vector3d p = scene_.starts[0].row(v).transpose() + translation;
-      return std::any_of(obstacles_.begin(), obstacles_.end(),
-                         [&](const TriangleMesh& mesh) { return winding_number(mesh, p) > 0.5; });
+      return std::ranges::any_of(obstacles_,
+                                 [&](const TriangleMesh& mesh) { return winding_number(mesh, p) > 0.5; });
     });
   }
 

@@ -83,8 +83,7 @@ std::vector<ScaledKey> scaled_keys(const Experiment& experiment, const std::vect
     if (named.empty() || (node && value == 0))
       errors.push_back({{option, 0, 0}, fault(experiment.resolved, path)});
     for (const ScaledKey& key : named)
-      if (std::none_of(keys.begin(), keys.end(), [&](const ScaledKey& own) { return own.path == key.path; }))
-        keys.push_back(key);
+      if (std::ranges::find(keys, key.path, &ScaledKey::path) == keys.end()) keys.push_back(key);
   }
   return keys;
 }
@@ -173,7 +172,7 @@ FitSample FitRuns::measured(const Sweep& sweep, double factor) const {
     const OptionalNumber value = method.levels.back().values.of(setup_.metric);
     value ? sample.values.push_back(*value) : leave_out("has no " + setup_.metric);
   }
-  std::sort(sample.values.begin(), sample.values.end());
+  std::ranges::sort(sample.values);
   return sample;
 }
 

@@ -1,5 +1,6 @@
 #include "core/app/sweep/run_status.h"
 
+#include <algorithm>
 #include <cstring>
 #include <fstream>
 #include <iterator>
@@ -103,7 +104,7 @@ RunStatus read_status(const RunFiles& files) {
   if (!json.is_object()) file.refuse("is not a run's status");
   RunStatus status;
   const auto word = file.at<std::string>(json, "status");
-  const auto* found = std::find(std::begin(words), std::end(words), word);
+  const auto* found = std::ranges::find(words, word);
   if (found == std::end(words)) file.refuse("no status is called \"" + excerpt(word) + "\"");
   status.state = RunState(found - words);
   status.error = file.at<std::string>(json, "error");

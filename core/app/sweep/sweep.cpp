@@ -22,7 +22,7 @@ using NodeKind = ConfigNode::Kind;
 /// them.
 void keep_methods(ConfigNode& resolved, const std::vector<std::string>& chosen) {
   const auto kept = [&](const std::string& name) {
-    return chosen.empty() || std::find(chosen.begin(), chosen.end(), name) != chosen.end();
+    return chosen.empty() || std::ranges::find(chosen, name) != chosen.end();
   };
   for (auto& [key, value] : resolved.entries) {
     if (key == "reference") {
@@ -139,7 +139,7 @@ class Reader {
                             const Location& where, ConfigErrors& errors) {
     const std::vector<std::string> known = experiment.method_names();
     for (const std::string& name : chosen)
-      if (std::find(known.begin(), known.end(), name) == known.end())
+      if (std::ranges::find(known, name) == known.end())
         errors.push_back({where, "there is no method \"" + excerpt(name) +
                                      "\"; the experiment's methods are " + joined(known)});
   }
