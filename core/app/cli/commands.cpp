@@ -133,10 +133,8 @@ void Commands::require_command(const std::string& word) const {
 
 int Commands::run(int argc, char** argv) {
   for (CLI::App* command : with_plugins_)
-    command
-        ->add_option("--plugin", plugin_files_,
-                     "source of a plugin, one C++ file, to be compiled and loaded; may be repeated")
-        ->type_name("FILE")
+    add_option(*command, "--plugin FILE", plugin_files_,
+               "source of a plugin, one C++ file, to be compiled and loaded; may be repeated")
         ->allow_extra_args(false);
   std::vector<std::string> words = command_words(argc, argv);
   if (words.empty()) {

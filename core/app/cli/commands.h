@@ -36,6 +36,13 @@ class Commands {
   std::function<int()> chosen_;
 };
 
+/// Adds an option as help pages show it, "-o,--out FOLDER".
+template <class Value>
+CLI::Option* add_option(CLI::App& command, const std::string& shown, Value& value, const std::string& help) {
+  const std::size_t space = shown.find(' ');
+  return command.add_option(shown.substr(0, space), value, help)->type_name(shown.substr(space + 1));
+}
+
 void add_new_command(Commands& commands);
 void add_check_commands(Commands& commands);  ///< check, check-energy
 void add_run_command(Commands& commands);

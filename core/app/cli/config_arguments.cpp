@@ -5,6 +5,7 @@
 #include <iostream>
 #include <limits>
 
+#include "core/app/cli/commands.h"
 #include "core/app/files/csv.h"
 #include "core/app/scene/scene_summary.h"
 #include "core/kernel/files/message_text.h"
@@ -61,11 +62,10 @@ void warn_of(const std::vector<std::string>& lines) {
 
 CLI::Option* ConfigArguments::add_overrides_to(CLI::App& command) {
   CLI::Option* file = command.add_option("experiment", config, "experiment file (YAML)")->required();
-  command.add_option("--set", sets, "override one value, as in newton.step_size=0.1; may be repeated")
-      ->type_name("KEY=VALUE")
+  add_option(command, "--set KEY=VALUE", sets,
+             "override one value, as in newton.step_size=0.1; may be repeated")
       ->allow_extra_args(false);
-  command.add_option("--levels", levels, "number of levels, in place of the experiment's")
-      ->type_name("N")
+  add_option(command, "--levels N", levels, "number of levels, in place of the experiment's")
       ->check(positive_integer());
   command.add_flag("--allow-memory", allow_memory,
                    "allow a run that may need more memory than this machine has");

@@ -120,7 +120,7 @@ void add_fabric_command(Commands& commands) {
                                    "drape fabric gray-interlock", [=] { return print_fabric(*options); });
   command.add_option("name", options->name,
                      "a fabric of the table, or a row of FILE; without it, all are listed");
-  command.add_option("--file", options->file, "a CSV file of your own")->type_name("FILE");
+  add_option(command, "--file FILE", options->file, "a CSV file of your own");
 }
 
 }  // namespace drape

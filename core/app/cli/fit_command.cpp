@@ -203,40 +203,29 @@ void add_fit_command(Commands& commands) {
       "drape fit configs/tests/cusick.yaml --to 68.4 --by material.bending -o results/fit",
       [request](const Registry& registry) { return run_fit(*request, registry); });
   r.add_overrides_to(command);
-  command.add_option("--to", r.target, "the value to be met")
-      ->type_name("NUMBER")
+  add_option(command, "--to NUMBER", r.target, "the value to be met")
       ->required()
       ->check([](const std::string& text) {
         return number_of(text).value_or(0) != 0 ? "" : "must be a number other than 0, not " + excerpt(text);
       });
-  command
-      .add_option("--by", r.by,
-                  "a number to be scaled, as material.warp_bending; material.bending is every number of the "
-                  "material with bending in its name. May be repeated: one factor scales all")
-      ->type_name("KEY")
+  add_option(command, "--by KEY", r.by,
+             "a number to be scaled, as material.warp_bending; material.bending is every number of the "
+             "material with bending in its name. May be repeated: one factor scales all")
       ->allow_extra_args(false)
       ->required();
-  command
-      .add_option("--metric", r.metric,
-                  "column of a metric, on the finest level (default: the first of the experiment's metrics)")
-      ->type_name("NAME");
-  command
-      .add_option("--starts", r.starts,
-                  "runs of each factor, whose median counts: start.seed 1 to N (default: 3)")
-      ->type_name("N")
+  add_option(command, "--metric NAME", r.metric,
+             "column of a metric, on the finest level (default: the first of the experiment's metrics)");
+  add_option(command, "--starts N", r.starts,
+             "runs of each factor, whose median counts: start.seed 1 to N (default: 3)")
       ->check(integer_between(1, 1000, "an integer from 1 to 1000"));
-  command
-      .add_option("--tolerance", r.tolerance, "of the median, in percent of the value to be met (default: 1)")
-      ->type_name("PERCENT")
+  add_option(command, "--tolerance PERCENT", r.tolerance,
+             "of the median, in percent of the value to be met (default: 1)")
       ->check(number_of_at_least(1e-4));
-  command.add_option("--method", r.method, "method of the experiment (default: as of drape run)")
-      ->type_name("NAME");
-  command
-      .add_option("-o,--out", r.folder, "folder of the runs and of the result (default: results/NAME_fit)")
-      ->type_name("FOLDER");
-  command
-      .add_option("--threads", r.threads, "threads of each run; as many runs at a time as the cores allow")
-      ->type_name("N")
+  add_option(command, "--method NAME", r.method, "method of the experiment (default: as of drape run)");
+  add_option(command, "-o,--out FOLDER", r.folder,
+             "folder of the runs and of the result (default: results/NAME_fit)");
+  add_option(command, "--threads N", r.threads,
+             "threads of each run; as many runs at a time as the cores allow")
       ->check(positive_integer());
 }
 

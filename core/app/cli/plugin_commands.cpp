@@ -127,10 +127,8 @@ void add_reference_command(Commands& commands) {
         return folder->empty() ? reference(registry) : reference_into(*folder, registry);
       });
   command.group("For developers of drape");
-  command
-      .add_option("--readmes", *folder,
-                  "instead, write each plugin's parameters into FOLDER/KIND/NAME/README.md")
-      ->type_name("FOLDER");
+  add_option(command, "--readmes FOLDER", *folder,
+             "instead, write each plugin's parameters into FOLDER/KIND/NAME/README.md");
 }
 
 }  // namespace drape

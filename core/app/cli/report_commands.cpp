@@ -46,11 +46,10 @@ std::optional<Eigen::Vector3d> direction_of(const std::string& text) {
 }
 
 void add_picture_width(CLI::App& command, std::optional<int>& width, const std::string& help) {
-  command.add_option("--width", width, help)
+  add_option(command, "--width PIXELS", width, help)
       ->check(integer_between(
           least_picture_width, greatest_picture_width,
-          std::to_string(least_picture_width) + " to " + std::to_string(greatest_picture_width) + " pixels"))
-      ->type_name("PIXELS");
+          std::to_string(least_picture_width) + " to " + std::to_string(greatest_picture_width) + " pixels"));
 }
 
 int export_states(const std::string& folder, const std::string& file, const ExportOptions& options) {
@@ -133,15 +132,12 @@ void add_export_command(Commands& commands) {
                                    "drape export results/sphere --to sphere.glb --frames",
                                    [o] { return export_states(o->folder, o->file, *o); });
   command.add_option("folder", o->folder, "results folder")->required();
-  command
-      .add_option("-o,--to", o->file,
-                  "file to write: .glb has every level as a scene, with the obstacles; .obj, .ply and .vtp "
-                  "have the finest level's cloth; .png is a picture of the finest level")
-      ->type_name("FILE")
+  add_option(command, "-o,--to FILE", o->file,
+             "file to write: .glb has every level as a scene, with the obstacles; .obj, .ply and .vtp "
+             "have the finest level's cloth; .png is a picture of the finest level")
       ->required();
-  command.add_option("--method", o->method, "method (default: pcs, or the only one that was run)")
-      ->type_name("NAME");
-  command.add_option("--level", o->level, "this level only")->type_name("N")->check(number_of_at_least(0));
+  add_option(command, "--method NAME", o->method, "method (default: pcs, or the only one that was run)");
+  add_option(command, "--level N", o->level, "this level only")->check(number_of_at_least(0));
   command.add_flag("--frames", o->frames,
                    "with .glb: the recorded snapshots of one level (default: the finest) as an animation; "
                    "with .png: those of every level, coarse to fine, as numbered pictures");
@@ -169,9 +165,7 @@ void add_figures_command(Commands& commands) {
       "figures", "write a paper's figures of a run or a sweep: SVG, PNG, CSV and LaTeX",
       "drape figures results/sphere -o figures", [o] { return make_figures(o->folder, o->out); });
   command.add_option("folder", o->folder, "results folder, or a sweep's")->required();
-  command.add_option("-o,--out", o->out, "folder of the figures, which is made")
-      ->type_name("DIR")
-      ->required();
+  add_option(command, "-o,--out DIR", o->out, "folder of the figures, which is made")->required();
 }
 
 void add_report_commands(Commands& commands) {
@@ -188,9 +182,8 @@ void add_report_commands(Commands& commands) {
                    "drape report results/sphere results/cube -o results/both.html",
                    [o] { return report(o->folders, o->out, o->picture_width); });
   report_command.add_option("folder", o->folders, "results folders, or a sweep's")->required();
-  report_command
-      .add_option("-o,--out", o->out, "page of several runs (default: report.html in a sweep's folder)")
-      ->type_name("FILE");
+  add_option(report_command, "-o,--out FILE", o->out,
+             "page of several runs (default: report.html in a sweep's folder)");
   add_picture_width(report_command, o->picture_width, "width of a run's pictures in pixels (default: 900)");
 
   CLI::App& compare_command =
@@ -198,10 +191,8 @@ void add_report_commands(Commands& commands) {
                    "drape compare results/before results/after --bound seconds=1.1",
                    [o] { return print_comparison(o->folders, o->bounds); });
   compare_command.add_option("runs", o->folders, "the former and the new one")->required()->expected(2);
-  compare_command
-      .add_option("--bound", o->bounds,
-                  "exit with 1 if a quantity exceeds RATIO times its former value; may be repeated")
-      ->type_name("KEY=RATIO")
+  add_option(compare_command, "--bound KEY=RATIO", o->bounds,
+             "exit with 1 if a quantity exceeds RATIO times its former value; may be repeated")
       ->allow_extra_args(false);
 
   CLI::App& table_command = commands.add(
@@ -209,13 +200,11 @@ void add_report_commands(Commands& commands) {
       "drape table results/sphere --columns method,status,seconds,energy_released",
       [o] { return print_table(o->folders, o->columns, o->format); });
   table_command.add_option("folder", o->folders, "results folders, or sweeps'")->required();
-  table_command.add_option("--format", o->format, "md (default), csv or json")
-      ->type_name("NAME")
+  add_option(table_command, "--format NAME", o->format, "md (default), csv or json")
       ->check([](const std::string& name) {
         return formats.contains(name) ? "" : "must be md, csv or json, not " + excerpt(name);
       });
-  table_command.add_option("--columns", o->columns, "columns, as in run,status,energy_released")
-      ->type_name("A,B")
+  add_option(table_command, "--columns A,B", o->columns, "columns, as in run,status,energy_released")
       ->delimiter(',')
       ->allow_extra_args(false);
 }

@@ -184,31 +184,22 @@ void add_run_command(Commands& commands) {
       [request](const Registry& registry) { return run_or_resume(*request, registry); });
   RunRequest& r = *request;  // lives as long as the command
   r.add_to(command)->required(false);
-  command.add_option("-o,--out", r.out, "results folder (default: results/NAME)")->type_name("FOLDER");
-  command
-      .add_option("--method", r.methods,
-                  "methods to run, or all (default: pcs, or the experiment's only method)")
-      ->type_name("A,B")
+  add_option(command, "-o,--out FOLDER", r.out, "results folder (default: results/NAME)");
+  add_option(command, "--method A,B", r.methods,
+             "methods to run, or all (default: pcs, or the experiment's only method)")
       ->delimiter(',')
       ->allow_extra_args(false);
-  command.add_option("-j,--threads", r.threads, "threads (default: one per core that the process may use)")
-      ->type_name("N")
+  add_option(command, "-j,--threads N", r.threads, "threads (default: one per core that the process may use)")
       ->check(positive_integer());
   command.add_flag("--overwrite", r.overwrite, "replace the results of an earlier run in the folder");
-  command
-      .add_option(
-          "--resume", r.resumed,
-          "results folder of an interrupted run to resume; with --set, --levels, --level or --method: start "
-          "another run from its state, in the folder of --out")
-      ->type_name("FOLDER");
-  command
-      .add_option("--level", r.level,
-                  "with --resume: level of the state to start from (default: the run's last one)")
-      ->type_name("N");
-  command
-      .add_option("--checkpoint", r.checkpoint,
-                  "approximate interval of checkpoints in seconds (default 5; 0: at every step)")
-      ->type_name("SECONDS")
+  add_option(
+      command, "--resume FOLDER", r.resumed,
+      "results folder of an interrupted run to resume; with --set, --levels, --level or --method: start "
+      "another run from its state, in the folder of --out");
+  add_option(command, "--level N", r.level,
+             "with --resume: level of the state to start from (default: the run's last one)");
+  add_option(command, "--checkpoint SECONDS", r.checkpoint,
+             "approximate interval of checkpoints in seconds (default 5; 0: at every step)")
       ->check(number_of_at_least(0));
   const auto set_verbosity = [&r](Verbosity verbosity) {
     return [&r, verbosity](std::int64_t) { r.verbosity = verbosity; };
@@ -221,8 +212,7 @@ void add_run_command(Commands& commands) {
       ->excludes(quiet);
   CLI::Option* show =
       command.add_flag("--view", r.show, "serve a live view of the run on 127.0.0.1; prints its address");
-  command.add_option("--port", r.port, "with --view: port (default: any free one)")
-      ->type_name("N")
+  add_option(command, "--port N", r.port, "with --view: port (default: any free one)")
       ->check(integer_between(0, 65535, "a port, 0 to 65535"))
       ->needs(show);
   command

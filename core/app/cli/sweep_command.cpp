@@ -152,27 +152,23 @@ void add_sweep_commands(Commands& commands) {
       "drape sweep configs/sweeps/ablations.yaml -j 2 --dry-run",
       [request](const Registry& registry) { return run_sweep(*request, registry); });
   sweep.add_option("file", r.config, "sweep file (YAML)")->required();
-  sweep.add_option("-o,--out", r.folder, "the sweep's folder (default: results/NAME)")->type_name("FOLDER");
-  sweep.add_option("--engine", r.engine, "local: processes on this machine; slurm: a job array on a cluster")
-      ->type_name("NAME")
+  add_option(sweep, "-o,--out FOLDER", r.folder, "the sweep's folder (default: results/NAME)");
+  add_option(sweep, "--engine NAME", r.engine,
+             "local: processes on this machine; slurm: a job array on a cluster")
       ->check([](const std::string& name) {
         return name == "local" || name == "slurm" ? "" : "must be local or slurm, not " + excerpt(name);
       });
-  sweep
-      .add_option("-j,--workers", r.workers,
-                  "concurrent runs (default: as many as the cores allow with --threads)")
-      ->type_name("N")
+  add_option(sweep, "-j,--workers N", r.workers,
+             "concurrent runs (default: as many as the cores allow with --threads)")
       ->check(positive_integer());
-  sweep.add_option("--threads", r.threads, "threads of each run, in place of the sweep's")
-      ->type_name("N")
+  add_option(sweep, "--threads N", r.threads, "threads of each run, in place of the sweep's")
       ->check(positive_integer());
-  sweep.add_option("--memory-limit", r.memory_gigabytes, "memory of all runs together; with slurm, of each")
-      ->type_name("GB")
+  add_option(sweep, "--memory-limit GB", r.memory_gigabytes,
+             "memory of all runs together; with slurm, of each")
       ->check(number_of_at_least(1e-3));
   sweep.add_flag("--allow-memory", r.allow_memory,
                  "allow runs that may need more memory than this machine has");
-  sweep.add_option("--most-levels", r.most_levels, "largest number of levels of every run")
-      ->type_name("N")
+  add_option(sweep, "--most-levels N", r.most_levels, "largest number of levels of every run")
       ->check(positive_integer());
   sweep.add_flag("--dry-run", r.dry_run, "validate and list the runs without running any");
   sweep.add_flag("--retry-failed", r.retry_failed, "rerun failed runs");
@@ -180,10 +176,8 @@ void add_sweep_commands(Commands& commands) {
   sweep.add_flag("--report", r.report, "write every run's report.html and its pictures");
   sweep.add_flag("--wait", r.wait, "with slurm: wait for the jobs and list the runs");
   sweep.add_flag("--cancel", r.cancel, "with slurm: cancel the sweep's jobs");
-  sweep
-      .add_option("--sbatch", r.sbatch,
-                  "with slurm: a further option of sbatch, as --sbatch=--partition=long; may be repeated")
-      ->type_name("OPTION")
+  add_option(sweep, "--sbatch OPTION", r.sbatch,
+             "with slurm: a further option of sbatch, as --sbatch=--partition=long; may be repeated")
       ->allow_extra_args(false);
 
   CLI::App& job = commands.add("sweep-job", "executed by a sweep's jobs on a cluster", "",
