@@ -6,38 +6,32 @@
 namespace drape {
 
 void ScheduleKey::declare(Declaration<ScheduleKey>& d) {
-  d.add("parameter", &ScheduleKey::parameter)
-      .required()
-      .description(
-          "path of the parameter, as for --set, in material, energies, contact, obstacles, friction, pins or "
-          "handles; an index or a name selects an item of a list, as in energies.gravity.acceleration");
-  d.add("times", &ScheduleKey::times)
+  d.add("parameter", &ScheduleKey::parameter,
+        "path of the parameter, as for --set, in material, energies, contact, obstacles, friction, pins or "
+        "handles; an index or a name selects an item of a list, as in energies.gravity.acceleration")
+      .required();
+  d.add("times", &ScheduleKey::times, "pseudo-times, ascending; the scene begins at 0")
       .between(0, 1e9)
-      .required()
-      .description("pseudo-times, ascending; the scene begins at 0");
-  d.add("values", &ScheduleKey::written)
-      .required()
-      .description("one value per time, each a number or a list of numbers");
+      .required();
+  d.add("values", &ScheduleKey::written, "one value per time, each a number or a list of numbers").required();
   d.add_choice("interpolation", &ScheduleKey::interpolation,
                {{"linear", KeyInterpolation::linear},
                 {"log", KeyInterpolation::log},
-                {"step", KeyInterpolation::step}})
-      .description("interpolation between two times; constant before the first and after the last");
+                {"step", KeyInterpolation::step}},
+               "interpolation between two times; constant before the first and after the last");
 }
 
 void ScheduleParameters::declare(Declaration<ScheduleParameters>& d) {
-  d.add("duration", &ScheduleParameters::duration)
-      .between(0, 1e9)
-      .description("total pseudo-time, in the unit of `times`; 0 takes the last time of all keys");
-  d.add("steps", &ScheduleParameters::steps)
+  d.add("duration", &ScheduleParameters::duration,
+        "total pseudo-time, in the unit of `times`; 0 takes the last time of all keys")
+      .between(0, 1e9);
+  d.add("steps", &ScheduleParameters::steps, "number of equal load increments")
       .between(1, 1e6)
-      .description("number of equal load increments")
       .source("supplement, section 4");
-  d.add("equilibrate", &ScheduleParameters::equilibrate)
-      .description(
-          "solve for equilibrium after every increment; otherwise take one implicit step, and equilibrate "
-          "only after the last increment");
-  d.add_sections("keys", &ScheduleParameters::keys).description("parameters that change");
+  d.add("equilibrate", &ScheduleParameters::equilibrate,
+        "solve for equilibrium after every increment; otherwise take one implicit step, and equilibrate only "
+        "after the last increment");
+  d.add_sections("keys", &ScheduleParameters::keys, "parameters that change");
 }
 
 std::vector<double> ScheduleKey::at(double time) const {

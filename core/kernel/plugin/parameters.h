@@ -127,7 +127,7 @@ class ParameterHandle {
 ///     struct NewtonParameters {
 ///       double step_size = 0.5;
 ///       static void declare(Declaration<NewtonParameters>& d) {
-///         d.add("step_size", &NewtonParameters::step_size).unit("s").above(0).description("…").source("…");
+///         d.add("step_size", &NewtonParameters::step_size, "…").unit("s").above(0).source("…");
 ///       }
 ///     };
 ///

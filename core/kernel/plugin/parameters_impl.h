@@ -125,10 +125,11 @@ class Declaration {
  public:
   Schema schema;
 
-  /// `Owner` is Struct or a base of it.
+  /// `Owner` is Struct or a base of it; the description says in a phrase what the parameter sets.
   template <class Member, class Owner>
-  ParameterHandle add(const std::string& name, Member Owner::*member) {
-    Parameter& p = append(name, parameter_detail::type_of(static_cast<const Member*>(nullptr)), member);
+  ParameterHandle add(const std::string& name, Member Owner::*member, const std::string& description = "") {
+    const std::string type = parameter_detail::type_of(static_cast<const Member*>(nullptr));
+    Parameter& p = append(name, type, member, description);
     p.number = [member](void* object, std::size_t k) {
       return parameter_detail::number(static_cast<Struct*>(object)->*member, k);
     };
@@ -146,8 +147,9 @@ class Declaration {
   /// An enum, written as one of the words.
   template <class Enum>
   ParameterHandle add_choice(const std::string& name, Enum Struct::*member,
-                             std::vector<std::pair<std::string, Enum>> words) {
-    Parameter& p = append(name, "text", member);
+                             std::vector<std::pair<std::string, Enum>> words,
+                             const std::string& description = "") {
+    Parameter& p = append(name, "text", member, description);
     for (const auto& [word, value] : words) p.choices.push_back(word);
     p.read = [member, words](void* object, const ConfigNode& node, ConfigErrors&) {
       for (const auto& [word, value] : words)
@@ -163,8 +165,9 @@ class Declaration {
 
   /// A struct with its own `declare`, written as a nested map.
   template <class Section, class Owner>
-  ParameterHandle add_section(const std::string& name, Section Owner::*member) {
-    Parameter& p = append(name, "section", member);
+  ParameterHandle add_section(const std::string& name, Section Owner::*member,
+                              const std::string& description = "") {
+    Parameter& p = append(name, "section", member, description);
     const auto section = std::make_shared<const Schema>(schema_of<Section>(name));
     p.section = section;
     p.read = [member, section](void* object, const ConfigNode& node, ConfigErrors& errors) {
@@ -179,8 +182,9 @@ class Declaration {
 
   /// A list of such structs, written as a list of maps; it replaces the default list.
   template <class Section>
-  ParameterHandle add_sections(const std::string& name, std::vector<Section> Struct::*member) {
-    Parameter& p = append(name, "list of sections", member);
+  ParameterHandle add_sections(const std::string& name, std::vector<Section> Struct::*member,
+                               const std::string& description = "") {
+    Parameter& p = append(name, "list of sections", member, description);
     const auto section = std::make_shared<const Schema>(schema_of<Section>(name));
     p.section = section;
     p.read = [member, section](void* object, const ConfigNode& node, ConfigErrors& errors) {
@@ -213,12 +217,14 @@ class Declaration {
 
  private:
   template <class Member, class Owner>
-  Parameter& append(const std::string& name, const std::string& type, Member Owner::*member) {
+  Parameter& append(const std::string& name, const std::string& type, Member Owner::*member,
+                    const std::string& description) {
     for (const Parameter& p : schema.parameters)
       if (p.name == name) throw std::runtime_error("parameter \"" + name + "\" is declared twice");
     Parameter& p = schema.parameters.emplace_back();
     p.name = name;
     p.type = type;
+    p.description = description;
     p.assign = [member](const void* from, void* to) {
       static_cast<Struct*>(to)->*member = static_cast<const Struct*>(from)->*member;
     };
