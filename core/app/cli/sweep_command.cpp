@@ -9,7 +9,6 @@
 #include "core/app/files/machine.h"
 #include "core/app/report/run_table.h"
 #include "core/app/sweep/local_engine.h"
-#include "core/app/sweep/memory.h"
 #include "core/app/sweep/slurm_engine.h"
 #include "core/kernel/files/message_text.h"
 #include "core/kernel/threads/parallel.h"

@@ -9,7 +9,6 @@
 #include <thread>
 
 #include "core/app/files/machine.h"
-#include "core/app/sweep/memory.h"
 #include "core/app/sweep/process.h"
 #include "core/kernel/threads/stopwatch.h"
 

@@ -6,7 +6,6 @@
 #include <thread>
 
 #include "core/app/files/json_file.h"
-#include "core/app/sweep/memory.h"
 #include "core/kernel/files/file.h"
 #include "core/kernel/files/message_text.h"
 

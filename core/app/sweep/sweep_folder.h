@@ -1,6 +1,8 @@
 #pragma once
 
+#include <map>
 #include <memory>
+#include <utility>
 
 #include "core/app/files/file_lock.h"
 #include "core/app/sweep/run_status.h"
@@ -47,6 +49,21 @@ inline bool refused_as_expected(const SweepRun& run, const RunStatus& status) {
 
 /// The same of an entry of sweep.json's runs.
 bool is_refused_as_expected(const nlohmann::ordered_json& run);
+
+/// Estimates the peak memory of runs: that of the largest finished run with as many vertices and levels, or
+/// estimated_memory without one.
+class MemoryEstimate {
+ public:
+  /// Learns from every run of the sweep that has finished.
+  MemoryEstimate(const Sweep& sweep, const SweepFolder& folder);
+  void learn(const SweepRun& run, const RunFiles& files);  ///< from a finished run's results
+  double bytes(const SweepRun& run) const;
+  /// Throws std::runtime_error if one of the sweep's runs without results may need more than so many bytes.
+  void require(const Sweep& sweep, const SweepFolder& folder, double machine) const;
+
+ private:
+  std::map<std::pair<double, int>, double> peaks_;  // by vertices of the finest level, levels
+};
 
 /// "3.2 s", "4 min", "1.5 h"
 std::string duration_text(double seconds);

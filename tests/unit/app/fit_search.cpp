@@ -1,6 +1,6 @@
 // The search for a factor, on functions with known roots.
 
-#include "core/app/sweep/fit_search.h"
+#include "core/app/sweep/fit.h"
 
 #include <catch2/catch.hpp>
 #include <cmath>

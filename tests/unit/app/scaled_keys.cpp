@@ -1,6 +1,6 @@
 // Which numbers of an experiment a fit scales.
 
-#include "core/app/sweep/fit_runs.h"
+#include "core/app/sweep/fit.h"
 
 #include <catch2/catch.hpp>
 
