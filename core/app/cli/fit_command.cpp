@@ -126,7 +126,6 @@ nlohmann::ordered_json json_of(const FitSample& sample) {
   return json;
 }
 
-/// Writes fit.json and fitted.yaml.
 void write_fit(const SweepFolder& folder, const FitRequest& request, const FitSetup& setup,
                const std::vector<FitSample>& samples, const FitSample& best, bool reached) {
   nlohmann::ordered_json json = {

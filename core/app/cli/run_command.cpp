@@ -37,7 +37,6 @@ void show_other_methods(const Experiment& experiment, const std::string& run) {
     std::cerr << "only " << run << " was run; --method all adds " << joined(others) << "\n";
 }
 
-/// Runs an experiment, or resumes it from a checkpoint.
 int run(const RunRequest& request, const Experiment& experiment, const Scene& scene, RunOptions options,
         std::optional<InterruptedRun> interrupted = std::nullopt) {
   stop_on_signals();  // nothing to save before this point

@@ -45,7 +45,6 @@ bool open_in_browser(const fs::path& page) {
   return error == 0;
 }
 
-/// Whether the page exists and is not older than the results.
 bool is_current(const fs::path& page, const fs::path& results) {
   std::error_code error;
   return fs::exists(page, error) && fs::exists(results, error) &&

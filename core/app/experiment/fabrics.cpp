@@ -157,7 +157,6 @@ std::string remedy(const std::string& name, const std::vector<std::string>& name
   return nearest.empty() ? "it has " + joined(names) : "did you mean \"" + nearest + "\"?";
 }
 
-/// The row that {file, row} names.
 ConfigNode row_of_file(const ConfigNode& fabric, std::optional<double> thickness, ConfigErrors& errors) {
   const ConfigNode *file = fabric.find("file"), *row = fabric.find("row");
   if (fabric.kind != ConfigNode::Kind::map || !file || !row || fabric.entries.size() != 2) {

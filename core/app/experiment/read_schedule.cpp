@@ -60,7 +60,6 @@ std::vector<std::vector<double>> with_values_between(const ScheduleKey& key) {
   return all;
 }
 
-/// Reads the keys of one experiment.
 class KeyReader {
  public:
   KeyReader(Experiment& experiment, ConfigErrors& errors)

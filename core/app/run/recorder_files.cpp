@@ -20,7 +20,6 @@ std::uint64_t size_of(const std::filesystem::path& file) {
   return bytes;
 }
 
-/// Truncates a file to this many bytes.
 void cut(const std::filesystem::path& file, std::uint64_t bytes) {
   std::error_code error;
   std::filesystem::resize_file(file, bytes, error);

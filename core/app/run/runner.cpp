@@ -122,7 +122,6 @@ ConfigNode saved_config(const Experiment& experiment) {
   return config;
 }
 
-/// The message of the exception in flight.
 std::string message_in_flight() {
   try {
     throw;

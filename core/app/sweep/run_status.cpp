@@ -33,7 +33,6 @@ Json complete_results(const RunFiles& files) {
   return results_file(files).find<bool>(results, "complete").value_or(false) ? results : Json();
 }
 
-/// The last few lines of a run's output.
 std::string last_lines(const std::filesystem::path& file) {
   std::string text = text_of_file(file);
   while (!text.empty() && text.back() == '\n') text.pop_back();
@@ -60,7 +59,6 @@ void discard_states(const RunFiles& files) {
     std::filesystem::remove(file);
 }
 
-/// Marks the run as running.
 RunStatus begin(const RunFiles& files, int threads, bool resumes) {
   const RunStatus before = read_status(files);
   RunStatus status{RunState::running, "", 0, resumes ? before.seconds : 0, before.starts + 1, threads};

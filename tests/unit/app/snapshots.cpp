@@ -1,4 +1,4 @@
-#include "core/app/run/snapshots.h"
+#include "core/app/run/errors.h"
 
 #include <catch2/catch.hpp>
 
