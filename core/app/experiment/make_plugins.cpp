@@ -3,6 +3,7 @@
 
 #include "core/app/experiment/declared_metrics.h"
 #include "core/app/experiment/read_experiment.h"
+#include "core/app/files/yaml_file.h"
 #include "core/kernel/files/message_text.h"
 #include "core/kernel/plugin/make.h"
 
@@ -163,12 +164,8 @@ class PluginMaker {
   }
 
   void set(const std::string& key, ConfigNode value) {
-    for (auto& [own, old] : e_.resolved.entries)
-      if (own == key) {
-        old = std::move(value);
-        return;
-      }
-    e_.resolved.add(key, std::move(value));
+    ConfigErrors none;
+    set_path(e_.resolved, key, std::move(value), {}, none);
   }
 
   const Registry& registry_;

@@ -21,22 +21,17 @@ using NodeKind = ConfigNode::Kind;
 /// Removes the methods that are not chosen from a resolved experiment, and the reference if it is one of
 /// them.
 void keep_methods(ConfigNode& resolved, const std::vector<std::string>& chosen) {
-  const auto kept = [&](const std::string& name) {
-    return chosen.empty() || std::ranges::find(chosen, name) != chosen.end();
+  const auto is_left_out = [&](const std::string& name) {
+    return !chosen.empty() && std::ranges::find(chosen, name) == chosen.end();
   };
-  for (auto& [key, value] : resolved.entries) {
-    if (key == "reference") {
-      const ConfigNode* method = value.find("method");
-      if (method && !method->scalar.empty() && method->scalar != ReferenceParameters::lowest &&
-          !kept(method->scalar))
-        value = ConfigNode::of("");
-    }
-    if (key != "methods") continue;
-    ConfigNode methods;
-    for (const auto& [name, method] : value.entries)
-      if (kept(name)) methods.add(name, method);
-    value = methods;
-  }
+  ConfigNode methods;
+  for (const auto& [name, method] : resolved.find("methods")->entries)
+    if (!is_left_out(name)) methods.add(name, method);
+  ConfigErrors none;
+  set_path(resolved, "methods", std::move(methods), {}, none);
+  const std::string& reference = resolved.find("reference")->find("method")->scalar;
+  if (!reference.empty() && reference != ReferenceParameters::lowest && is_left_out(reference))
+    set_path(resolved, "reference", ConfigNode::of(""), {}, none);
 }
 
 /// The value at a path of a resolved experiment: of a plugin its type; null if the experiment has none.
@@ -94,7 +89,6 @@ class Reader {
     if (experiment.empty()) return variation;
     const bool alone = sweep_.parameters.ablation.kind == NodeKind::null;
     variation.name = alone ? experiment : experiment + ", " + variation.name;
-    variation.folder = folder_name(variation.name);
     return variation;
   }
 
@@ -157,7 +151,7 @@ class Reader {
     for (const int seed : seeds) {
       set_path(resolved, "start.seed", ConfigNode::of(seed), {}, errors_);
       run.seed = seed;
-      run.folder = "runs/" + variation.folder + "/seed_" + std::to_string(seed);
+      run.folder = "runs/" + folder_name(variation.name) + "/seed_" + std::to_string(seed);
       run.config = to_yaml(resolved);
       const auto [other, first] = configs_.emplace(run.config, run.name);
       if (!first && seed == seeds.front())

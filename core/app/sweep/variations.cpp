@@ -116,19 +116,19 @@ struct GridParameters {
   static void declare(Declaration<GridParameters>& d) { d.add("grid", &GridParameters::grid).required(); }
 };
 
-void check_names(std::vector<Variation>& all, ConfigErrors& errors) {
-  std::map<std::string, const Variation*> folders;
-  for (Variation& v : all) {
-    v.folder = folder_name(v.name);
-    if (const std::string fault = fault_of_file_name(v.folder); !fault.empty())
+void check_names(const std::vector<Variation>& all, ConfigErrors& errors) {
+  std::map<std::string, std::string> names;  // by folder
+  for (const Variation& v : all) {
+    const std::string folder = folder_name(v.name);
+    if (const std::string fault = fault_of_file_name(folder); !fault.empty())
       errors.push_back({v.where, "variation \"" + v.name + "\" names a folder: it " + fault});
-    const auto [other, first] = folders.emplace(v.folder, &v);
+    const auto [other, first] = names.emplace(folder, v.name);
     if (first || v.name.empty()) continue;
-    const std::string& name = other->second->name;
+    const std::string& name = other->second;
     errors.push_back({v.where, name == v.name
                                    ? "variation \"" + v.name + "\" is given twice; rename one of them"
                                    : "variations \"" + name + "\" and \"" + v.name +
-                                         "\" would share the folder " + v.folder + "; rename one of them"});
+                                         "\" would share the folder " + folder + "; rename one of them"});
   }
 }
 

@@ -13,7 +13,6 @@ struct Variation {
   Expectation expect;
   static void declare(Declaration<Variation>& d);
 
-  std::string folder;             ///< the name as a folder name
   Location where, methods_where;  ///< of the name and of the methods
 };
 
