@@ -62,24 +62,20 @@ std::vector<Variation> product(const ConfigNode& grid, ConfigErrors& errors) {
     return {};
   }
   const std::vector<std::string> keys = short_keys(grid);
-  std::vector<Variation> all;
-  for (std::size_t index = 0; index < count; ++index) {
-    Variation v;
-    v.where = grid.where;
-    v.set = grid;
-    std::size_t rest = index;
-    for (std::size_t k = grid.entries.size(); k-- > 0;) {
-      const auto& [path, values] = grid.entries[k];
-      const std::size_t at = rest % values.items.size();
-      rest /= values.items.size();
-      const ConfigNode& value = values.items[at];
-      v.set.entries[k].second = value;
-      const std::string shown = value.kind == NodeKind::scalar
-                                    ? value.scalar
-                                    : std::to_string(at + 1);  // a map's index in the list
-      v.name = keys[k] + "=" + shown + (v.name.empty() ? "" : "," + v.name);
-    }
-    all.push_back(v);
+  std::vector<Variation> all(1);
+  all[0].where = grid.where;
+  all[0].set = grid;
+  for (std::size_t k = 0; k < keys.size(); ++k) {
+    std::vector<Variation> longer;
+    for (const Variation& before : all)
+      for (const ConfigNode& value : grid.entries[k].second.items) {
+        Variation& v = longer.emplace_back(before);
+        v.set.entries[k].second = value;
+        const auto place = &value - grid.entries[k].second.items.data() + 1;  // a map's, in the list
+        v.name += (k > 0 ? "," : "") + keys[k] + "=" +
+                  (value.kind == NodeKind::scalar ? value.scalar : std::to_string(place));
+      }
+    all = std::move(longer);
   }
   return all;
 }
@@ -93,15 +89,13 @@ Variation named(const ConfigNode& node, ConfigErrors& errors) {
                       "expected message then"});
   check_settings(v.set, errors);
   if (v.levels) {
-    const ConfigNode set = std::exchange(v.set, {});
-    v.set.add("levels", *node.find("levels"));
-    for (std::size_t k = 0; k < set.entries.size(); ++k) {
-      if (set.entries[k].first == "levels")
-        errors.push_back({set.key_locations[k],
+    for (std::size_t k = 0; k < v.set.entries.size(); ++k)
+      if (v.set.entries[k].first == "levels")
+        errors.push_back({v.set.key_locations[k],
                           "\"levels\" is given twice in variation \"" + v.name + "\"; take one of them out"});
-      v.set.add(set.entries[k].first, set.entries[k].second);
-      v.set.key_locations.back() = set.key_locations[k];
-    }
+    v.set.add("levels", *node.find("levels"));  // it comes first
+    std::ranges::rotate(v.set.entries, v.set.entries.end() - 1);
+    std::ranges::rotate(v.set.key_locations, v.set.key_locations.end() - 1);
   }
   v.where = v.methods_where = node.where;
   if (const ConfigNode* methods = node.find("methods")) v.methods_where = methods->where;
