@@ -1,6 +1,6 @@
 #include <array>
 #include <cmath>
-#include <cstdio>
+#include <iomanip>
 #include <iostream>
 #include <memory>
 #include <numbers>
@@ -11,6 +11,7 @@
 #include "core/app/experiment/exit_codes.h"
 #include "core/app/experiment/experiment_parameters.h"
 #include "core/app/experiment/fabrics.h"
+#include "core/kernel/files/number_text.h"
 #include "core/kernel/files/string_utils.h"
 #include "core/numerics/elements/orthotropic_stiffness.h"
 
@@ -27,11 +28,7 @@ Directions strips(const OrthotropicStiffness& stiffness) {
 void print_row(const std::string& label, const Directions& values, double unit,
                const std::string& unit_name) {
   std::cout << padded(label, 22);
-  for (const double value : values) {
-    char text[32];
-    std::snprintf(text, sizeof text, "%11.4g", value / unit);
-    std::cout << text;
-  }
+  for (const double value : values) std::cout << std::setw(11) << general_text(value / unit, 4);
   std::cout << "  " << unit_name << "\n";
 }
 

@@ -1,5 +1,4 @@
 #include <cmath>
-#include <map>
 #include <string>
 
 #include "core/app/experiment/describe.h"
@@ -11,10 +10,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 Json scalar_schema(const std::string& type, const Parameter& p) {
-  static const std::map<std::string, std::string> words = {
-      {"number", "number"}, {"integer", "integer"}, {"boolean", "boolean"}, {"text", "string"}};
-  const std::string& word = words.at(type);
-  Json json = {{"type", word}};
+  Json json = {{"type", type == "text" ? "string" : type}};  // for the others both have one word
   if (std::isfinite(p.minimum)) json[p.open_minimum ? "exclusiveMinimum" : "minimum"] = p.minimum;
   if (std::isfinite(p.maximum)) json[p.open_maximum ? "exclusiveMaximum" : "maximum"] = p.maximum;
   if (!p.choices.empty()) json["enum"] = p.choices;

@@ -1,6 +1,7 @@
 #include "core/app/run/checkpoint_manager.h"
 
 #include <algorithm>
+#include <iterator>
 
 #include "core/app/files/json_file.h"
 #include "core/app/files/yaml_file.h"
@@ -107,10 +108,9 @@ void CheckpointManager::save() {
 
 std::vector<fs::path> files_of(const ConfigNode& saved) {
   std::vector<fs::path> files;
-  const std::string& path = saved.scalar;
-  if (path.starts_with('/') && fs::exists(path)) files.emplace_back(path);
-  for (const char* copy : copies)
-    if (path == copy) files.emplace_back(path);  // all other paths are absolute
+  const std::string& path = saved.scalar;  // absolute, but for the copies
+  if ((path.starts_with('/') && fs::exists(path)) || std::ranges::find(copies, path) != std::end(copies))
+    files.emplace_back(path);
   const auto add = [&](const ConfigNode& part) {
     for (fs::path& file : files_of(part)) files.push_back(std::move(file));
   };

@@ -26,15 +26,16 @@ class LocalEngine {
   void run(const std::vector<std::size_t>& missing) {
     waiting_.assign(missing.begin(), missing.end());
     to_run_ = missing.size();
+    bool replaced = false;
     while (!waiting_.empty() || !running_.empty()) {
       if (options_.stop && options_.stop()) stop();
       // Another program would give the sweep's later runs other results than the earlier ones.
-      if (!waiting_.empty() && own_program_replaced()) replaced_ = true, waiting_.clear();
+      if (!waiting_.empty() && own_program_replaced()) replaced = true, waiting_.clear();
       start_what_fits();
       collect();
       std::this_thread::sleep_for(std::chrono::milliseconds(5));
     }
-    if (replaced_)
+    if (replaced)
       throw std::runtime_error(
           own_program().string() +
           " was replaced or removed while the sweep ran, so the other runs were not started");
@@ -99,16 +100,16 @@ class LocalEngine {
       const RunStatus status = r->process.status();
       running_.erase(r++);
       if (status.has_results()) memory_.learn(run, folder_.files(run.folder));
-      ++ended_;
-      failed_ += status.state == RunState::failed && !refused_as_expected(run, status);
       folder_.refresh();
       tell(run, status);
     }
   }
 
-  void tell(const SweepRun& run, const RunStatus& status) const {
+  void tell(const SweepRun& run, const RunStatus& status) {
     const bool expected = refused_as_expected(run, status),
                failed = status.state == RunState::failed && !expected;
+    ++ended_;
+    failed_ += failed;
     if (options_.quiet && !failed) return;
     std::string line = "[" + std::to_string(had_ + ended_) + "/" + std::to_string(sweep_.runs.size()) + "] " +
                        run.name + ", seed " + std::to_string(run.seed) + ": " +
@@ -131,7 +132,7 @@ class LocalEngine {
   std::deque<std::size_t> waiting_;
   std::list<Running> running_;
   std::size_t had_ = 0, to_run_ = 0, ended_ = 0, failed_ = 0;
-  bool stopping_ = false, replaced_ = false;
+  bool stopping_ = false;
 };
 
 }  // namespace
