@@ -32,7 +32,7 @@ Checkpoint read(const std::filesystem::path& file) {
   try {
     return decode(read_file(file));
   } catch (const std::exception& fault) {
-    throw std::runtime_error(file.string() + ": " + fault.what());
+    refuse_path(file, fault.what());
   }
 }
 
@@ -111,9 +111,9 @@ Checkpoint load_checkpoint(const std::filesystem::path& folder, std::string& war
     }
   }
   if (faults.empty())
-    throw std::runtime_error(folder.string() +
-                             ": holds no checkpoint of a run; give the results folder of one that was "
-                             "interrupted, or run the experiment again");
+    refuse_path(folder,
+                "holds no checkpoint of a run; give the results folder of one that was interrupted, or run "
+                "the experiment again");
   throw std::runtime_error(faults + "; no checkpoint is whole: run the experiment again, as in drape run " +
                            (folder / "config.yaml").string() + " --out ANOTHER");
 }

@@ -48,10 +48,9 @@ bool is_valid(const nlohmann::ordered_json& results) {
 
 nlohmann::ordered_json results_of(const fs::path& folder) {
   const fs::path file = folder / "results.json";
-  if (!fs::exists(file))
-    throw std::runtime_error(folder.string() + ": holds no run; give the results folder of one");
+  if (!fs::exists(file)) refuse_path(folder, "holds no run; give the results folder of one");
   nlohmann::ordered_json results = parse_json(read_file(file));
-  if (!is_valid(results)) throw std::runtime_error(file.string() + ": is damaged; run the experiment again");
+  if (!is_valid(results)) refuse_path(file, "is damaged; run the experiment again");
   return results;
 }
 
@@ -158,9 +157,9 @@ void refuse_damaged_results(const fs::path& folder) {
     }
   }
   if (!damaged.empty())
-    throw std::runtime_error(folder.string() + ": the run is complete, but files are damaged or missing: " +
-                             joined(damaged) + "; run the experiment again, as in drape run " +
-                             (folder / "config.yaml").string() + " --out ANOTHER");
+    refuse_path(folder, "the run is complete, but files are damaged or missing: " + joined(damaged) +
+                            "; run the experiment again, as in drape run " +
+                            (folder / "config.yaml").string() + " --out ANOTHER");
 }
 
 InterruptedRun interrupted_run(RunFolder run, std::string& warning) {
@@ -169,17 +168,15 @@ InterruptedRun interrupted_run(RunFolder run, std::string& warning) {
   const fs::path config = folder / "config.yaml";
   if (!fs::exists(config)) write_file(config, checkpoint.config);
   if (read_file(config) != checkpoint.config)
-    throw std::runtime_error(config.string() +
-                             ": is not the one that the checkpoint was made with; put that one back, or "
-                             "change parameters with --set KEY=VALUE --out ANOTHER");
+    refuse_path(config,
+                "is not the one that the checkpoint was made with; put that one back, or change parameters "
+                "with --set KEY=VALUE --out ANOTHER");
   for (const FileFingerprint& was : checkpoint.files) {
     const fs::path path = was.path.starts_with('/') ? fs::path(was.path) : folder / was.path;
-    if (!fs::exists(path))
-      throw std::runtime_error(path.string() + ": is missing, but the run reads it; put it back");
+    if (!fs::exists(path)) refuse_path(path, "is missing, but the run reads it; put it back");
     if (const FileFingerprint is = fingerprint_of(path); is.bytes != was.bytes || is.checksum != was.checksum)
-      throw std::runtime_error(
-          path.string() +
-          ": is not what it was when the run began; put that file back, or run the experiment again");
+      refuse_path(path,
+                  "is not what it was when the run began; put that file back, or run the experiment again");
   }
   if (checkpoint.program != program())
     warning += (warning.empty() ? "" : "\n") + ("the checkpoint is by " + checkpoint.program + ", this is " +

@@ -71,9 +71,9 @@ void refuse_short_files(const RunFolder& folder, const Recorder::State& state) {
     std::error_code error;
     const std::uint64_t now = std::filesystem::file_size(file, error);
     if (error || now < bytes)
-      throw std::runtime_error(file.string() +
-                               ": is shorter than when the checkpoint was made; it was changed since, and "
-                               "the run cannot be resumed: run the experiment again");
+      refuse_path(file,
+                  "is shorter than when the checkpoint was made; it was changed since, and the run cannot be "
+                  "resumed: run the experiment again");
   }
 }
 

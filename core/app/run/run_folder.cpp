@@ -83,8 +83,7 @@ fs::path left_there(const RunFolder& folder) {
 /// read it.
 void refuse_what_must_stay(const RunFolder& folder, const std::vector<fs::path>& inputs) {
   const auto refuse = [](const fs::path& path, const std::string& why, const std::string& remedy) {
-    throw std::runtime_error(path.string() + ": " + why + "; " + remedy +
-                             ", or name another results folder with --out");
+    refuse_path(path, why + "; " + remedy + ", or name another results folder with --out");
   };
   const std::string no_kind = "is not what a run has by this name";
   for (const char* own : own_files)
@@ -107,18 +106,15 @@ void refuse_what_must_stay(const RunFolder& folder, const std::vector<fs::path>&
 void refuse_what_is_there(const RunFolder& folder, bool overwrite, const std::vector<fs::path>& inputs) {
   for (const char* name : {"sweep.json", "sweep.lock"})
     if (fs::exists(folder.file(name)))
-      throw std::runtime_error(folder.path().string() +
-                               ": is a sweep's folder; name another results folder with --out");
+      refuse_path(folder.path(), "is a sweep's folder; name another results folder with --out");
   const fs::path left = left_there(folder);
   if (left.empty()) return;
   if (!is_of_a_run(folder))
-    throw std::runtime_error(left.string() +
-                             ": is there already, and not from a run; "
-                             "name another results folder with --out");
+    refuse_path(left, "is there already, and not from a run; name another results folder with --out");
   if (!overwrite)
-    throw std::runtime_error(folder.path().string() +
-                             ": holds the results of another run; name another folder with --out, or "
-                             "replace them with --overwrite");
+    refuse_path(
+        folder.path(),
+        "holds the results of another run; name another folder with --out, or replace them with --overwrite");
   refuse_what_must_stay(folder, inputs);
 }
 
@@ -132,12 +128,11 @@ std::vector<fs::path> missing_folders(const fs::path& folder) {
 }
 
 void make_writable(const RunFolder& folder) {
-  const std::string name = folder.path().string();
   std::error_code error;
   fs::create_directories(folder.path(), error);
   if (error || !fs::is_directory(folder.path()))
-    throw std::runtime_error(name + ": cannot make the results folder" +
-                             (error ? " (" + error.message() + ")" : "") + "; name another with --out");
+    refuse_path(folder.path(), "cannot make the results folder" +
+                                   (error ? " (" + error.message() + ")" : "") + "; name another with --out");
   std::string probe = folder.file("writable_XXXXXX").string();
   const int made = mkstemp(probe.data());  // under a name that no file has
   const bool writable = made >= 0 && write(made, "\n", 1) == 1;
@@ -145,8 +140,7 @@ void make_writable(const RunFolder& folder) {
     close(made);
     fs::remove(probe, error);
   }
-  if (!writable)
-    throw std::runtime_error(name + ": cannot write to the results folder; name another with --out");
+  if (!writable) refuse_path(folder.path(), "cannot write to the results folder; name another with --out");
 }
 
 /// Removes the files of an earlier run; those that others have put into its folders stay.
@@ -212,22 +206,19 @@ RunFolder::RunFolder(std::filesystem::path path, bool overwrite,
 
 RunFolder RunFolder::of_run(std::filesystem::path path) {
   RunFolder folder(std::move(path));
-  if (!is_of_a_run(folder))
-    throw std::runtime_error(folder.path_.string() + ": holds no run; give the results folder of one");
+  if (!is_of_a_run(folder)) refuse_path(folder.path_, "holds no run; give the results folder of one");
   folder.lock();
   // A pipe in their place would block the resumed run.
   for (const char* name : {"iterations.csv", "log.jsonl"})
     if (const fs::path file = folder.file(name); fs::exists(file) && !fs::is_regular_file(file))
-      throw std::runtime_error(file.string() + ": is no file on a disk; run the experiment again");
+      refuse_path(file, "is no file on a disk; run the experiment again");
   return folder;
 }
 
 void RunFolder::lock() {
   std::filesystem::create_directories(file("checkpoint"));
   lock_ = std::make_unique<FileLock>(file(lock_name));
-  if (!lock_->acquire(0))
-    throw std::runtime_error(path_.string() + ": " + lock_->holder() +
-                             " uses this folder; wait for it, or stop it");
+  if (!lock_->acquire(0)) refuse_path(path_, lock_->holder() + " uses this folder; wait for it, or stop it");
 }
 
 }  // namespace drape

@@ -97,10 +97,9 @@ std::optional<SlurmJobs> submitted_jobs(const SweepFolder& folder) {
 void refuse_while_queued(const SweepFolder& folder) {
   const auto jobs = submitted_jobs(folder);
   if (jobs && in_queue(*jobs))
-    throw std::runtime_error(folder.path().string() + ": its jobs " + jobs->array + " and " +
-                             jobs->collector +
-                             " are still queued or running (`squeue`); wait for them, or take them off the "
-                             "queue with --cancel");
+    refuse_path(folder.path(), "its jobs " + jobs->array + " and " + jobs->collector +
+                                   " are still queued or running (`squeue`); wait for them, or take them off "
+                                   "the queue with --cancel");
 }
 
 SlurmJobs submit(const Sweep& sweep, const SweepFolder& folder, const std::vector<std::size_t>& missing,
@@ -168,8 +167,7 @@ bool wait_for(const SweepFolder& folder, const SlurmJobs& jobs, const std::funct
 void cancel_jobs(const SweepFolder& folder, const std::function<bool()>& stop) {
   const auto jobs = submitted_jobs(folder);
   if (!jobs || !in_queue(*jobs))
-    throw std::runtime_error(folder.path().string() +
-                             ": has no jobs in Slurm's queue; there is nothing to cancel");
+    refuse_path(folder.path(), "has no jobs in Slurm's queue; there is nothing to cancel");
   std::vector<std::string> words = {"scancel", jobs->array};
   if (!jobs->collector.empty()) words.push_back(jobs->collector);
   const ProgramOutput said = run_program(words);
@@ -180,7 +178,7 @@ void cancel_jobs(const SweepFolder& folder, const std::function<bool()>& stop) {
 int run_task(const SweepFolder& folder, int index, const SweepOptions& options) {
   const Json sweep = folder.read();
   if (sweep.is_null() || index < 0 || index >= int(sweep["runs"].size()))
-    throw std::runtime_error(folder.path().string() + ": sweep.json has no run " + std::to_string(index));
+    refuse_path(folder.path(), "sweep.json has no run " + std::to_string(index));
   const RunFiles files = folder.files(sweep["runs"][index]["folder"]);
   // A node that Slurm considers dead may still execute the task that is restarted elsewhere.
   FileLock lock(files.lock());

@@ -21,12 +21,6 @@ std::string title(const std::string& name, int seed) {
   return "run \"" + name + "\", seed " + std::to_string(seed);
 }
 
-const char* const remedies =
-    "; give the new sweep another folder with --out, or undo the change, or delete that run's files to run "
-    "it again: ";
-
-std::string run_paths(const RunFiles& files) { return files.folder.string() + "*"; }
-
 }  // namespace
 
 Json SweepFolder::read() const {
@@ -49,49 +43,52 @@ Json SweepFolder::read() const {
 }
 
 void SweepFolder::refuse_other_runs(const Sweep& sweep, int threads) const {
+  const auto refuse_results = [&](const std::string& fault, const RunFiles& files) {
+    refuse_path(path_, fault +
+                           "; give the new sweep another folder with --out, or undo the change, or delete "
+                           "that run's files to run it again: " +
+                           files.folder.string() + "*");
+  };
   const Json before = read();
-  const std::string folder = path_.string();
   if (before.is_null()) {
     for (const auto& entry : fs::directory_iterator(path_))
-      if (entry.path().filename() != "sweep.lock")
-        throw std::runtime_error(folder + ": holds " + entry.path().filename().string() +
-                                 ", and no sweep; name another folder with --out");
+      if (const std::string name = entry.path().filename(); name != "sweep.lock")
+        refuse_path(path_, "holds " + name + ", and no sweep; name another folder with --out");
     return;
   }
-  if (before["sweep"] != sweep.parameters.name)
-    throw std::runtime_error(folder + ": holds the sweep \"" + before["sweep"].get<std::string>() +
-                             "\"; name another folder with --out");
+  if (const std::string other = before["sweep"]; other != sweep.parameters.name)
+    refuse_path(path_, "holds the sweep \"" + other + "\"; name another folder with --out");
   std::set<std::string> folders;
   for (const SweepRun& run : sweep.runs) folders.insert(run.folder);
   for (const Json& run : before["runs"]) {
     const RunFiles files = this->files(run["folder"]);
     if (!folders.count(run["folder"]) && read_status(files).has_results())
-      throw std::runtime_error(folder + ": has results of " + title(run["name"], run["seed"]) +
-                               ", which the sweep no longer has" + remedies + run_paths(files));
+      refuse_results("has results of " + title(run["name"], run["seed"]) + ", which the sweep no longer has",
+                     files);
   }
   for (const SweepRun& run : sweep.runs) {
     const RunFiles files = this->files(run.folder);
     const RunStatus status = read_status(files);
     if (status.starts == 0 && fs::exists(files.folder))
-      throw std::runtime_error(files.folder.string() +
-                               ": is there already, and not from this sweep; move it away, or name another "
-                               "folder with --out");
+      refuse_path(
+          files.folder,
+          "is there already, and not from this sweep; move it away, or name another folder with --out");
     if (!resolve_interrupted(files, status).has_results()) {
       if (has_complete_results(files))
-        throw std::runtime_error(files.folder.string() +
-                                 ": has complete results, but not from this sweep; move it away, or name "
-                                 "another folder with --out");
+        refuse_path(
+            files.folder,
+            "has complete results, but not from this sweep; move it away, or name another folder with --out");
       continue;
     }
     if (text_of_file(files.config()) != run.config)
-      throw std::runtime_error(folder + ": the results of " + title(run.name, run.seed) +
-                               " are of another experiment than the sweep now says" + remedies +
-                               run_paths(files));
+      refuse_results("the results of " + title(run.name, run.seed) +
+                         " are of another experiment than the sweep now says",
+                     files);
     if (status.threads != threads)
-      throw std::runtime_error(
-          folder + ": " + title(run.name, run.seed) + " was made with " + std::to_string(status.threads) +
-          (status.threads == 1 ? " thread" : " threads") + " per run, not " + std::to_string(threads) +
-          ", so times would not compare" + remedies + run_paths(files));
+      refuse_results(title(run.name, run.seed) + " was made with " + std::to_string(status.threads) +
+                         (status.threads == 1 ? " thread" : " threads") + " per run, not " +
+                         std::to_string(threads) + ", so times would not compare",
+                     files);
   }
 }
 
@@ -169,13 +166,13 @@ std::unique_ptr<FileLock> SweepFolder::lock() const {
   std::error_code error;
   fs::create_directories(path_, error);
   if (!fs::is_directory(path_))
-    throw std::runtime_error(path_.string() + ": cannot make the sweep's folder" +
-                             (error ? " (" + error.message() + ")" : "") + "; name another with --out");
+    refuse_path(path_, "cannot make the sweep's folder" + (error ? " (" + error.message() + ")" : "") +
+                           "; name another with --out");
   auto lock = std::make_unique<FileLock>(path_ / "sweep.lock");
   // Wait a moment for the runs of a sweep that has just been killed.
   if (!lock->acquire(1))
-    throw std::runtime_error(path_.string() + ": another `drape sweep` uses this folder (" + lock->holder() +
-                             "); wait for it, or name another folder with --out");
+    refuse_path(path_, "another `drape sweep` uses this folder (" + lock->holder() +
+                           "); wait for it, or name another folder with --out");
   return lock;
 }
 

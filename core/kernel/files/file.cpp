@@ -39,6 +39,10 @@ WriteError unwritten(const std::filesystem::path& path, int error) {
 
 }  // namespace
 
+void refuse_path(const std::filesystem::path& path, const std::string& fault) {
+  throw std::runtime_error(path.string() + ": " + fault);
+}
+
 std::string read_file(const std::filesystem::path& path, std::uintmax_t most) {
   const std::string name = printable(path.string());
   const auto refuse = [&](const std::string& cause) { throw FileError(name + ": " + cause, cause); };

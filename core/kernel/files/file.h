@@ -15,6 +15,9 @@ struct FileError : std::runtime_error {
   std::string cause;
 };
 
+/// Throws std::runtime_error with the file's or folder's name and what is wrong: "out: holds no run; …".
+[[noreturn]] void refuse_path(const std::filesystem::path& path, const std::string& fault);
+
 /// Largest file to be read [bytes]: of any kind, and of a config.
 inline constexpr std::uintmax_t largest_file = 2'000'000'000, largest_config = 8'000'000;
 
