@@ -49,13 +49,6 @@ void check_start_coordinates(const Experiment& e, ConfigErrors& errors) {
                         "or set it in cloth if the cloth is of a file"});
 }
 
-/// Appends the faults of the cloth's and the start's mesh files, which are read: the scene of an experiment
-/// that is not valid cannot be built, which would append them.
-void check_mesh_files(const Experiment& e, ConfigErrors& errors) {
-  if (e.parameters.cloth.shape == "file" && !e.parameters.cloth.file.empty()) checked_cloth(e, errors);
-  if (!e.parameters.start.file.empty()) start_mesh(e, errors);
-}
-
 bool contains(const std::vector<std::string>& names, const std::string& name) {
   return std::ranges::find(names, name) != names.end();
 }
@@ -130,10 +123,12 @@ std::optional<Experiment> read_experiment(ConfigNode source, const Registry& reg
   check_material(e, errors);
   make_plugins(registry, errors, e);
   read_keys(e, errors);
-  if (!errors.empty()) check_mesh_files(e, errors);
+  if (errors.empty()) return e;
+  // The scene, which would append the faults of mesh files, cannot be built.
+  if (e.parameters.cloth.shape == "file" && !e.parameters.cloth.file.empty()) checked_cloth(e, errors);
+  if (!e.parameters.start.file.empty()) start_mesh(e, errors);
   sort_by_place(errors, e.source.where.file);
-  if (!errors.empty()) return std::nullopt;
-  return e;
+  return std::nullopt;
 }
 
 std::vector<std::string> Experiment::method_names() const {

@@ -28,14 +28,6 @@ std::filesystem::path previous(const std::filesystem::path& folder) {
   return folder / "checkpoint/previous.bin";
 }
 
-Checkpoint read(const std::filesystem::path& file) {
-  try {
-    return decode(read_file(file));
-  } catch (const std::exception& fault) {
-    refuse_path(file, fault.what());
-  }
-}
-
 }  // namespace
 
 const std::size_t checkpoint_header_size = magic.size() + 16;
@@ -103,11 +95,11 @@ Checkpoint load_checkpoint(const std::filesystem::path& folder, std::string& war
   for (const auto& file : {newest(folder), previous(folder)}) {
     if (!std::filesystem::exists(file)) continue;
     try {
-      Checkpoint checkpoint = read(file);
+      Checkpoint checkpoint = decode(read_file(file));
       if (!faults.empty()) warning = faults + "; going on from the checkpoint before it, " + file.string();
       return checkpoint;
     } catch (const std::exception& fault) {
-      faults += (faults.empty() ? "" : "; ") + std::string(fault.what());
+      faults += (faults.empty() ? "" : "; ") + file.string() + ": " + fault.what();
     }
   }
   if (faults.empty())

@@ -35,16 +35,13 @@ constexpr const char* lock_name = "checkpoint/lock";
 /// Longest ending of a method's file names, which begin with the method's name: a picture's.
 constexpr std::size_t longest_ending = std::string_view("_l10_on_l11.png.part").size();
 
-/// Whether results.json is a run's, and not of another program.
-bool has_results_of_a_run(const RunFolder& folder) {
-  const fs::path path = folder.file("results.json");
-  return fs::is_regular_file(path) &&
-         text_member(parse_json(read_file(path)), "version").starts_with("drape ");
-}
-
-/// Whether it is a run's folder: a run creates its lock first and never removes it.
+/// Whether it is a run's folder: a run creates its lock first and never removes it. Without the lock,
+/// results.json may be of another program.
 bool is_of_a_run(const RunFolder& folder) {
-  return fs::exists(folder.file(lock_name)) || has_results_of_a_run(folder);
+  const fs::path results = folder.file("results.json");
+  return fs::exists(folder.file(lock_name)) ||
+         (fs::is_regular_file(results) &&
+          text_member(parse_json(read_file(results)), "version").starts_with("drape "));
 }
 
 /// The files there with names that a run writes, finished or not.

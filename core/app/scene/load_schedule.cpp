@@ -39,13 +39,6 @@ StepLimit obstacle_step_limit(const LevelModel& from, const LevelModel& to, cons
   return limit;
 }
 
-/// Binds the energies under a load on every level, as load stepping does. Throws std::runtime_error with the
-/// fault of the first that cannot be bound or has other stencils than under the first load.
-void bind_energies(const LoadState& load, const Scene& scene) {
-  for (const auto& first : scene.models)
-    LevelModel(first->level(), load.parameters->material, load.energies, {}, {}, first.get());
-}
-
 /// The times of a key, and one between each two.
 std::vector<double> times_with_between(const std::vector<double>& times) {
   constexpr double fraction = 0.38196601125;  // no round one, where two motions may happen to meet
@@ -88,7 +81,9 @@ void check_on_levels(const Experiment& e, const Scene& scene, const LoadSchedule
     };
     const bool bound = hold_at(keys[k].times, [&](const LoadState& load, ConfigErrors& own) {
       if (of_vertices) check_selection(*load.parameters, part, item, where, levels, own);
-      if (own.empty() && part != LoadPart::pins) bind_energies(load, scene);
+      if (!own.empty() || part == LoadPart::pins) return;
+      for (const auto& first : scene.models)  // throws for an energy that load stepping could not bind
+        LevelModel(first->level(), load.parameters->material, load.energies, {}, {}, first.get());
     });
     if (bound && of_vertices)
       hold_at(times_with_between(keys[k].times), [&](const LoadState& load, ConfigErrors& own) {

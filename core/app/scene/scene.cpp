@@ -76,15 +76,6 @@ Positions make_start(const Positions& rest, const Positions& shape, const StartP
   return x;
 }
 
-/// Whether every initial coordinate is within bounds; appends the faults.
-bool check_start(const Experiment& e, const Level& level, const Positions& x, ConfigErrors& errors) {
-  const std::vector<std::string> faults = check_coordinates(x);
-  for (const std::string& fault : faults)
-    errors.push_back(
-        {e.location_of("start"), "the start of level " + std::to_string(level.index) + ": " + fault});
-  return faults.empty();
-}
-
 /// The state in the file that the experiment's `reference` names: a mesh, or the reference.ply of a run's
 /// folder. Empty without such a file, and, with an error appended, if it does not fit the finest level.
 std::optional<Positions> read_reference(const Experiment& experiment, const Hierarchy& hierarchy,
@@ -179,7 +170,10 @@ std::unique_ptr<Scene> build_scene(const Experiment& e, ConfigErrors& errors,
         dirichlet_vertices(p, level, coarsest, scene->placed[level.index]);
     Positions start = make_start(rest, shape, p.start, p.start.perturbation);
     for (const DirichletVertex& d : dirichlet) start.row(d.vertex) = d.target.transpose();
-    if (!check_start(e, level, start, errors)) return nullptr;
+    for (const std::string& fault : check_coordinates(start))
+      errors.push_back(
+          {e.location_of("start"), "the start of level " + std::to_string(level.index) + ": " + fault});
+    if (!errors.empty()) return nullptr;
     scene->starts.push_back(std::move(start));
     try {
       scene->models.push_back(std::make_shared<const LevelModel>(level, p.material, scene->energies,

@@ -28,10 +28,6 @@ struct Clearance {
   double smallest_gap = std::numeric_limits<double>::infinity();
 };
 
-bool same_pair(const Intersection& a, const Intersection& b) {
-  return a.first == b.first && a.second == b.second;
-}
-
 /// The generalised winding number of the mesh around p: 1 inside a closed mesh that faces outwards, 0 outside
 /// (solid angles: van Oosterom and Strackee 1983).
 double winding_number(const TriangleMesh& mesh, const Vector3d& p) {
@@ -140,20 +136,15 @@ class TranslationSearch {
   void intersect_persistent(const Clearance& other) {
     if (other.level != persistent.level) return;  // the triangles of another level are not comparable
     std::erase_if(persistent.intersections, [&](const Intersection& pair) {
-      return std::none_of(other.intersections.begin(), other.intersections.end(),
-                          [&](const Intersection& now) { return same_pair(pair, now); });
+      return std::ranges::none_of(other.intersections, [&](const Intersection& now) {
+        return now.first == pair.first && now.second == pair.second;
+      });
     });
   }
 
   const StartProbe& probe_;
   int best_contacts_ = 0;
 };
-
-std::string pinned_text(const Clearance& start) {
-  return "the start of level " + std::to_string(start.level) +
-         " touches: " + to_string(start.intersections[0]) +
-         "; a cloth with pins is not moved: move the pins or the obstacle";
-}
 
 std::string hopeless_text(const Clearance& start, const TranslationSearch& search, double diagonal) {
   const std::string attempt = "moving the start by up to " + three_digits(diagonal) + " m up or to a side";
@@ -180,7 +171,11 @@ Vector3d repair_start(Experiment& experiment, const Scene& scene, ConfigErrors& 
   const bool intersects = !start.intersections.empty();
   if (!intersects && !(start.smallest_gap < tiny_gap)) return Vector3d::Zero();
   if (!experiment.parameters.pins.empty()) {
-    if (intersects) errors.push_back({experiment.location_of("start"), pinned_text(start)});
+    if (intersects)
+      errors.push_back({experiment.location_of("start"),
+                        "the start of level " + std::to_string(start.level) +
+                            " touches: " + to_string(start.intersections[0]) +
+                            "; a cloth with pins is not moved: move the pins or the obstacle"});
     return Vector3d::Zero();
   }
   TranslationSearch search(probe, start);

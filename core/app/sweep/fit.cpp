@@ -72,8 +72,6 @@ std::string name_of(double factor) { return prefix + ConfigNode::of(factor).scal
 /// To six digits: what a person reads, and far finer than any fit.
 double six_digits(double value) { return parse_number(general_text(value, 6)).value(); }
 
-std::string first_line(const std::string& text) { return text.substr(0, text.find('\n')); }
-
 const double first_step = std::log(4), last_place = std::log(1024);
 constexpr double least_step = 0.05;      ///< towards a factor that is not known
 constexpr double least_interval = 1e-3;  ///< of the logarithm
@@ -248,7 +246,8 @@ FitSample FitRuns::measured(const Sweep& sweep, double factor) const {
                                 files.folder.string());
     };
     if (status.state != RunState::converged) {
-      leave_out(status.has_results() ? "did not converge" : "failed: " + first_line(status.error));
+      leave_out(status.has_results() ? "did not converge"
+                                     : "failed: " + status.error.substr(0, status.error.find('\n')));
       continue;
     }
     const MethodRecord method = read_run(files.folder).methods.at(0);
