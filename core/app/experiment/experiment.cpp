@@ -121,7 +121,7 @@ std::optional<Experiment> read_experiment(ConfigNode source, const Registry& reg
   check_vertex_counts(e, errors);
   check_start_coordinates(e, errors);
   check_material(e, errors);
-  make_plugins(registry, errors, e);
+  make_plugins(e, errors);
   read_keys(e, errors);
   if (errors.empty()) return e;
   // The scene, which would append the faults of mesh files, cannot be built.

@@ -21,162 +21,146 @@ void take_newton(const ConfigNode& written, const NewtonParameters& common, cons
     if (written.find(p.name)) p.assign(&common, newton->section_in(solver, 0));
 }
 
-class PluginMaker {
- public:
-  PluginMaker(const Registry& registry, ConfigErrors& errors, Experiment& experiment)
-      : registry_(registry), errors_(errors), e_(experiment) {}
+void set(Experiment& e, const std::string& key, ConfigNode value) {
+  ConfigErrors none;
+  set_path(e.resolved, key, std::move(value), {}, none);
+}
 
-  void make_all() {
-    ConfigNode energies, metrics;
-    energies.kind = metrics.kind = ConfigNode::Kind::list;
-    for (const ConfigNode& node : e_.parameters.energies) {
-      PluginParameters own =
-          read_plugin_parameters(registry_, "energy", node, errors_, &energies.items.emplace_back());
-      auto energy = std::static_pointer_cast<Energy>(make_plugin(own, locate_in(node), errors_));
-      if (!energy) continue;
-      e_.energies.push_back({label_of(node), std::move(energy)});
-      e_.energy_parameters.push_back(std::move(own));
+/// The name that a plugin gives itself, else its type.
+std::string label_of(const ConfigNode& node) {
+  const ConfigNode* name = node.find("name");
+  return name && name->kind == ConfigNode::Kind::scalar ? name->scalar : node.plugin_name();
+}
+
+void make_refiner(Experiment& e, ConfigErrors& errors) {
+  ConfigNode& node = e.parameters.refiner;
+  if (node.kind == ConfigNode::Kind::null) node = ConfigNode::of(default_refiner);
+  ConfigNode resolved;
+  e.refiner = make_from<Refiner>(*e.registry, node, errors, &resolved);
+  set(e, "refiner", resolved);
+}
+
+void make_contacts(Experiment& e, ConfigErrors& errors) {
+  ConfigNode models, obstacles;
+  models.kind = obstacles.kind = ConfigNode::Kind::list;
+  const ConfigNode& written = e.parameters.contact;
+  const bool is_list = written.kind == ConfigNode::Kind::list;
+  const std::size_t before = errors.size();
+  e.contact_configs = contact_configs(*e.registry, e.parameters, errors, models.items, obstacles.items);
+  for (std::size_t i = before; i < errors.size(); ++i)  // without "contact" they have only a key
+    if (Location& where = errors[i].where; where.line == 0 && e.source.find(where.key))
+      where = e.location_of(where.key);
+  for (std::size_t k = 0; k < e.contact_configs.size(); ++k) {
+    const ContactConfig& config = e.contact_configs[k];
+    const LocateFault locate =
+        locate_in_contact(config, is_list ? written.items[k] : written, e.parameters.obstacles);
+    e.contacts.push_back(
+        std::static_pointer_cast<ContactModel>(make_plugin(config.parameters, locate, errors)));
+  }
+  set(e, "contact", is_list || models.items.empty() ? models : models.items[0]);
+  set(e, "obstacles", obstacles);
+}
+
+void check_metrics(const Experiment& e, ConfigErrors& errors) {
+  const Location where = e.location_of("metrics");
+  try {
+    check_declarations(declared_metrics(e.metrics), where, errors);
+  } catch (const std::exception& error) {
+    errors.push_back({where, "a metric's declaration: " + reason_of(error)});
+  }
+}
+
+void check_reference(const Experiment& e, const std::set<std::string>& methods, ConfigErrors& errors) {
+  const ReferenceParameters& reference = e.parameters.reference;
+  const auto refuse = [&](const std::string& what) {
+    errors.push_back({e.location_of("reference"), "\"reference\" " + what});
+  };
+  const bool lowest = reference.method == ReferenceParameters::lowest;
+  if (!reference.method.empty() && !reference.file.empty())
+    refuse("takes either a method or a file, not both");
+  else if (lowest && methods.count(reference.method))
+    refuse("takes the word lowest for the lowest state of all methods; give the method of that name another");
+  else if (!reference.method.empty() && !lowest && !methods.count(reference.method))
+    refuse("must be one of the methods, or lowest, not \"" + excerpt(reference.method) + "\"");
+  else if (reference.method.empty() && reference.force_tolerance > 0)
+    refuse("needs the method whose finest state is solved further, as in {method: " +
+           (methods.empty() ? "newton" : *methods.rbegin()) + ", force_tolerance: 1e-5}");
+}
+
+void make_methods(Experiment& e, ConfigErrors& errors) {
+  const ConfigNode& methods = e.parameters.methods;
+  const ConfigNode* common = e.source.find("newton");
+  if (methods.kind != ConfigNode::Kind::map || methods.entries.empty()) {
+    if (e.source.find("methods"))
+      errors.push_back({methods.where,
+                        "\"methods\" must be a map of at least one method, as in "
+                        "\"methods: {pcs: {}, newton: {}}\""});
+    return;
+  }
+  ConfigNode resolved_map;
+  std::set<std::string> names;
+  for (const auto& [name, written] : methods.entries) {
+    ConfigNode node = written;
+    const bool is_map = node.kind == ConfigNode::Kind::map || node.kind == ConfigNode::Kind::null;
+    if (is_map && !node.find("type")) {
+      ConfigNode type = ConfigNode::of(name);
+      type.where = written.where;
+      node.add("type", type);
     }
-    set("energies", energies);
-    const ConfigNode* written = e_.source.find("energies");
-    if (written && written->kind == ConfigNode::Kind::list && written->items.empty())
-      errors_.push_back({written->where,
-                         "\"energies\" must name at least one energy, as in "
-                         "\"energies: [neo_hookean, hinge, gravity]\""});
-
-    make_refiner();
-    make_contacts();
-
-    if (!e_.source.find("metrics"))
-      for (const RegistryEntry* entry : registry_.of_kind("metric"))
-        if (std::ranges::none_of(entry->schema.parameters, &Parameter::required))
-          e_.parameters.metrics.push_back(ConfigNode::of(entry->name));
-    for (const ConfigNode& node : e_.parameters.metrics)
-      if (auto metric = make_from<Metric>(registry_, node, errors_, &metrics.items.emplace_back()))
-        e_.metrics.emplace_back(node.plugin_name(), metric);
-    check_metrics();
-    set("metrics", metrics);
-    make_methods();
-  }
-
- private:
-  void check_metrics() {
-    const Location where = e_.location_of("metrics");
-    try {
-      check_declarations(declared_metrics(e_.metrics), where, errors_);
-    } catch (const std::exception& error) {
-      errors_.push_back({where, "a metric's declaration: " + reason_of(error)});
-    }
-  }
-
-  /// The name that a plugin gives itself, else its type.
-  static std::string label_of(const ConfigNode& node) {
-    const ConfigNode* name = node.find("name");
-    return name && name->kind == ConfigNode::Kind::scalar ? name->scalar : node.plugin_name();
-  }
-
-  void make_refiner() {
-    ConfigNode& node = e_.parameters.refiner;
-    if (node.kind == ConfigNode::Kind::null) node = ConfigNode::of(default_refiner);
     ConfigNode resolved;
-    e_.refiner = make_from<Refiner>(registry_, node, errors_, &resolved);
-    set("refiner", resolved);
+    check_name("method", name, written.where, errors);
+    if (name == all_methods)
+      errors.push_back({written.where,
+                        "\"all\" cannot name a method, since --method all runs every one; "
+                        "rename it"});
+    if (!names.insert(name).second)
+      errors.push_back(
+          {written.where, "method \"" + excerpt(name) + "\" is given twice; rename one of them"});
+    const PluginParameters own = read_plugin_parameters(
+        *e.registry, "solver", node, errors, &resolved, [&](const Schema& schema, void* solver) {
+          if (common) take_newton(*common, e.parameters.newton, schema, solver);
+        });
+    if (auto solver = make_plugin(own, locate_in(node), errors))
+      e.methods.emplace_back(name, std::static_pointer_cast<Solver>(solver));
+    resolved_map.add(name, resolved);
   }
-
-  void make_contacts() {
-    ConfigNode models, obstacles;
-    models.kind = obstacles.kind = ConfigNode::Kind::list;
-    const ConfigNode& written = e_.parameters.contact;
-    const bool is_list = written.kind == ConfigNode::Kind::list;
-    const std::size_t before = errors_.size();
-    e_.contact_configs = contact_configs(registry_, e_.parameters, errors_, models.items, obstacles.items);
-    for (std::size_t i = before; i < errors_.size(); ++i)  // without "contact" they have only a key
-      if (Location& where = errors_[i].where; where.line == 0 && e_.source.find(where.key))
-        where = e_.location_of(where.key);
-    for (std::size_t k = 0; k < e_.contact_configs.size(); ++k) {
-      const ContactConfig& config = e_.contact_configs[k];
-      const LocateFault locate =
-          locate_in_contact(config, is_list ? written.items[k] : written, e_.parameters.obstacles);
-      e_.contacts.push_back(
-          std::static_pointer_cast<ContactModel>(make_plugin(config.parameters, locate, errors_)));
-    }
-    set("contact", is_list || models.items.empty() ? models : models.items[0]);
-    set("obstacles", obstacles);
-  }
-
-  void make_methods() {
-    const ConfigNode& methods = e_.parameters.methods;
-    const ConfigNode* common = e_.source.find("newton");
-    if (methods.kind != ConfigNode::Kind::map || methods.entries.empty()) {
-      if (e_.source.find("methods"))
-        errors_.push_back({methods.where,
-                           "\"methods\" must be a map of at least one method, as in "
-                           "\"methods: {pcs: {}, newton: {}}\""});
-      return;
-    }
-    ConfigNode resolved_map;
-    std::set<std::string> names;
-    for (const auto& [name, written] : methods.entries) {
-      ConfigNode node = written;
-      const bool is_map = node.kind == ConfigNode::Kind::map || node.kind == ConfigNode::Kind::null;
-      if (is_map && !node.find("type")) {
-        ConfigNode type = ConfigNode::of(name);
-        type.where = written.where;
-        node.add("type", type);
-      }
-      ConfigNode resolved;
-      check_name("method", name, written.where, errors_);
-      if (name == all_methods)
-        errors_.push_back({written.where,
-                           "\"all\" cannot name a method, since --method all runs every one; "
-                           "rename it"});
-      if (!names.insert(name).second)
-        errors_.push_back(
-            {written.where, "method \"" + excerpt(name) + "\" is given twice; rename one of them"});
-      const PluginParameters own = read_plugin_parameters(
-          registry_, "solver", node, errors_, &resolved, [&](const Schema& schema, void* solver) {
-            if (common) take_newton(*common, e_.parameters.newton, schema, solver);
-          });
-      if (auto solver = make_plugin(own, locate_in(node), errors_))
-        e_.methods.emplace_back(name, std::static_pointer_cast<Solver>(solver));
-      resolved_map.add(name, resolved);
-    }
-    set("methods", resolved_map);
-    check_reference(names);
-  }
-
-  void check_reference(const std::set<std::string>& methods) {
-    const ReferenceParameters& reference = e_.parameters.reference;
-    const auto refuse = [&](const std::string& what) {
-      errors_.push_back({e_.location_of("reference"), "\"reference\" " + what});
-    };
-    const bool lowest = reference.method == ReferenceParameters::lowest;
-    if (!reference.method.empty() && !reference.file.empty())
-      refuse("takes either a method or a file, not both");
-    else if (lowest && methods.count(reference.method))
-      refuse(
-          "takes the word lowest for the lowest state of all methods; give the method of that name another");
-    else if (!reference.method.empty() && !lowest && !methods.count(reference.method))
-      refuse("must be one of the methods, or lowest, not \"" + excerpt(reference.method) + "\"");
-    else if (reference.method.empty() && reference.force_tolerance > 0)
-      refuse("needs the method whose finest state is solved further, as in {method: " +
-             (methods.empty() ? "newton" : *methods.rbegin()) + ", force_tolerance: 1e-5}");
-  }
-
-  void set(const std::string& key, ConfigNode value) {
-    ConfigErrors none;
-    set_path(e_.resolved, key, std::move(value), {}, none);
-  }
-
-  const Registry& registry_;
-  ConfigErrors& errors_;
-  Experiment& e_;
-};
+  set(e, "methods", resolved_map);
+  check_reference(e, names, errors);
+}
 
 }  // namespace
 
-void make_plugins(const Registry& registry, ConfigErrors& errors, Experiment& experiment) {
-  PluginMaker(registry, errors, experiment).make_all();
+void make_plugins(Experiment& e, ConfigErrors& errors) {
+  ConfigNode energies, metrics;
+  energies.kind = metrics.kind = ConfigNode::Kind::list;
+  for (const ConfigNode& node : e.parameters.energies) {
+    PluginParameters own =
+        read_plugin_parameters(*e.registry, "energy", node, errors, &energies.items.emplace_back());
+    auto energy = std::static_pointer_cast<Energy>(make_plugin(own, locate_in(node), errors));
+    if (!energy) continue;
+    e.energies.push_back({label_of(node), std::move(energy)});
+    e.energy_parameters.push_back(std::move(own));
+  }
+  set(e, "energies", energies);
+  const ConfigNode* written = e.source.find("energies");
+  if (written && written->kind == ConfigNode::Kind::list && written->items.empty())
+    errors.push_back({written->where,
+                      "\"energies\" must name at least one energy, as in "
+                      "\"energies: [neo_hookean, hinge, gravity]\""});
+
+  make_refiner(e, errors);
+  make_contacts(e, errors);
+
+  if (!e.source.find("metrics"))
+    for (const RegistryEntry* entry : e.registry->of_kind("metric"))
+      if (std::ranges::none_of(entry->schema.parameters, &Parameter::required))
+        e.parameters.metrics.push_back(ConfigNode::of(entry->name));
+  for (const ConfigNode& node : e.parameters.metrics)
+    if (auto metric = make_from<Metric>(*e.registry, node, errors, &metrics.items.emplace_back()))
+      e.metrics.emplace_back(node.plugin_name(), metric);
+  check_metrics(e, errors);
+  set(e, "metrics", metrics);
+  make_methods(e, errors);
 }
 
 }  // namespace drape

@@ -29,7 +29,7 @@ LocateFault locate_in_contact(const ContactConfig& config, const ConfigNode& sec
 /// Makes the energies, refiner, contact models, metrics and solvers of an experiment, whose parameters and
 /// source are read, and adds all their parameters to `resolved`. Without `metrics` it makes all that are
 /// registered. Appends every error.
-void make_plugins(const Registry& registry, ConfigErrors& errors, Experiment& experiment);
+void make_plugins(Experiment& experiment, ConfigErrors& errors);
 
 /// Finds the values of an experiment's keys, and the declared numbers that they change; the plugins must have
 /// been made. Appends the faults of the keys: parameters that may not change, times that do not ascend, and
