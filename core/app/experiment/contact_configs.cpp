@@ -2,6 +2,7 @@
 #include <map>
 
 #include "core/app/experiment/read_experiment.h"
+#include "core/app/files/yaml_file.h"
 #include "core/kernel/files/message_text.h"
 #include "core/kernel/files/string_utils.h"
 
@@ -124,54 +125,34 @@ void share_obstacles(const Registry& registry, const std::vector<ConfigNode>& ob
   }
 }
 
-}  // namespace
-
-std::string refusal_of_friction(const Registry& registry) {
-  std::vector<std::string> names;
-  for (const RegistryEntry* model : registry.of_kind("contact"))
-    if (has_friction(*model)) names.push_back(model->name);
-  return "no contact model of this experiment has friction; set \"friction\" to 0" +
-         (names.empty() ? "" : ", or add " + quoted_choice(names) + " to \"contact\"");
-}
-
-std::vector<ContactConfig> contact_configs(const Registry& registry, const ExperimentParameters& p,
-                                           ConfigErrors& errors, std::vector<ConfigNode>& models,
-                                           std::vector<ConfigNode>& obstacles) {
-  const std::vector<ConfigNode> written = contact_sections(p);
-  std::vector<const RegistryEntry*> entries;
-  for (const ConfigNode& node : written) entries.push_back(registry.find("contact", node.plugin_name()));
-  std::vector<ContactConfig> configs(written.size());
-  check_models(written, entries, errors);
-  check_names(p.obstacles, errors);
-  check_friction(registry, p, entries, errors);
-  share_obstacles(registry, p.obstacles, entries, configs, errors);
-  obstacles = p.obstacles;
-  for (std::size_t k = 0; k < configs.size(); ++k) {
-    const std::vector<std::size_t>& own = configs[k].obstacles;
-    const auto read_shared = [&](const Schema& schema, void* values) {
-      for (const Parameter& shared : schema.parameters) {
-        if (!shared.from_experiment) continue;
-        if (!shared.section) *shared.number(values, 0) = p.friction;
-        for (std::size_t i = 0; shared.section && i < own.size(); ++i) {
-          void* item = shared.append(values);
-          shared.section->read(item, p.obstacles[own[i]], errors);
-          obstacles[own[i]] = shared.section->write(item);
-        }
+/// Reads the parameters of a contact model, its obstacles and friction among them. Returns its section, and
+/// sets its `obstacles`, with every parameter.
+ConfigNode read_contact(const Experiment& e, const ConfigNode& written, const RegistryEntry* model,
+                        ContactConfig& config, std::vector<ConfigNode>& obstacles, ConfigErrors& errors) {
+  const auto read_shared = [&](const Schema& schema, void* values) {
+    for (const Parameter& shared : schema.parameters) {
+      if (!shared.from_experiment) continue;
+      if (!shared.section) *shared.number(values, 0) = e.parameters.friction;
+      for (std::size_t i = 0; shared.section && i < config.obstacles.size(); ++i) {
+        ConfigNode& obstacle = obstacles[config.obstacles[i]];
+        void* item = shared.append(values);
+        shared.section->read(item, obstacle, errors);
+        obstacle = shared.section->write(item);
       }
-    };
-    const ConfigNode section = own_keys(entries[k], written[k], [&](std::size_t i) {
-      errors.push_back({written[k].key_locations[i], "\"" + written[k].entries[i].first + "\" in " +
-                                                         entries[k]->name +
-                                                         " belongs at the top of the experiment, once for "
-                                                         "all contact models"});
-    });
-    ConfigNode all;
-    configs[k].parameters = read_plugin_parameters(registry, "contact", section, errors, &all, read_shared);
-    models.push_back(own_keys(entries[k], all, [](std::size_t) {}));
-  }
-  return configs;
+    }
+  };
+  const ConfigNode section = own_keys(model, written, [&](std::size_t i) {
+    errors.push_back({written.key_locations[i], "\"" + written.entries[i].first + "\" in " + model->name +
+                                                    " belongs at the top of the experiment, once for all "
+                                                    "contact models"});
+  });
+  ConfigNode all;
+  config.parameters = read_plugin_parameters(*e.registry, "contact", section, errors, &all, read_shared);
+  return own_keys(model, all, [](std::size_t) {});
 }
 
+/// The location of a model's refused parameter, in its own section or in one of its obstacles. Refers to all
+/// arguments.
 LocateFault locate_in_contact(const ContactConfig& config, const ConfigNode& section,
                               const std::vector<ConfigNode>& obstacles) {
   return [&](const std::string& path, const std::optional<std::size_t>& at) {
@@ -182,6 +163,46 @@ LocateFault locate_in_contact(const ContactConfig& config, const ConfigNode& sec
     return locate_in(obstacles.at(config.obstacles.at(item)))(path.substr(std::min(dot + 1, path.size())),
                                                               at);
   };
+}
+
+}  // namespace
+
+std::string refusal_of_friction(const Registry& registry) {
+  std::vector<std::string> names;
+  for (const RegistryEntry* model : registry.of_kind("contact"))
+    if (has_friction(*model)) names.push_back(model->name);
+  return "no contact model of this experiment has friction; set \"friction\" to 0" +
+         (names.empty() ? "" : ", or add " + quoted_choice(names) + " to \"contact\"");
+}
+
+void make_contacts(Experiment& e, ConfigErrors& errors) {
+  const ExperimentParameters& p = e.parameters;
+  const std::vector<ConfigNode> written = contact_sections(p);
+  const std::size_t before = errors.size();
+  std::vector<const RegistryEntry*> models;
+  for (const ConfigNode& node : written) models.push_back(e.registry->find("contact", node.plugin_name()));
+  e.contact_configs.resize(written.size());
+  check_models(written, models, errors);
+  check_names(p.obstacles, errors);
+  check_friction(*e.registry, p, models, errors);
+  share_obstacles(*e.registry, p.obstacles, models, e.contact_configs, errors);
+  ConfigNode sections, obstacles;
+  sections.kind = obstacles.kind = NodeKind::list;
+  obstacles.items = p.obstacles;
+  for (std::size_t k = 0; k < written.size(); ++k) {
+    ContactConfig& config = e.contact_configs[k];
+    sections.items.push_back(read_contact(e, written[k], models[k], config, obstacles.items, errors));
+    const LocateFault locate = locate_in_contact(config, written[k], p.obstacles);
+    e.contacts.push_back(
+        std::static_pointer_cast<ContactModel>(make_plugin(config.parameters, locate, errors)));
+  }
+  for (std::size_t i = before; i < errors.size(); ++i)  // without "contact" they have only a key
+    if (Location& where = errors[i].where; where.line == 0 && e.source.find(where.key))
+      where = e.location_of(where.key);
+  const bool is_one = p.contact.kind != NodeKind::list && !sections.items.empty();
+  ConfigErrors none;
+  set_path(e.resolved, "contact", is_one ? sections.items[0] : sections, {}, none);
+  set_path(e.resolved, "obstacles", obstacles, {}, none);
 }
 
 }  // namespace drape

@@ -40,27 +40,6 @@ void make_refiner(Experiment& e, ConfigErrors& errors) {
   set(e, "refiner", resolved);
 }
 
-void make_contacts(Experiment& e, ConfigErrors& errors) {
-  ConfigNode models, obstacles;
-  models.kind = obstacles.kind = ConfigNode::Kind::list;
-  const ConfigNode& written = e.parameters.contact;
-  const bool is_list = written.kind == ConfigNode::Kind::list;
-  const std::size_t before = errors.size();
-  e.contact_configs = contact_configs(*e.registry, e.parameters, errors, models.items, obstacles.items);
-  for (std::size_t i = before; i < errors.size(); ++i)  // without "contact" they have only a key
-    if (Location& where = errors[i].where; where.line == 0 && e.source.find(where.key))
-      where = e.location_of(where.key);
-  for (std::size_t k = 0; k < e.contact_configs.size(); ++k) {
-    const ContactConfig& config = e.contact_configs[k];
-    const LocateFault locate =
-        locate_in_contact(config, is_list ? written.items[k] : written, e.parameters.obstacles);
-    e.contacts.push_back(
-        std::static_pointer_cast<ContactModel>(make_plugin(config.parameters, locate, errors)));
-  }
-  set(e, "contact", is_list || models.items.empty() ? models : models.items[0]);
-  set(e, "obstacles", obstacles);
-}
-
 void check_metrics(const Experiment& e, ConfigErrors& errors) {
   const Location where = e.location_of("metrics");
   try {

@@ -10,21 +10,13 @@ namespace drape {
 /// read_keys reports faults of the keys.
 void set_first_keys(ConfigNode& source);
 
-/// Reads the parameters of each contact model, in order. `models` receives the models' own sections and
-/// `obstacles`, in the experiment's order, the obstacles, both with every parameter. Appends an error for an
-/// obstacle that no model takes, naming a registered one that would, for friction that none of them has, and
-/// for `obstacles` and `friction` in a model's own section.
-std::vector<ContactConfig> contact_configs(const Registry& registry, const ExperimentParameters& parameters,
-                                           ConfigErrors& errors, std::vector<ConfigNode>& models,
-                                           std::vector<ConfigNode>& obstacles);
-
 /// Why friction is refused where no contact model has any, with a remedy.
 std::string refusal_of_friction(const Registry& registry);
 
-/// The location of a model's refused parameter, in its own section or in one of its obstacles. Refers to all
-/// arguments.
-LocateFault locate_in_contact(const ContactConfig& config, const ConfigNode& section,
-                              const std::vector<ConfigNode>& obstacles);
+/// The part of make_plugins that makes contact models. Appends an error for an obstacle that no model takes,
+/// naming a registered one that would, for friction that none of them has, and for `obstacles` and `friction`
+/// in a model's own section.
+void make_contacts(Experiment& experiment, ConfigErrors& errors);
 
 /// Makes the energies, refiner, contact models, metrics and solvers of an experiment, whose parameters and
 /// source are read, and adds all their parameters to `resolved`. Without `metrics` it makes all that are
