@@ -55,8 +55,8 @@ void discard_states(const RunFiles& files) {
   if (!std::filesystem::is_directory(states)) return;
   FileLock lock(states / "lock");
   if (!lock.acquire(0)) return;
-  for (const std::filesystem::path& file : {states / "state.bin", states / "previous.bin", files.results()})
-    std::filesystem::remove(file);
+  remove_checkpoints(files.folder);
+  std::filesystem::remove(files.results());
 }
 
 RunStatus begin(const RunFiles& files, int threads, bool resumes) {
@@ -70,18 +70,16 @@ RunStatus begin(const RunFiles& files, int threads, bool resumes) {
 }
 
 std::vector<std::string> command(const RunFiles& files, const SweepOptions& options, bool resumes) {
-  const std::filesystem::path folder = std::filesystem::absolute(files.folder);  // may begin with "-"
-  // The config has the chosen methods only.
-  std::vector<std::string> all =
-      resumes ? std::vector<std::string>{own_program(), "run", "--resume", folder}
-              : std::vector<std::string>{own_program(), "run",      std::filesystem::absolute(files.config()),
-                                         "--out",       folder,     "--overwrite",
-                                         "--method",    all_methods};
+  const std::string folder = std::filesystem::absolute(files.folder);  // may begin with "-"
+  const std::string config = std::filesystem::absolute(files.config());
   // The sweep has checked the memory.
-  for (const std::string& option : {std::string("--quiet"), std::string("--allow-memory"),
-                                    std::string("--threads"), std::to_string(options.threads)})
-    all.push_back(option);
+  std::vector<std::string> all = {own_program(),    "run",       "--quiet",
+                                  "--allow-memory", "--threads", std::to_string(options.threads)};
   if (!options.report) all.emplace_back("--no-report");
+  if (resumes)
+    all.insert(all.end(), {"--resume", folder});
+  else  // the config has the chosen methods only
+    all.insert(all.end(), {config, "--out", folder, "--overwrite", "--method", all_methods});
   return all;
 }
 
