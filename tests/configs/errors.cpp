@@ -60,9 +60,7 @@ struct Loaded {
     for (std::size_t k = 0; k < values.size(); ++k) error[measures[k].name] = values[k];
     return error;
   }
-  double energy(const Positions& x) const {
-    return energy_on_finest(*scene, scene->hierarchy.prolongations, 1, x);
-  }
+  double energy(const Positions& x) const { return scene->finest_model().value(x); }
 };
 
 }  // namespace

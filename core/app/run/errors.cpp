@@ -53,10 +53,10 @@ std::uint32_t write_snapshots(const std::filesystem::path& file, const std::vect
 
 double energy_of_start(const Scene& scene) { return scene.finest_model().value(scene.placed.back()); }
 
-double energy_on_finest(const Scene& scene, const std::vector<ProlongationMatrix>& weights, int level,
-                        const Positions& x) {
-  return scene.finest_model().value(
-      scene.hierarchy.prolong(x, level, scene.hierarchy.level_count() - 1, weights));
+Positions prolonged(const Experiment& experiment, const Scene& scene, const std::string& method,
+                    const Positions& x, int from, int to) {
+  const auto& weights = scene.hierarchy.weights(experiment.solver_of(method).interpolation());
+  return scene.hierarchy.prolong(x, from, to, weights);
 }
 
 StateError state_error(const std::vector<ErrorMeasure>& measures, const Experiment& experiment,
@@ -89,12 +89,12 @@ nlohmann::ordered_json ErrorTable::add(const std::string& method, const LevelRes
   level.file = "snapshots/" + method + "_l" + std::to_string(result.level) + ".bin";
   level.last = result.x;
   level.converged = has_converged(result.outcome);
-  const auto& weights = scene_.hierarchy.weights(experiment_.solver_of(method).interpolation());
   nlohmann::ordered_json entry = {{"file", level.file}};
   for (const Snapshot& snapshot : snapshots) {
     level.cost.push_back(before + snapshot.cost);
     level.iterations.push_back(snapshot.cost.iterations);
-    level.energies.push_back(energy_on_finest(scene_, weights, result.level, snapshot.x));
+    level.energies.push_back(scene_.finest_model().value(
+        prolonged(experiment_, scene_, method, snapshot.x, result.level, scene_.finest())));
     entry["iterations"].push_back(snapshot.cost.iterations);
     entry["seconds"].push_back(spent.seconds + snapshot.cost.seconds);
   }
@@ -108,7 +108,7 @@ nlohmann::ordered_json ErrorTable::add(const std::string& method, const LevelRes
 
 void ErrorTable::write(const Positions* reference, const std::function<bool()>& stop,
                        const std::function<void(const std::string&)>& fault) {
-  const int finest = scene_.hierarchy.level_count() - 1;
+  const int finest = scene_.finest();
   std::string text = "method,level,iteration,seconds,iterations,flops,vertices";
   for (const char* target : error_targets)
     for (const ErrorMeasure& measure : measures_) text += "," + std::string(target) + "_" + measure.name;
@@ -124,7 +124,6 @@ void ErrorTable::write(const Positions* reference, const std::function<bool()>& 
     for (const LevelSnapshots& other : levels_)
       if (other.method == level.method && other.level == finest && other.converged)
         own = target_at(other.last, other.energies.back());
-    const auto& weights = scene_.hierarchy.weights(experiment_.solver_of(level.method).interpolation());
     const bool same = own && standard && own->x == standard->x;
     const int vertices = scene_.hierarchy.levels[level.level].vertex_count();
     SnapshotFile states;
@@ -136,7 +135,7 @@ void ErrorTable::write(const Positions* reference, const std::function<bool()>& 
     }
     for (std::size_t k = 0; k < states.count() && !stop(); ++k) {
       const Positions state = k + 1 < states.count() ? states.positions(k) : level.last;
-      const Positions x = scene_.hierarchy.prolong(state, level.level, finest, weights);
+      const Positions x = prolonged(experiment_, scene_, level.method, state, level.level, finest);
       const auto against = [&](const std::optional<ErrorTarget>& target) {
         return target ? state_error(measures_, experiment_, scene_, x, level.energies[k], *target, fault)
                       : StateError(measures_.size());

@@ -81,10 +81,9 @@ StateError state_error(const std::vector<ErrorMeasure>& measures, const Experime
                        const Scene& scene, const Positions& x, double energy, const ErrorTarget& target,
                        const std::function<void(const std::string&)>& fault);
 
-/// The finest level's energy [J] of a state that these prolongation matrices, [l]: n_{l+1} × n_l, refine to
-/// it.
-double energy_on_finest(const Scene& scene, const std::vector<ProlongationMatrix>& weights, int level,
-                        const Positions& x);
+/// A state of a method on one level as it is on another, finer one, by the method's own interpolation.
+Positions prolonged(const Experiment& experiment, const Scene& scene, const std::string& method,
+                    const Positions& x, int from, int to);
 
 /// The snapshots of one level.
 struct LevelSnapshots {

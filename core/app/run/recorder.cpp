@@ -191,8 +191,8 @@ Recorder::Json Recorder::state_entry(const LevelResult& r) {
         parts[name].is_null() ? Json() : finite_or_null(joules - parts[name].get<double>());
   const std::optional<int> crossing = intersections(r.level, r.x);
   const bool apart = crossing.value_or(0) == 0;
-  const auto& weights = scene_.hierarchy.weights(experiment_.solver_of(s_.method).interpolation());
-  const double on_finest = energy_on_finest(scene_, weights, r.level, r.x);
+  const double on_finest =
+      scene_.finest_model().value(prolonged(experiment_, scene_, s_.method, r.x, r.level, scene_.finest()));
   return {{"level", r.level},
           {"vertices", level.vertex_count()},
           {"triangles", level.triangle_count()},

@@ -56,11 +56,10 @@ Recorder::Json Recorder::compare(int level, const Positions& x, const Positions&
 }
 
 Recorder::Json Recorder::pair_entry(const RecordedState& coarse, const RecordedState& fine) {
-  const auto& weights = scene_.hierarchy.weights(experiment_.solver_of(fine.method).interpolation());
-  const Positions prolonged = scene_.hierarchy.prolong(coarse.x, coarse.level, fine.level, weights);
+  const Positions x = prolonged(experiment_, scene_, fine.method, coarse.x, coarse.level, fine.level);
   Json row = {{"coarse", coarse.level}, {"fine", fine.level}};
   VertexFields fields;
-  row.update(compare(fine.level, fine.x, prolonged, &fields));
+  row.update(compare(fine.level, fine.x, x, &fields));
   if (fine.level != scene_.finest() || fields.empty()) return row;
   const std::string file = fields_file(fine.method, coarse.level, fine.level),
                     bytes = ply_bytes({fine.x, scene_.hierarchy.levels[fine.level].rest.triangles}, fields);
