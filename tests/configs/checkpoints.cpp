@@ -4,8 +4,8 @@
 #include <nlohmann/json.hpp>
 #include <random>
 
-#include "core/app/run/checkpoint_manager.h"
 #include "core/app/run/runner.h"
+#include "core/app/run/saved_run.h"
 #include "core/kernel/files/string_utils.h"
 #include "core/numerics/mesh_files/io.h"
 #include "core/numerics/patterns/generate.h"

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/app/run/recorder.h"
+#include "core/kernel/version.h"
 #include "core/numerics/solve/newton_state.h"
 
 namespace drape {
@@ -20,7 +21,8 @@ struct FileFingerprint {
 
 /// The complete state of a run: resuming from it gives the same results, bit for bit.
 struct Checkpoint {
-  std::string program;                 ///< drape's version and commit
+  /// drape's version and commit
+  std::string program = "drape " + version() + " (" + commit() + ")";
   std::string config;                  ///< contents of config.yaml
   std::vector<FileFingerprint> files;  ///< files that the config names
   std::vector<std::string> methods;    ///< in the run's order

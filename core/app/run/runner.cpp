@@ -6,8 +6,6 @@
 
 #include "core/app/files/yaml_file.h"
 #include "core/app/report/report.h"
-#include "core/app/run/checkpoint_manager.h"
-#include "core/app/run/progress.h"
 #include "core/app/run/recorder_files.h"
 #include "core/app/scene/scene.h"
 #include "core/app/view/live_view.h"
@@ -21,25 +19,44 @@ namespace drape {
 
 namespace {
 
-/// Passes everything on to the recorder, the checkpoints, the progress bar and other observers.
+/// The interval of checkpoints is at least this many times the time to save one.
+constexpr double save_time_ratio = 100;
+
+/// Passes everything on to the recorder, the progress bar and other observers. Saves checkpoints: at the
+/// beginning of every method and level, on a stop request, and from time to time. Results do not depend on
+/// it.
 class RunObserver : public Observer {
  public:
-  RunObserver(Recorder& recorder, CheckpointManager& checkpoints, Progress& progress,
-              const RunOptions& options)
-      : recorder_(recorder), checkpoints_(checkpoints), stop_(options.stop), viewers_{&progress} {
+  /// `begun` is the run's state at its beginning.
+  RunObserver(const RunFolder& folder, Recorder& recorder, Progress& progress, const RunOptions& options,
+              Checkpoint begun)
+      : folder_(folder.path()),
+        recorder_(recorder),
+        options_(options),
+        now_(std::move(begun)),
+        method_clock_(now_.state.seconds),
+        viewers_{&progress} {
     for (Observer* viewer : {static_cast<Observer*>(options.view), options.observer})
       if (viewer) viewers_.push_back(viewer);
   }
 
-  /// The state is that of an interrupted method, or the first.
-  void method_started(bool resumable, const MethodState& state) {
-    resumable_ = resumable;
-    level_ = state.level;
-    finished_ = state.finished;
-  }
-  /// Finished levels of the current method.
-  const std::vector<LevelResult>& finished() const { return finished_; }
+  /// The state at this point; its method is the current one.
+  const Checkpoint& now() const { return now_; }
   int level() const { return level_; }
+
+  /// An interrupted method goes on from the present state.
+  void method_started(int method, bool resumable, bool interrupted) {
+    resumable_ = resumable;
+    if (!interrupted) {
+      now_.method = method;
+      now_.state = {};
+      now_.state.level = now_.first_level;
+      method_clock_ = Stopwatch();
+      save();
+    }
+    level_ = now_.state.level;
+  }
+  void method_finished(bool converged) { now_.all_converged = now_.all_converged && converged; }
 
   void level_started(int level) override {
     level_ = level;
@@ -56,32 +73,47 @@ class RunObserver : public Observer {
   }
   void level_finished(const LevelResult& result) override {
     recorder_.level_finished(result);
-    finished_.push_back(result);
-    if (resumable_) checkpoints_.level_finished(result);
+    now_.state.finished.push_back(result);
+    if (resumable_ && result.outcome != Outcome::cancelled) {
+      now_.state.level = result.level + 1;
+      now_.state.under_way.reset();
+      save();
+    }
     for (Observer* viewer : viewers_) viewer->level_finished(result);
   }
-  bool checkpoint_due() override { return resumable_ && checkpoints_.due(stop_requested()); }
-  void checkpoint(const NewtonState& state) override { checkpoints_.save(state); }
+  bool checkpoint_due() override {
+    const double interval = std::max(options_.checkpoint, save_time_ratio * cost_);
+    return resumable_ && (stop_requested() || options_.checkpoint == 0 || since_.seconds() > interval);
+  }
+  void checkpoint(const NewtonState& state) override {
+    now_.state.level = state.so_far.level;
+    now_.state.under_way = state;
+    save();
+  }
   bool stop_requested() override {
-    return (stop_ && stop_()) || any([](Observer& viewer) { return viewer.stop_requested(); });
+    return (options_.stop && options_.stop()) || std::ranges::any_of(viewers_, &Observer::stop_requested);
   }
-  bool refine_requested() override {
-    return any([](Observer& viewer) { return viewer.refine_requested(); });
-  }
+  bool refine_requested() override { return std::ranges::any_of(viewers_, &Observer::refine_requested); }
 
  private:
-  template <class Asked>
-  bool any(const Asked& asked) const {
-    return std::ranges::any_of(viewers_, [&](Observer* viewer) { return asked(*viewer); });
+  void save() {
+    const Stopwatch watch;
+    now_.state.seconds = method_clock_.seconds();
+    now_.recorder = recorder_.state();
+    save_checkpoint(folder_, now_);
+    cost_ = watch.seconds();
+    since_ = Stopwatch();
   }
 
+  const std::filesystem::path folder_;
   Recorder& recorder_;
-  CheckpointManager& checkpoints_;
-  const std::function<bool()>& stop_;
+  const RunOptions& options_;
+  Checkpoint now_;
+  Stopwatch method_clock_, since_;
+  double cost_ = 0;  // of the last checkpoint [s]
   std::vector<Observer*> viewers_;
   bool resumable_ = false;
   int level_ = 0;
-  std::vector<LevelResult> finished_;
 };
 
 /// Shows the results that a method had when the run was interrupted.
@@ -110,17 +142,6 @@ class UnrecordedObserver : public Observer {
   Progress& progress_;
   RunObserver& run_;
 };
-
-/// The resolved experiment with paths to the copies of mesh files in the results folder.
-ConfigNode saved_config(const Experiment& experiment) {
-  ConfigNode config = experiment.resolved;
-  ConfigErrors none;
-  if (experiment.parameters.cloth.shape == "file") set_path(config, "cloth.file", "rest/l0.ply", none);
-  if (!experiment.parameters.start.file.empty()) set_path(config, "start.file", "start.ply", none);
-  if (!experiment.parameters.reference.file.empty())
-    set_path(config, "reference.file", "reference.ply", none);
-  return config;
-}
 
 std::string message_in_flight() {
   try {
@@ -173,31 +194,26 @@ void report_on(const RunFolder& folder, const std::function<bool()>& stopped) {
 /// Runs the remaining methods, beginning with the current one if `resumed`, then measures errors.
 bool run(const Experiment& experiment, const Scene& scene, const RunOptions& options, const RunFolder& folder,
          Recorder& recorder, const Checkpoint& begun, bool resumed) {
-  CheckpointManager checkpoints(folder, recorder, begun, options.checkpoint);
   std::vector<std::string> changing;
   for (const ScheduleKey& key : experiment.parameters.schedule.keys) changing.push_back(key.parameter);
   Progress progress(experiment.parameters.newton.force_tolerance, experiment.parameters.levels,
                     options.verbosity, scene.load_stepping.get(), changing);
-  RunObserver observer(recorder, checkpoints, progress, options);
+  RunObserver observer(folder, recorder, progress, options, begun);
 
-  bool all_converged = begun.all_converged, cancelled = false;
+  bool cancelled = false;
   for (int m = begun.method; m < static_cast<int>(begun.methods.size()) && !cancelled; ++m) {
     const std::string& name = begun.methods[m];
     const Solver& solver = experiment.solver_of(name);
-    MethodState state;
-    state.level = begun.first_level;
-    const bool under_way = resumed && m == begun.method;
-    if (under_way) state = begun.state;
-    observer.method_started(solver.can_resume(), state);
+    const bool interrupted = resumed && m == begun.method;
     progress.method_started(name);
     if (options.view) options.view->method_started(name);
     if (options.method_started) options.method_started(name);
-    if (under_way) {
-      catch_up(state, progress, options.view);
-    } else {
+    if (interrupted)
+      catch_up(begun.state, progress, options.view);
+    else
       recorder.method_started(name);
-      checkpoints.method_started(m);
-    }
+    observer.method_started(m, solver.can_resume(), interrupted);
+    const MethodState state = observer.now().state;
     std::vector<LevelResult> results;
     std::optional<MethodFailure> failure;
     try {
@@ -206,7 +222,7 @@ bool run(const Experiment& experiment, const Scene& scene, const RunOptions& opt
       throw;  // concerns the whole run
     } catch (...) {
       failure = {std::min(observer.level(), scene.finest()), message_in_flight()};
-      results = observer.finished();
+      results = observer.now().state.finished;
       progress.method_failed(failure->level, failure->cause);
     }
     recorder.method_finished(results, failure);
@@ -215,8 +231,7 @@ bool run(const Experiment& experiment, const Scene& scene, const RunOptions& opt
       converged = converged && has_converged(r.outcome);
       cancelled = cancelled || r.outcome == Outcome::cancelled;
     }
-    all_converged = all_converged && converged;
-    checkpoints.method_finished(converged);
+    observer.method_finished(converged);
   }
   UnrecordedObserver unrecorded(progress, observer);
   const bool measured = recorder.measure_errors(unrecorded, cancelled);
@@ -225,7 +240,7 @@ bool run(const Experiment& experiment, const Scene& scene, const RunOptions& opt
   recorder.run_finished(complete);
   if (complete) remove_checkpoints(folder.path());
   if (options.report) report_on(folder, [&] { return observer.stop_requested(); });
-  const bool good = all_converged && recorder.intersection_free();
+  const bool good = observer.now().all_converged && recorder.intersection_free();
   if (options.view)
     options.view->run_finished((!complete ? "stopped on request"
                                 : good    ? "everything converged"

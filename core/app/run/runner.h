@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "core/app/run/checkpoint_manager.h"
 #include "core/app/run/progress.h"
+#include "core/app/run/saved_run.h"
 #include "core/app/scene/scene.h"
 
 namespace drape {

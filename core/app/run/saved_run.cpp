@@ -1,4 +1,4 @@
-#include "core/app/run/checkpoint_manager.h"
+#include "core/app/run/saved_run.h"
 
 #include <algorithm>
 #include <iterator>
@@ -9,7 +9,6 @@
 #include "core/app/run/recorder_files.h"
 #include "core/kernel/files/file.h"
 #include "core/kernel/files/string_utils.h"
-#include "core/kernel/version.h"
 #include "core/numerics/mesh_files/io.h"
 
 namespace drape {
@@ -17,11 +16,6 @@ namespace drape {
 namespace fs = std::filesystem;
 
 namespace {
-
-/// The interval is at least this many times the time to save.
-constexpr double save_time_ratio = 100;
-
-std::string program() { return "drape " + std::string(version()) + " (" + commit() + ")"; }
 
 /// A file's bytes, or those of the files in a folder, in the order of their names.
 FileFingerprint fingerprint_of(const fs::path& path) {
@@ -56,53 +50,14 @@ nlohmann::ordered_json results_of(const fs::path& folder) {
 
 }  // namespace
 
-CheckpointManager::CheckpointManager(const RunFolder& folder, const Recorder& recorder, Checkpoint begun,
-                                     double interval)
-    : folder_(folder.path()),
-      recorder_(recorder),
-      now_(std::move(begun)),
-      interval_(interval),
-      method_clock_(now_.state.seconds) {
-  now_.program = program();
-}
-
-void CheckpointManager::method_started(int method) {
-  now_.method = method;
-  now_.state = {};
-  now_.state.level = now_.first_level;
-  method_clock_ = Stopwatch();
-  save();
-}
-
-void CheckpointManager::method_finished(bool converged) {
-  now_.all_converged = now_.all_converged && converged;
-}
-
-void CheckpointManager::level_finished(const LevelResult& result) {
-  if (result.outcome == Outcome::cancelled) return;
-  now_.state.finished.push_back(result);
-  now_.state.level = result.level + 1;
-  now_.state.under_way.reset();
-  save();
-}
-
-bool CheckpointManager::due(bool stopping) const {
-  return stopping || interval_ == 0 || since_.seconds() > std::max(interval_, save_time_ratio * cost_);
-}
-
-void CheckpointManager::save(const NewtonState& under_way) {
-  now_.state.level = under_way.so_far.level;
-  now_.state.under_way = under_way;
-  save();
-}
-
-void CheckpointManager::save() {
-  const Stopwatch watch;
-  now_.state.seconds = method_clock_.seconds();
-  now_.recorder = recorder_.state();
-  save_checkpoint(folder_, now_);
-  cost_ = watch.seconds();
-  since_ = Stopwatch();
+ConfigNode saved_config(const Experiment& experiment) {
+  ConfigNode config = experiment.resolved;
+  ConfigErrors none;
+  if (experiment.parameters.cloth.shape == "file") set_path(config, "cloth.file", "rest/l0.ply", none);
+  if (!experiment.parameters.start.file.empty()) set_path(config, "start.file", "start.ply", none);
+  if (!experiment.parameters.reference.file.empty())
+    set_path(config, "reference.file", "reference.ply", none);
+  return config;
 }
 
 std::vector<fs::path> files_of(const ConfigNode& saved) {
@@ -178,9 +133,11 @@ InterruptedRun interrupted_run(RunFolder run, std::string& warning) {
       refuse_path(path,
                   "is not what it was when the run began; put that file back, or run the experiment again");
   }
-  if (checkpoint.program != program())
+  const std::string program = Checkpoint().program;
+  if (checkpoint.program != program)
     warning += (warning.empty() ? "" : "\n") + ("the checkpoint is by " + checkpoint.program + ", this is " +
-                                                program() + ": the last bits may differ");
+                                                program + ": the last bits may differ");
+  checkpoint.program = program;  // of the next one
   return {std::move(run), std::move(checkpoint)};
 }
 

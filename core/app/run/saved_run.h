@@ -5,34 +5,11 @@
 #include <string>
 
 #include "core/app/run/checkpoint.h"
-#include "core/kernel/threads/stopwatch.h"
 
 namespace drape {
 
-/// Saves checkpoints of a run: at the beginning of every method and level, on a stop request, and about every
-/// `interval` seconds, less often if saving would take more than 1 % of the time. Results do not depend on
-/// it.
-class CheckpointManager {
- public:
-  /// `begun` is the run's state at its beginning.
-  CheckpointManager(const RunFolder& folder, const Recorder& recorder, Checkpoint begun, double interval);
-
-  void method_started(int method);
-  void method_finished(bool converged);
-  /// Saves the state after the level, unless it was cancelled.
-  void level_finished(const LevelResult& result);
-  bool due(bool stopping) const;
-  void save(const NewtonState& under_way);
-
- private:
-  void save();
-
-  const std::filesystem::path folder_;
-  const Recorder& recorder_;
-  Checkpoint now_;
-  double interval_, cost_ = 0;
-  Stopwatch method_clock_, since_;
-};
+/// The config.yaml of an experiment: resolved, with paths to the copies of mesh files in the results folder.
+ConfigNode saved_config(const Experiment& experiment);
 
 /// The files that a config.yaml names; those of its results folder have relative paths.
 std::vector<std::filesystem::path> files_of(const ConfigNode& saved);
