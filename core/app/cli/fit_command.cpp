@@ -25,10 +25,10 @@ namespace {
 constexpr int most_evaluations = 24;
 
 struct FitRequest : ConfigArguments, SweepOptions {
+  FitSetup setup;
   double target = 0, tolerance = 1;  ///< tolerance in percent of the target
   std::vector<std::string> by;
-  std::string metric, method, folder;
-  int starts = 3;
+  std::string folder;
 };
 
 std::string digits(double value) { return general_text(value, 4); }
@@ -50,20 +50,19 @@ void choose_metric(const Experiment& experiment, std::string& metric, ConfigErro
                                          : ", only " + joined(names))});
 }
 
-/// The fit's runs, after everything in the request is checked; completes the request's folder.
-FitSetup setup_of(FitRequest& request, const Registry& registry) {
+/// Checks the request, and completes its setup and folder.
+void complete(FitRequest& request, const Registry& registry) {
   ConfigErrors errors;
   const auto experiment = read_experiment(request.config, request.overrides(), registry, errors);
   require_none(errors);
-  FitSetup setup;
-  setup.config = request.config, setup.starts = request.starts;
+  FitSetup& setup = request.setup;
+  setup.config = request.config;
   setup.name = experiment->parameters.name + "_fit";
   setup.keys = scaled_keys(*experiment, request.by, "--by", errors);
-  choose_metric(*experiment, request.metric, errors);
-  setup.metric = request.metric;
-  if (request.method == all_methods) throw std::runtime_error("--method: a fit takes one method");
+  choose_metric(*experiment, setup.metric, errors);
+  if (setup.method == all_methods) throw std::runtime_error("--method: a fit takes one method");
   setup.method = chosen_methods(
-      *experiment, request.method.empty() ? std::vector<std::string>() : std::vector{request.method})[0];
+      *experiment, setup.method.empty() ? std::vector<std::string>() : std::vector{setup.method})[0];
   for (const Override& o : request.overrides())
     if (const auto value = value_of_option(o.value, o.option, errors)) {
       setup.set.add(o.key, *value);
@@ -75,7 +74,6 @@ FitSetup setup_of(FitRequest& request, const Registry& registry) {
   if (request.folder.empty()) request.folder = "results/" + setup.name;
   const SweepFolder folder(request.folder);
   if (!request.allow_memory) MemoryEstimate(*sweep, folder).require(*sweep, folder, machine_memory());
-  return setup;
 }
 
 void tell(const FitSetup& setup, const FitSample& sample) {
@@ -101,7 +99,7 @@ const FitSample* nearest_sample(const std::vector<FitSample>& samples, double ta
 
 /// Why a fit ended without its target.
 std::string shortfall(FitEnd end, const FitRequest& request, const std::vector<FitSample>& samples) {
-  const std::string target = request.metric + " " + digits(request.target);
+  const std::string target = request.setup.metric + " " + digits(request.target);
   if (end == FitEnd::jumps) return target + " lies in a jump between two factors that are almost equal";
   if (end == FitEnd::exhausted)
     return target + " was not met by " + std::to_string(most_evaluations) + " factors";
@@ -126,8 +124,9 @@ nlohmann::ordered_json json_of(const FitSample& sample) {
   return json;
 }
 
-void write_fit(const SweepFolder& folder, const FitRequest& request, const FitSetup& setup,
-               const std::vector<FitSample>& samples, const FitSample& best, bool reached) {
+void write_fit(const SweepFolder& folder, const FitRequest& request, const std::vector<FitSample>& samples,
+               const FitSample& best, bool reached) {
+  const FitSetup& setup = request.setup;
   nlohmann::ordered_json json = {
       {"experiment", setup.config}, {"method", setup.method},         {"metric", setup.metric},
       {"target", request.target},   {"tolerance", request.tolerance}, {"starts", setup.starts},
@@ -140,18 +139,18 @@ void write_fit(const SweepFolder& folder, const FitRequest& request, const FitSe
   write_file(folder.path() / "fitted.yaml", best.config);
 }
 
-int show_result(const SweepFolder& folder, const FitRequest& request, const FitSetup& setup,
-                const FitRuns& runs, FitEnd end) {
+int show_result(const SweepFolder& folder, const FitRequest& request, const FitRuns& runs, FitEnd end) {
+  const FitSetup& setup = request.setup;
   const FitSample* best = nearest_sample(runs.samples(), request.target);
   if (!best) {
     std::cerr << "error: no start gave a value\n";
     return exit_not_converged;
   }
   const bool reached = end == FitEnd::reached;
-  write_fit(folder, request, setup, runs.samples(), *best, reached);
-  std::cout << request.metric << " " << digits(best->median()) << " (" << digits(best->values.front())
-            << " to " << digits(best->values.back()) << " in " << best->values.size() << " of "
-            << setup.starts << " starts) with\n ";
+  write_fit(folder, request, runs.samples(), *best, reached);
+  std::cout << setup.metric << " " << digits(best->median()) << " (" << digits(best->values.front()) << " to "
+            << digits(best->values.back()) << " in " << best->values.size() << " of " << setup.starts
+            << " starts) with\n ";
   for (const ScaledKey& key : setup.keys)
     std::cout << " --set " << key.path << "=" << ConfigNode::of(best->scaled(key)).scalar;
   std::cout << "\nexperiment: " << (folder.path() / "fitted.yaml").string() << "\n";
@@ -160,25 +159,25 @@ int show_result(const SweepFolder& folder, const FitRequest& request, const FitS
 }
 
 int run_fit(FitRequest r, const Registry& registry) {
-  const FitSetup setup = setup_of(r, registry);
+  complete(r, registry);
   const SweepFolder folder(r.folder);
   const auto lock = folder.lock();
   r.stop = [] { return stop_signal() != 0; };
   r.workers = std::max<int>(1, core_count() / r.threads);
-  FitRuns runs(setup, folder, r, registry);
+  FitRuns runs(r.setup, folder, r, registry);
   stop_on_signals();  // nothing to save before this point
   try {
     const FitEnd end = find_factor(
         [&](double factor) -> std::optional<double> {
           const std::size_t before = runs.samples().size();
           const FitSample& sample = runs.at(factor);
-          if (runs.samples().size() > before) tell(setup, sample);
+          if (runs.samples().size() > before) tell(r.setup, sample);
           if (sample.values.empty()) return std::nullopt;
           const double residual = sample.median() - r.target;
           return std::abs(residual) <= r.tolerance / 100 * std::abs(r.target) ? 0 : residual;
         },
         most_evaluations);
-    return show_result(folder, r, setup, runs, end);
+    return show_result(folder, r, runs, end);
   } catch (const FitStopped&) {
     std::cerr << "stopped on request; the same command goes on\n";
     return exit_by_signal + stop_signal();
@@ -210,15 +209,15 @@ void add_fit_command(Commands& commands) {
              "material with bending in its name. May be repeated: one factor scales all")
       ->allow_extra_args(false)
       ->required();
-  add_option(command, "--metric NAME", r.metric,
+  add_option(command, "--metric NAME", r.setup.metric,
              "column of a metric, on the finest level (default: the first of the experiment's metrics)");
-  add_option(command, "--starts N", r.starts,
+  add_option(command, "--starts N", r.setup.starts,
              "runs of each factor, whose median counts: start.seed 1 to N (default: 3)")
       ->check(integer_between(1, 1000, "an integer from 1 to 1000"));
   add_option(command, "--tolerance PERCENT", r.tolerance,
              "of the median, in percent of the value to be met (default: 1)")
       ->check(number_of_at_least(1e-4));
-  add_option(command, "--method NAME", r.method, "method of the experiment (default: as of drape run)");
+  add_option(command, "--method NAME", r.setup.method, "method of the experiment (default: as of drape run)");
   add_option(command, "-o,--out FOLDER", r.folder,
              "folder of the runs and of the result (default: results/NAME_fit)");
   add_option(command, "--threads N", r.threads,

@@ -37,46 +37,46 @@ void show_other_methods(const Experiment& experiment, const std::string& run) {
     std::cerr << "only " << run << " was run; --method all adds " << joined(others) << "\n";
 }
 
-int run(const RunRequest& request, const Experiment& experiment, const Scene& scene, RunOptions options,
+int run(RunRequest& r, const Experiment& experiment, const Scene& scene,
         std::optional<InterruptedRun> interrupted = std::nullopt) {
   stop_on_signals();  // nothing to save before this point
-  options.stop = [] { return stop_signal() != 0; };
+  r.stop = [] { return stop_signal() != 0; };
   std::optional<LiveView> view;
-  if (request.show) {
-    view.emplace(experiment, scene, options.methods, request.port);
-    options.view = &*view;
+  if (r.show) {
+    view.emplace(experiment, scene, r.methods, r.port);
+    r.view = &*view;
     std::cout << "view: " << view->url() << std::endl;
   }
-  const bool converged = interrupted ? resume_experiment(experiment, scene, options, std::move(*interrupted))
-                                     : run_experiment(experiment, scene, options);
+  const bool converged = interrupted ? resume_experiment(experiment, scene, r, std::move(*interrupted))
+                                     : run_experiment(experiment, scene, r);
   const bool stopped = stop_signal() != 0 || (view && view->stop_requested());
-  if (options.methods.size() > 1 && options.verbosity != Verbosity::quiet && !stopped)
-    std::cerr << printable_lines(methods_text(table_of(read_runs({options.out}))));
-  if (options.report)
-    std::cout << "report: " << (options.out / "report.html").string() << "\n";
+  if (r.methods.size() > 1 && r.verbosity != Verbosity::quiet && !stopped)
+    std::cerr << printable_lines(methods_text(table_of(read_runs({r.out}))));
+  if (r.report)
+    std::cout << "report: " << (r.out / "report.html").string() << "\n";
   else
-    std::cout << "results: " << (options.out / "results.json").string() << "\n";
+    std::cout << "results: " << (r.out / "results.json").string() << "\n";
   const int as_signal = stop_signal() ? stop_signal() : SIGINT;  // the view's Stop counts as Ctrl-C
-  if (request.keep_view && !stop_signal()) {
+  if (r.keep_view && !stop_signal()) {
     std::cout << "the view stays at " << view->url() << " until Ctrl-C" << std::endl;
     while (!stop_signal()) std::this_thread::sleep_for(std::chrono::milliseconds(50));
   }
   if (stopped) {
-    std::cerr << "stopped on request; everything up to then is in " << options.out.string() << "\n";
+    std::cerr << "stopped on request; everything up to then is in " << r.out.string() << "\n";
     return exit_by_signal + as_signal;
   }
   return converged ? exit_done : exit_not_converged;
 }
 
-int run_config(const RunRequest& request, const Registry& registry) {
-  const LoadedExperiment loaded(request, registry);
+int run_config(RunRequest& r, const Registry& registry) {
+  const LoadedExperiment loaded(r, registry);
   const Experiment& experiment = loaded.experiment;
-  RunOptions options = request;
-  if (options.out.empty()) options.out = std::filesystem::path("results") / experiment.parameters.name;
-  options.methods = chosen_methods(experiment, request.methods);
-  const int exit_code = run(request, experiment, *loaded.scene, options);
-  if (request.methods.empty() && options.verbosity != Verbosity::quiet && exit_code < exit_by_signal)
-    show_other_methods(experiment, options.methods[0]);
+  if (r.out.empty()) r.out = std::filesystem::path("results") / experiment.parameters.name;
+  const bool named_none = r.methods.empty();
+  r.methods = chosen_methods(experiment, r.methods);
+  const int exit_code = run(r, experiment, *loaded.scene);
+  if (named_none && r.verbosity != Verbosity::quiet && exit_code < exit_by_signal)
+    show_other_methods(experiment, r.methods[0]);
   return exit_code;
 }
 
@@ -96,8 +96,8 @@ int report_complete_run(const RunFolder& run, const Registry& registry) {
 }
 
 /// Resumes an interrupted run in its folder, which is locked before anything in it is read.
-int resume(const RunRequest& request, const Registry& registry) {
-  const std::filesystem::path folder = request.resumed;
+int resume(RunRequest& r, const Registry& registry) {
+  const std::filesystem::path folder = r.out = r.resumed;
   RunFolder locked = RunFolder::of_run(folder);
   if (is_complete(folder)) return report_complete_run(locked, registry);
   std::string warning;
@@ -105,72 +105,67 @@ int resume(const RunRequest& request, const Registry& registry) {
   const Checkpoint& checkpoint = interrupted.checkpoint;
   std::istringstream warnings(warning);
   for (std::string line; std::getline(warnings, line);) std::cerr << "warning: " << printable(line) << "\n";
+  r.methods = checkpoint.methods;
   ConfigErrors errors;
   const auto experiment = read_experiment(folder / "config.yaml", {}, registry, errors);
-  if (experiment) refuse_too_large(*experiment, request.large_memory(), errors);
+  if (experiment) refuse_too_large(*experiment, r.large_memory(), errors);
   const auto scene = errors.empty() ? build_scene(*experiment, errors, IntersectingStart::allowed) : nullptr;
   if (scene && checkpoint.start.rows() > 0)
     warm_start_scene(*experiment, *scene, checkpoint.first_level, checkpoint.start, errors);
   require_none(errors);
-  RunOptions options = request;
-  options.out = folder;
-  options.methods = checkpoint.methods;
-  return run(request, *experiment, *scene, std::move(options), std::move(interrupted));
+  return run(r, *experiment, *scene, std::move(interrupted));
 }
 
 /// Warm-starts a possibly changed experiment from a state of a run, in another folder.
-int warm_start(const RunRequest& request, const Registry& registry) {
-  const std::filesystem::path folder = request.resumed, config = folder / "config.yaml";
-  RunOptions options = request;
-  if (options.methods.size() > 1)
+int warm_start(RunRequest& r, const Registry& registry) {
+  const std::filesystem::path folder = r.resumed, config = folder / "config.yaml";
+  if (r.methods.size() > 1)
     throw std::runtime_error("--resume with --method: name one method, whose state to start from");
-  const SavedState state =
-      saved_state(folder, options.methods.empty() ? "" : options.methods[0], request.level);
+  const SavedState state = saved_state(folder, r.methods.empty() ? "" : r.methods[0], r.level);
   ConfigErrors errors;
   const auto before = read_experiment(config, {}, registry, errors);
   require_none(errors);
-  const auto experiment = read_experiment(config, request.overrides(), registry, errors);
+  const auto experiment = read_experiment(config, r.overrides(), registry, errors);
   if (experiment) refuse_other_cloth(*before, *experiment, state.level, errors);
-  if (errors.empty()) refuse_too_large(*experiment, request.large_memory(), errors);
+  if (errors.empty()) refuse_too_large(*experiment, r.large_memory(), errors);
   const auto scene = errors.empty() ? build_scene(*experiment, errors, IntersectingStart::allowed) : nullptr;
   if (scene) warm_start_scene(*experiment, *scene, state.level, state.x, errors);
   require_none(errors);
-  options.methods = {state.method};
-  options.first_level = state.level;
-  options.warm_started_from =
+  r.methods = {state.method};
+  r.first_level = state.level;
+  r.warm_started_from =
       folder.string() + ", method " + state.method + ", level " + std::to_string(state.level);
-  return run(request, *experiment, *scene, std::move(options));
+  return run(r, *experiment, *scene);
 }
 
-int run_or_resume(const RunRequest& request, const Registry& registry) {
-  set_thread_count(request.threads);
-  if (request.resumed.empty()) {
-    if (request.config.empty()) throw CLI::RequiredError("experiment");
-    if (request.level) throw std::runtime_error("--level is of a saved state; name its run with --resume");
-    return run_config(request, registry);
+int run_or_resume(RunRequest& r, const Registry& registry) {
+  set_thread_count(r.threads);
+  if (r.resumed.empty()) {
+    if (r.config.empty()) throw CLI::RequiredError("experiment");
+    if (r.level) throw std::runtime_error("--level is of a saved state; name its run with --resume");
+    return run_config(r, registry);
   }
   const auto refuse = [](const std::string& why) { throw std::runtime_error("--resume " + why); };
-  if (!request.config.empty())
-    refuse("takes the experiment from the run's own config.yaml; leave out " + request.config +
+  if (!r.config.empty())
+    refuse("takes the experiment from the run's own config.yaml; leave out " + r.config +
            ", and change parameters with --set KEY=VALUE");
-  if (request.allow_start_repair)
+  if (r.allow_start_repair)
     refuse("starts from a state without intersections; leave out --allow-start-repair");
-  const bool changed =
-      !request.sets.empty() || request.levels > 0 || request.level || !request.methods.empty();
-  if (!changed && !request.out.empty())
+  const bool changed = !r.sets.empty() || r.levels > 0 || r.level || !r.methods.empty();
+  if (!changed && !r.out.empty())
     refuse(
         "resumes in the run's own folder; leave out --out, or start another run with --set, --level or "
         "--method");
-  if (!changed && request.overwrite) refuse("keeps the existing results; leave out --overwrite");
-  if (!changed) return resume(request, registry);
-  if (request.out.empty())
+  if (!changed && r.overwrite) refuse("keeps the existing results; leave out --overwrite");
+  if (!changed) return resume(r, registry);
+  if (r.out.empty())
     refuse("with --set, --levels, --level or --method is another run; name its folder with --out");
   std::error_code error;
-  if (std::filesystem::equivalent(request.out, request.resumed, error))
+  if (std::filesystem::equivalent(r.out, r.resumed, error))
     refuse(
         "with --set, --levels, --level or --method leaves the run that it begins from as it is; name "
         "another folder with --out");
-  return warm_start(request, registry);
+  return warm_start(r, registry);
 }
 
 }  // namespace

@@ -28,7 +28,7 @@ struct FitSetup {
   std::string name;    ///< of the sweep that has the runs
   std::string method, metric;
   std::vector<ScaledKey> keys;
-  int starts = 1;
+  int starts = 3;
 
   /// The sweep over these factors. Appends errors as read_sweep does.
   std::optional<Sweep> sweep(const std::set<double>& factors, const Registry& registry,
