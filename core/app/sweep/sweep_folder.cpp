@@ -108,19 +108,15 @@ void SweepFolder::prepare(const Sweep& sweep, int threads) const {
       json["runs"].back()["expect"] = {{"status", run.expect.status}, {"message", run.expect.message}};
     const RunFiles files = this->files(run.folder);
     make_folder(files.folder.parent_path());
-    RunStatus status = resolve_interrupted(files, read_status(files));
-    if (text_of_file(files.config()) != run.config) {
-      if (status.state == RunState::failed ||
-          status.state == RunState::cancelled) {  // with a different config
-        status.state = RunState::pending;
-        write_status(files, status);
-      }
-      write_file(files.config(), run.config);
-    }
-    json["runs"].back().update(status.json());  // readers see sweep.json as soon as it is written
+    const RunStatus before = read_status(files);
+    RunStatus status = resolve_interrupted(files, before);
+    const bool is_other = text_of_file(files.config()) != run.config;
+    if (is_other && (status.state == RunState::failed || status.state == RunState::cancelled))
+      status.state = RunState::pending;
+    if (status.state != before.state) write_status(files, status);
+    if (is_other) write_file(files.config(), run.config);
   }
-  write_file(path_ / "sweep.json", json_text(json, 1) + "\n");
-  finalize();
+  write(std::move(json));
 }
 
 std::vector<std::size_t> SweepFolder::missing(const Sweep& sweep, bool retry_failed) const {
@@ -139,8 +135,9 @@ bool is_refused_as_expected(const Json& run) {
          expect.value("status", "") == "refused";
 }
 
-Json SweepFolder::refresh() const {
-  Json json = read();
+Json SweepFolder::refresh() const { return write(read()); }
+
+Json SweepFolder::write(Json json) const {
   bool complete = true;
   for (Json& run : json["runs"]) {
     const RunStatus status = read_status(files(run["folder"]));

@@ -30,7 +30,7 @@ class SweepFolder {
   void prepare(const Sweep& sweep, int threads) const;
   /// Indices of the runs without results; failed ones only with `retry_failed`, expected refusals never.
   std::vector<std::size_t> missing(const Sweep& sweep, bool retry_failed) const;
-  /// Writes sweep.json again with every run's status, and returns it.
+  /// Writes sweep.json again, and returns it.
   nlohmann::ordered_json refresh() const;
   /// As `refresh`, when no run is active: also resolves runs that are still marked as running.
   nlohmann::ordered_json finalize() const;
@@ -39,6 +39,8 @@ class SweepFolder {
 
  private:
   void refuse_other_runs(const Sweep& sweep, int threads) const;
+  /// Writes this sweep.json with every run's status, and returns it.
+  nlohmann::ordered_json write(nlohmann::ordered_json json) const;
   std::filesystem::path path_;
 };
 
