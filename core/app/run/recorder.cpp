@@ -1,7 +1,6 @@
 #include "core/app/run/recorder.h"
 
 #include <cmath>
-#include <tuple>
 #include <utility>
 
 #include "core/app/experiment/declared_metrics.h"
@@ -85,7 +84,8 @@ Recorder::Recorder(const RunFolder& folder, const Experiment& experiment, const 
 Recorder::Recorder(const RunFolder& folder, const Experiment& experiment, const Scene& scene,
                    const Recorder::State& state)
     : Recorder(folder, experiment, scene, std::ios::app) {
-  cut_files(folder, state);
+  truncate_file(folder.file("iterations.csv"), state.iterations_bytes);
+  truncate_file(folder.file("log.jsonl"), state.log_bytes);
   s_ = state;
   results_ = parse_json(std::exchange(s_.results, ""));
   snapshots_.restore(std::exchange(s_.snapshots, {}));
@@ -105,7 +105,8 @@ Recorder::State Recorder::state() const {
   s.results = json_text(results_);
   s.snapshots = snapshots_.state();
   s.measured = errors_.state();
-  std::tie(s.iterations_bytes, s.log_bytes) = file_sizes(folder_);
+  s.iterations_bytes = size_of_file(folder_.file("iterations.csv"));
+  s.log_bytes = size_of_file(folder_.file("log.jsonl"));
   sync_to_disk(folder_.file("iterations.csv"));
   sync_to_disk(folder_.file("log.jsonl"));
   return s;

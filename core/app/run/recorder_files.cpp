@@ -13,19 +13,6 @@ namespace drape {
 
 namespace {
 
-std::uint64_t size_of(const std::filesystem::path& file) {
-  std::error_code error;
-  const std::uint64_t bytes = std::filesystem::file_size(file, error);
-  if (error) throw WriteError("cannot write " + file.string() + ": " + error.message());
-  return bytes;
-}
-
-void cut(const std::filesystem::path& file, std::uint64_t bytes) {
-  std::error_code error;
-  std::filesystem::resize_file(file, bytes, error);
-  if (error) throw WriteError("cannot write " + file.string() + ": " + error.message());
-}
-
 VertexFields fields_of(const RecordedState& state) {
   if (state.contact_pressure.size() == 0) return {};
   return {{"contact_pressure", state.contact_pressure}};
@@ -45,13 +32,17 @@ double wall_clock() {
   return std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
 }
 
-std::pair<std::uint64_t, std::uint64_t> file_sizes(const RunFolder& folder) {
-  return {size_of(folder.file("iterations.csv")), size_of(folder.file("log.jsonl"))};
+std::uint64_t size_of_file(const std::filesystem::path& file) {
+  std::error_code error;
+  const std::uint64_t bytes = std::filesystem::file_size(file, error);
+  if (error) throw WriteError("cannot write " + file.string() + ": " + error.message());
+  return bytes;
 }
 
-void cut_files(const RunFolder& folder, const Recorder::State& state) {
-  cut(folder.file("iterations.csv"), state.iterations_bytes);
-  cut(folder.file("log.jsonl"), state.log_bytes);
+void truncate_file(const std::filesystem::path& file, std::uint64_t bytes) {
+  std::error_code error;
+  std::filesystem::resize_file(file, bytes, error);
+  if (error) throw WriteError("cannot write " + file.string() + ": " + error.message());
 }
 
 std::vector<std::string> write_rest(const RunFolder& folder, const Scene& scene) {

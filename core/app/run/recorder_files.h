@@ -1,9 +1,9 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "core/app/run/recorder.h"
@@ -24,10 +24,8 @@ std::string level_file(const std::string& method, int level, const char* extensi
 /// Seconds since 1970.
 double wall_clock();
 
-/// Sizes of iterations.csv and log.jsonl [bytes].
-std::pair<std::uint64_t, std::uint64_t> file_sizes(const RunFolder& folder);
-/// Truncates iterations.csv and log.jsonl to the sizes of the state.
-void cut_files(const RunFolder& folder, const Recorder::State& state);
+std::uint64_t size_of_file(const std::filesystem::path& file);  ///< [bytes]
+void truncate_file(const std::filesystem::path& file, std::uint64_t bytes);
 
 /// Writes the rest shapes that differ from their files, and returns their names.
 std::vector<std::string> write_rest(const RunFolder& folder, const Scene& scene);
