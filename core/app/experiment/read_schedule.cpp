@@ -76,10 +76,10 @@ class KeyReader {
   }
 
  private:
-  const ConfigNode& node(std::size_t k) const { return e_.source.find("schedule")->find("keys")->items[k]; }
   std::string name(std::size_t k) const { return "key \"" + excerpt(keys_[k].parameter) + "\""; }
   void refuse(std::size_t k, const std::string& what) {
-    errors_.push_back({node(k).where, name(k) + " " + what});
+    const ConfigNode& key = e_.source.find("schedule")->find("keys")->items[k];
+    errors_.push_back({key.where, name(k) + " " + what});
   }
 
   void read_values(std::size_t k) {
@@ -140,7 +140,7 @@ class KeyReader {
 
   /// Why the path of key k leads nowhere: as of an option --set, or that it names no number.
   void refuse_path(std::size_t k) {
-    const Location& where = node(k).find("values")->where;
+    const Location& where = keys_[k].written.where;
     ConfigNode config = e_.resolved;
     ConfigErrors own;
     if (keys_[k].parameter == "friction")
@@ -179,7 +179,7 @@ class KeyReader {
 
   /// Appends the faults of the first value of key k that a part of the experiment refuses.
   void check_values(std::size_t k) {
-    const Location& where = node(k).find("values")->where;
+    const Location& where = keys_[k].written.where;
     for (const std::vector<double>& value : with_values_between(keys_[k])) {
       ConfigErrors own;
       for (const KeyTarget& target : keys_[k].targets)

@@ -60,7 +60,7 @@ void check_on_levels(const Experiment& e, const Scene& scene, const LoadSchedule
     const std::size_t item = keys[k].targets[0].item;
     if (part == LoadPart::contact) continue;
     const bool of_vertices = part == LoadPart::pins || part == LoadPart::handles;
-    const Location where = e.source.find("schedule")->find("keys")->items[k].find("values")->where;
+    const Location& where = keys[k].written.where;
     // Whether check(load, faults) finds no fault at any of these times; appends those of the first that has.
     const auto hold_at = [&](const std::vector<double>& times, const auto& check) {
       for (const double time : times) {
