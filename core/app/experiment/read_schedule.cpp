@@ -66,88 +66,87 @@ class KeyReader {
       : e_(experiment), keys_(experiment.parameters.schedule.keys), errors_(errors) {}
 
   void read_all() {
-    for (std::size_t k = 0; k < keys_.size(); ++k) read_values(k);
+    for (ScheduleKey& key : keys_) read_values(key);
     if (!errors_.empty()) return;
-    for (std::size_t k = 0; k < keys_.size(); ++k) find_targets(k);
+    for (ScheduleKey& key : keys_) find_targets(key);
     if (errors_.empty()) refuse_repeated_keys();
     if (errors_.empty()) refuse_keys_of_following_pins();
     if (!errors_.empty()) return;
-    for (std::size_t k = 0; k < keys_.size(); ++k) check_values(k);
+    for (const ScheduleKey& key : keys_) check_values(key);
   }
 
  private:
-  std::string name(std::size_t k) const { return "key \"" + excerpt(keys_[k].parameter) + "\""; }
-  void refuse(std::size_t k, const std::string& what) {
-    const ConfigNode& key = e_.source.find("schedule")->find("keys")->items[k];
-    errors_.push_back({key.where, name(k) + " " + what});
+  static std::string name(const ScheduleKey& key) { return "key \"" + excerpt(key.parameter) + "\""; }
+  void refuse(const ScheduleKey& key, const std::string& what) {
+    const ConfigNode& keys = *e_.source.find("schedule")->find("keys");
+    errors_.push_back({keys.items[&key - keys_.data()].where, name(key) + " " + what});
   }
 
-  void read_values(std::size_t k) {
-    ScheduleKey& key = keys_[k];
+  void read_values(ScheduleKey& key) {
     if (key.parameter.empty()) return;  // the schema has reported it
     key.values = values_of(key);
     const auto not_positive = [](const std::vector<double>& value) { return std::ranges::min(value) <= 0; };
     if (!is_changeable(key.parameter))
-      refuse(k, "cannot change while a level is solved; keys are for parameters of " + joined(changeable));
+      refuse(key, "cannot change while a level is solved; keys are for parameters of " + joined(changeable));
     else if (!std::is_sorted(key.times.begin(), key.times.end(), std::less_equal<>()))
-      refuse(k, "must have ascending \"times\"");
+      refuse(key, "must have ascending \"times\"");
     else if (key.values.empty())
       refuse(
-          k,
+          key,
           "must have as many \"values\" as \"times\", all numbers or all lists of equally many numbers, as "
           "in {times: [0, 1], values: [[0, 0, 0], [0, 0, 0.1]]}");
     else if (key.interpolation == KeyInterpolation::log && std::ranges::any_of(key.values, not_positive))
-      refuse(k, "is interpolated by its logarithm: all its values must be above 0");
+      refuse(key, "is interpolated by its logarithm: all its values must be above 0");
   }
 
-  /// Adds a target of key k, if the words name numbers of the part's struct.
-  void add_target(std::size_t k, LoadPart part, std::size_t item, const std::vector<std::string>& words) {
+  /// Adds a target of the key, if the words name numbers of the part's struct.
+  void add_target(ScheduleKey& key, LoadPart part, std::size_t item, const std::vector<std::string>& words) {
     const PluginParameters own = parameters_of(e_, part, item);
     const auto numbers =
         DeclaredNumbers::find(own.entry ? own.entry->schema : experiment_schema(), own.values.get(), words);
-    if (numbers && numbers->count() == keys_[k].values[0].size())
-      keys_[k].targets.push_back({part, item, *numbers});
+    if (numbers && numbers->count() == key.values[0].size()) key.targets.push_back({part, item, *numbers});
   }
 
-  void find_targets(std::size_t k) {
-    const std::vector<std::string> words = words_of_path(e_.resolved, keys_[k].parameter);
-    const std::string& key = words[0];
-    const ConfigNode* section = e_.resolved.find(key);
+  void find_targets(ScheduleKey& key) {
+    const std::vector<std::string> words = words_of_path(e_.resolved, key.parameter);
+    const std::string& part = words[0];
+    const ConfigNode* section = e_.resolved.find(part);
     const bool is_list = section->kind == NodeKind::list;
     const auto item = is_list && words.size() > 1 ? section->index_of(words[1]) : std::nullopt;
     const std::vector<std::string> within(words.begin() + (is_list && words.size() > 1 ? 2 : 1), words.end());
-    if (key == "friction") {
-      for (std::size_t c = 0; c < e_.contact_configs.size(); ++c) add_target(k, LoadPart::contact, c, words);
-    } else if (key == "obstacles" && item) {
+    if (part == "friction") {
+      for (std::size_t c = 0; c < e_.contact_configs.size(); ++c)
+        add_target(key, LoadPart::contact, c, words);
+    } else if (part == "obstacles" && item) {
       for (std::size_t c = 0; c < e_.contact_configs.size(); ++c) {
         const std::vector<std::size_t>& own = e_.contact_configs[c].obstacles;
         const auto place = std::ranges::find(own, *item);
         if (place == own.end()) continue;
-        std::vector<std::string> path = {key, std::to_string(place - own.begin())};
+        std::vector<std::string> path = {part, std::to_string(place - own.begin())};
         path.insert(path.end(), within.begin(), within.end());
-        add_target(k, LoadPart::contact, c, path);
+        add_target(key, LoadPart::contact, c, path);
       }
-    } else if (key == "energies" || key == "contact") {
+    } else if (part == "energies" || part == "contact") {
       if (item || !is_list)
-        add_target(k, key == "contact" ? LoadPart::contact : LoadPart::energies, item.value_or(0), within);
-    } else if (key == "material") {
-      add_target(k, LoadPart::material, 0, words);
+        add_target(key, part == "contact" ? LoadPart::contact : LoadPart::energies, item.value_or(0), within);
+    } else if (part == "material") {
+      add_target(key, LoadPart::material, 0, words);
     } else if (item) {
-      add_target(k, key == "pins" ? LoadPart::pins : LoadPart::handles, *item, words);
+      add_target(key, part == "pins" ? LoadPart::pins : LoadPart::handles, *item, words);
     }
-    if (keys_[k].targets.empty()) refuse_path(k);
+    if (key.targets.empty()) refuse_path(key);
   }
 
-  /// Why the path of key k leads nowhere: as of an option --set, or that it names no number.
-  void refuse_path(std::size_t k) {
-    const Location& where = keys_[k].written.where;
+  /// Why the path of a key leads nowhere: as of an option --set, or that it names no number.
+  void refuse_path(const ScheduleKey& key) {
+    const Location& where = key.written.where;
     ConfigNode config = e_.resolved;
     ConfigErrors own;
-    if (keys_[k].parameter == "friction")
+    if (key.parameter == "friction")
       own.push_back({where, refusal_of_friction(*e_.registry)});
-    else if (set_parameter(config, keys_[k].parameter, keys_[k].written.items[0], where, own))
+    else if (set_parameter(config, key.parameter, key.written.items[0], where, own))
       own.push_back({where, "it must name a number, or a list of as many numbers as each of its values"});
-    errors_.push_back({where, name(k) + ": " + own[0].message});
+    errors_.push_back({where, name(key) + ": " + own[0].message});
   }
 
   /// Two keys may not set one number.
@@ -161,30 +160,30 @@ class KeyReader {
             numbers[k].insert(number);
       for (std::size_t j = 0; j < k; ++j)
         if (std::ranges::any_of(numbers[k], [&](const double* own) { return numbers[j].contains(own); }))
-          refuse(k, "sets what key \"" + excerpt(keys_[j].parameter) + "\" sets; remove one of them");
+          refuse(keys_[k], "sets what key \"" + excerpt(keys_[j].parameter) + "\" sets; remove one of them");
     }
   }
 
   /// The obstacle that a pin follows decides its targets.
   void refuse_keys_of_following_pins() {
-    for (std::size_t k = 0; k < keys_.size(); ++k) {
-      const KeyTarget& target = keys_[k].targets[0];
+    for (const ScheduleKey& key : keys_) {
+      const KeyTarget& target = key.targets[0];
       if (target.part != LoadPart::pins) continue;
       const std::string& obstacle = e_.parameters.pins[target.item].follow.obstacle;
       if (!obstacle.empty())
-        refuse(k, "changes pin " + std::to_string(target.item) + ", which follows obstacle \"" +
-                      excerpt(obstacle) + "\"; move the obstacle, or remove \"follow\"");
+        refuse(key, "changes pin " + std::to_string(target.item) + ", which follows obstacle \"" +
+                        excerpt(obstacle) + "\"; move the obstacle, or remove \"follow\"");
     }
   }
 
-  /// Appends the faults of the first value of key k that a part of the experiment refuses.
-  void check_values(std::size_t k) {
-    const Location& where = keys_[k].written.where;
-    for (const std::vector<double>& value : with_values_between(keys_[k])) {
+  /// Appends the faults of the first value of a key that a part of the experiment refuses.
+  void check_values(const ScheduleKey& key) {
+    const Location& where = key.written.where;
+    for (const std::vector<double>& value : with_values_between(key)) {
       ConfigErrors own;
-      for (const KeyTarget& target : keys_[k].targets)
+      for (const KeyTarget& target : key.targets)
         if (own.empty()) check_value(target, value, own);
-      for (const ConfigError& error : own) errors_.push_back({where, name(k) + ": " + error.message});
+      for (const ConfigError& error : own) errors_.push_back({where, name(key) + ": " + error.message});
       if (!own.empty()) return;
     }
   }

@@ -53,14 +53,13 @@ std::vector<double> times_with_between(const std::vector<double>& times) {
 /// The faults of load_stepping_of.
 void check_on_levels(const Experiment& e, const Scene& scene, const LoadSchedule& schedule,
                      ConfigErrors& errors) {
-  const std::vector<ScheduleKey>& keys = e.parameters.schedule.keys;
   const std::vector<Level>& levels = scene.hierarchy.levels;
-  for (std::size_t k = 0; k < keys.size(); ++k) {
-    const LoadPart part = keys[k].targets[0].part;
-    const std::size_t item = keys[k].targets[0].item;
+  for (const ScheduleKey& key : e.parameters.schedule.keys) {
+    const LoadPart part = key.targets[0].part;
+    const std::size_t item = key.targets[0].item;
     if (part == LoadPart::contact) continue;
     const bool of_vertices = part == LoadPart::pins || part == LoadPart::handles;
-    const Location& where = keys[k].written.where;
+    const Location& where = key.written.where;
     // Whether check(load, faults) finds no fault at any of these times; appends those of the first that has.
     const auto hold_at = [&](const std::vector<double>& times, const auto& check) {
       for (const double time : times) {
@@ -73,20 +72,20 @@ void check_on_levels(const Experiment& e, const Scene& scene, const LoadSchedule
           own.push_back({where, problem.what()});
         }
         for (const ConfigError& error : own)
-          errors.push_back({where, "key \"" + excerpt(keys[k].parameter) + "\" at pseudo-time " +
+          errors.push_back({where, "key \"" + excerpt(key.parameter) + "\" at pseudo-time " +
                                        three_digits(time) + ": " + error.message});
         if (!own.empty()) return false;
       }
       return true;
     };
-    const bool bound = hold_at(keys[k].times, [&](const LoadState& load, ConfigErrors& own) {
+    const bool bound = hold_at(key.times, [&](const LoadState& load, ConfigErrors& own) {
       if (of_vertices) check_selection(*load.parameters, part, item, where, levels, own);
       if (!own.empty() || part == LoadPart::pins) return;
       for (const auto& first : scene.models)  // throws for an energy that load stepping could not bind
         LevelModel(first->level(), load.parameters->material, load.energies, {}, {}, first.get());
     });
     if (bound && of_vertices)
-      hold_at(times_with_between(keys[k].times), [&](const LoadState& load, ConfigErrors& own) {
+      hold_at(times_with_between(key.times), [&](const LoadState& load, ConfigErrors& own) {
         check_shared_vertices(*load.parameters, part, item, where, levels, scene.placed, own);
       });
   }
