@@ -59,9 +59,8 @@ void check_material(const Experiment& e, ConfigErrors& errors) {
   const Material &m = e.parameters.material, plain;
   const ConfigNode* material = e.source.find("material");
   const auto refuse = [&](bool fault, const char* key, const std::string& message) {
-    if (!fault || !material) return;
-    const ConfigNode* written = material->find(key);
-    errors.push_back({written ? written->where : material->where, "\"" + std::string(key) + "\" " + message});
+    if (fault && material)
+      errors.push_back({material->where_of(key), "\"" + std::string(key) + "\" " + message});
   };
   refuse(m.warp_stiffness && m.membrane_modulus != plain.membrane_modulus, "membrane_modulus",
          "is not read beside \"warp_stiffness\"; leave one out");
@@ -147,11 +146,6 @@ std::string Experiment::solver_type(const std::string& method) const {
   const ConfigNode* node = &resolved;
   for (const char* key : {"methods", method.c_str(), "type"}) node = node ? node->find(key) : nullptr;
   return node ? node->scalar : method;
-}
-
-Location Experiment::location_of(const std::string& key) const {
-  const ConfigNode* node = source.find(key);
-  return node ? node->where : source.where;
 }
 
 std::vector<std::size_t> Experiment::obstacle_order() const {

@@ -49,7 +49,7 @@ struct Experiment {
   /// The type of that solver, which is not always the method's name.
   std::string solver_type(const std::string& method) const;
   /// The location of a key's value in the file; without the key, the file's beginning.
-  Location location_of(const std::string& key) const;
+  const Location& location_of(const std::string& key) const { return source.where_of(key); }
   /// Indices in `obstacles` of the contact models' obstacles, model by model, as obstacles_of has them; and
   /// their names, empty for an obstacle without one.
   std::vector<std::size_t> obstacle_order() const;

@@ -157,10 +157,8 @@ std::vector<FollowingVertices> following_vertices(const Experiment& e, const Sce
     if (follow.obstacle.empty()) continue;
     const std::string fault = attach(e, scene, static_cast<int>(k), levels);
     if (fault.empty()) continue;
-    const ConfigNode& pin = e.source.find("pins")->items[k];
-    const ConfigNode* written = pin.find("follow");
     errors.push_back(
-        {written ? written->where : pin.where,
+        {e.source.find("pins")->items[k].where_of("follow"),
          "pin " + std::to_string(k) + " follows " + name_of(follow.obstacle) + ", which " + fault});
   }
   return levels;

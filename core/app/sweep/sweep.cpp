@@ -52,7 +52,7 @@ class Reader {
     source_ = std::move(source);
     SweepParameters& p = sweep_.parameters;
     schema_of<SweepParameters>().read(&p, source_, errors_);
-    if (source_.find("name")) check_name("name", p.name, location_of("name"), errors_);
+    if (source_.find("name")) check_name("name", p.name, source_.where_of("name"), errors_);
     check_seeds();
     check_settings(p.set, errors_);
     const std::vector<Variation> variations = variations_of(p.ablation, errors_);
@@ -68,21 +68,16 @@ class Reader {
   }
 
  private:
-  Location location_of(const std::string& key) const {
-    const ConfigNode* node = source_.find(key);
-    return node ? node->where : source_.where;
-  }
-
   void check_seeds() {
     SweepParameters& p = sweep_.parameters;
     if (p.repeats && !p.seeds.empty()) {
       errors_.push_back(
-          {location_of("repeats"), "\"repeats\" and \"seeds\" are both given; keep one of them"});
+          {source_.where_of("repeats"), "\"repeats\" and \"seeds\" are both given; keep one of them"});
       p.seeds.clear();
     }
     for (int k = 1; p.repeats && k <= *p.repeats; ++k) p.seeds.push_back(k);
     if (std::set<int>(p.seeds.begin(), p.seeds.end()).size() != p.seeds.size())
-      errors_.push_back({location_of("seeds"), "\"seeds\" names one of them twice"});
+      errors_.push_back({source_.where_of("seeds"), "\"seeds\" names one of them twice"});
   }
 
   Variation labelled(Variation variation, const std::string& experiment) const {
@@ -119,9 +114,10 @@ class Reader {
       experiment = read_experiment(std::move(source), registry_, faults);
     }
     if (experiment) {
-      check_methods(*experiment, methods, own ? variation.methods_where : location_of("methods"), faults);
+      check_methods(*experiment, methods, own ? variation.methods_where : source_.where_of("methods"),
+                    faults);
       if (p.seeds.size() > 1 && experiment->parameters.start.perturbation == 0)
-        faults.push_back({location_of(p.repeats ? "repeats" : "seeds"),
+        faults.push_back({source_.where_of(p.repeats ? "repeats" : "seeds"),
                           "every seed gives the same run where \"start.perturbation\" is 0; set it, as in "
                           "\"set: {start.perturbation: 1e-3}\""});
     }

@@ -97,9 +97,8 @@ Variation named(const ConfigNode& node, ConfigErrors& errors) {
     std::ranges::rotate(v.set.entries, v.set.entries.end() - 1);
     std::ranges::rotate(v.set.key_locations, v.set.key_locations.end() - 1);
   }
-  v.where = v.methods_where = node.where;
-  if (const ConfigNode* methods = node.find("methods")) v.methods_where = methods->where;
-  if (const ConfigNode* name = node.find("name")) v.where = name->where;
+  v.where = node.where_of("name");
+  v.methods_where = node.where_of("methods");
   if (v.name.empty() && node.find("name"))
     errors.push_back({v.where, "\"name\" in a variation must not be empty"});
   return v;

@@ -93,6 +93,11 @@ const ConfigNode* ConfigNode::find(const std::string& key) const {
   return nullptr;
 }
 
+const Location& ConfigNode::where_of(const std::string& key) const {
+  const ConfigNode* entry = find(key);
+  return entry ? entry->where : where;
+}
+
 const std::string& ConfigNode::plugin_name() const {
   const ConfigNode* type = find("type");
   return (type ? *type : *this).scalar;

@@ -33,6 +33,8 @@ struct ConfigNode {
   std::vector<Location> key_locations;                      ///< map only, one per entry
 
   const ConfigNode* find(const std::string& key) const;  ///< map entry or null
+  /// The place of a map's entry; without the entry, the map's own.
+  const Location& where_of(const std::string& key) const;
   /// Index of the list's item that a word of a path names by its index from 0, its type or its name.
   std::optional<std::size_t> index_of(const std::string& word) const;
 
