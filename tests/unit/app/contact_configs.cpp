@@ -1,7 +1,6 @@
-#include "core/app/experiment/experiment.h"
-
 #include <catch2/catch.hpp>
 
+#include "core/app/experiment/experiment.h"
 #include "core/app/scene/load_schedule.h"
 #include "core/numerics/patterns/generate.h"
 #include "tests/support/solve.h"

@@ -1,10 +1,10 @@
 // The search for a factor, on functions with known roots.
 
-#include "core/app/sweep/fit.h"
-
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <set>
+
+#include "core/app/sweep/fit.h"
 
 using namespace drape;
 

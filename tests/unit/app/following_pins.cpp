@@ -1,10 +1,9 @@
 // Pins that follow an obstacle, by a mesh, an animation or a shape.
 
-#include "core/app/scene/boundary_conditions.h"
-
 #include <Eigen/Geometry>
 #include <catch2/catch.hpp>
 
+#include "core/app/scene/boundary_conditions.h"
 #include "core/numerics/mesh_files/io.h"
 #include "core/numerics/patterns/primitives.h"
 #include "tests/support/command.h"

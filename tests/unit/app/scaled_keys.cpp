@@ -1,9 +1,8 @@
 // Which numbers of an experiment a fit scales.
 
-#include "core/app/sweep/fit.h"
-
 #include <catch2/catch.hpp>
 
+#include "core/app/sweep/fit.h"
 #include "core/kernel/files/string_utils.h"
 #include "tests/support/solve.h"
 

@@ -1,8 +1,7 @@
-#include "core/app/run/errors.h"
-
 #include <catch2/catch.hpp>
 
 #include "core/app/files/snapshot_file.h"
+#include "core/app/run/errors.h"
 #include "tests/support/command.h"
 
 using namespace drape;
