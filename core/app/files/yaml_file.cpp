@@ -4,6 +4,7 @@
 #include <yaml-cpp/yaml.h>
 
 #include <algorithm>
+#include <map>
 #include <sstream>
 
 #include "core/kernel/files/file.h"
@@ -21,77 +22,109 @@ Location place(const std::string& file, const YAML::Mark& mark) {
   return {file, mark.line + 1, mark.column + 1};
 }
 
-/// Copies yaml-cpp's graph into a tree; an alias becomes a copy of its anchor, with the anchor's location.
-class Converter {
+/// Builds the tree of a document; an alias becomes a copy of its anchor, with the anchor's location. Throws a
+/// ConfigError where that has no end.
+class TreeBuilder : public YAML::EventHandler {
  public:
-  Converter(const std::string& file, ConfigErrors& errors) : file_(file), errors_(errors) {}
+  TreeBuilder(const std::string& file, ConfigErrors& errors) : file_(file), errors_(errors) {}
 
-  ConfigNode convert(const YAML::Node& yaml) {
-    ConfigNode node;
-    node.where = place(file_, yaml.Mark());
-    // An alias inside its own anchor is infinite, and nested aliases can expand to billions of nodes.
-    if (++nodes_ > max_nodes || depth_ > max_depth) {
-      if (!refused_) errors_.push_back({node.where, "too many nested or repeated nodes; check the aliases"});
-      refused_ = true;
-      return node;
-    }
-    ++depth_;
-    if (yaml.IsScalar()) convert_scalar(yaml, node);
-    if (yaml.IsSequence()) convert_list(yaml, node);
-    if (yaml.IsMap()) convert_map(yaml, node);
-    --depth_;
-    return node;
+  ConfigNode tree;              // of the last document
+  std::vector<Location> roots;  // of every document
+
+  void OnDocumentStart(const YAML::Mark&) override {}
+  void OnDocumentEnd() override {}
+  void OnNull(const YAML::Mark& mark, YAML::anchor_t anchor) override {
+    begin(Kind::null, mark, anchor);
+    end();
+  }
+  void OnScalar(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor,
+                const std::string& text) override {
+    const bool is_key = at_key();
+    ConfigNode& node = begin(Kind::scalar, mark, anchor);
+    node.scalar = text;
+    node.quoted = tag == "!" || tag == "tag:yaml.org,2002:str";
+    if (!is_key && !node.quoted && !tag.empty() && tag != "?")
+      errors_.push_back({node.where, "tag \"" + excerpt(tag) + "\" is not supported; take it out"});
+    if (text.find('\0') != text.npos)  // ends a file's name for the system, and not for std::string
+      errors_.push_back({node.where, "\"" + excerpt(text) + "\" has a NUL character; take it out"});
+    end();
+  }
+  void OnSequenceStart(const YAML::Mark& mark, const std::string&, YAML::anchor_t anchor,
+                       YAML::EmitterStyle::value) override {
+    begin(Kind::list, mark, anchor);
+  }
+  void OnSequenceEnd() override { end(); }
+  void OnMapStart(const YAML::Mark& mark, const std::string&, YAML::anchor_t anchor,
+                  YAML::EmitterStyle::value) override {
+    begin(Kind::map, mark, anchor);
+  }
+  void OnMapEnd() override { end(); }
+  void OnAlias(const YAML::Mark&, YAML::anchor_t anchor) override {
+    for (const Open& open : open_)
+      if (open.anchor == anchor) refuse(open.node);  // inside itself
+    if (!at_key()) count(anchors_.at(anchor), open_.size());
+    put(anchors_.at(anchor));
   }
 
  private:
-  void convert_scalar(const YAML::Node& yaml, ConfigNode& node) {
-    const std::string& tag = yaml.Tag();
-    node.kind = Kind::scalar;
-    node.scalar = yaml.Scalar();
-    node.quoted = tag == "!" || tag == "tag:yaml.org,2002:str";
-    if (!node.quoted && !tag.empty() && tag != "?")
-      errors_.push_back({node.where, "tag \"" + excerpt(tag) + "\" is not supported; take it out"});
-    refuse_nul(node.scalar, node.where);
+  /// A node whose end has not come; of a map with the key of the next value.
+  struct Open {
+    ConfigNode node;
+    YAML::anchor_t anchor;
+    std::optional<ConfigNode> key = {};
+  };
+
+  bool at_key() const { return !open_.empty() && open_.back().node.kind == Kind::map && !open_.back().key; }
+
+  ConfigNode& begin(Kind kind, const YAML::Mark& mark, YAML::anchor_t anchor) {
+    ConfigNode node;
+    node.kind = kind;
+    node.where = place(file_, mark);
+    if (open_.empty()) roots.push_back(node.where);
+    if (!at_key()) count(node, open_.size());
+    return open_.emplace_back(Open{std::move(node), anchor}).node;
   }
 
-  /// For the system a file name ends at a NUL; for std::string it does not.
-  void refuse_nul(const std::string& text, const Location& where) {
-    if (text.find('\0') != std::string::npos)
-      errors_.push_back({where, "\"" + excerpt(text) + "\" has a NUL character; take it out"});
+  void end() {
+    Open done = std::move(open_.back());
+    open_.pop_back();
+    if (done.anchor != YAML::NullAnchor) anchors_[done.anchor] = done.node;
+    put(std::move(done.node));
   }
 
-  void convert_list(const YAML::Node& yaml, ConfigNode& node) {
-    node.kind = Kind::list;
-    for (const YAML::Node& item : yaml) {
-      if (refused_) return;
-      node.items.push_back(convert(item));
+  /// Adds a complete node to the one that it is in.
+  void put(ConfigNode node) {
+    if (open_.empty()) {
+      tree = std::move(node);
+    } else if (auto& [parent, anchor, key] = open_.back(); parent.kind == Kind::list) {
+      parent.items.push_back(std::move(node));
+    } else if (!key) {
+      if (node.kind != Kind::scalar) errors_.push_back({node.where, "a key must be a word"});
+      key = std::move(node);
+    } else {
+      if (node.kind == Kind::null) node.where = key->where;  // yaml-cpp locates it at the next token
+      parent.add(key->scalar, std::move(node));
+      parent.key_locations.back() = key->where;
+      key.reset();
     }
   }
 
-  void convert_map(const YAML::Node& yaml, ConfigNode& node) {
-    node.kind = Kind::map;
-    for (const auto& entry : yaml) {
-      if (refused_) return;
-      const Location where = place(file_, entry.first.Mark());
-      if (!entry.first.IsScalar()) {
-        errors_.push_back({where, "a key must be a word"});
-        continue;
-      }
-      refuse_nul(entry.first.Scalar(), where);
-      node.add(entry.first.Scalar(), convert(entry.second));
-      node.key_locations.back() = where;
-      // yaml-cpp locates a missing value at the next token.
-      if (ConfigNode& value = node.entries.back().second; value.kind == Kind::null) value.where = where;
-    }
+  /// Nested aliases can expand to billions of nodes.
+  void count(const ConfigNode& node, std::size_t depth) {
+    constexpr int most_nodes = 200000, most_levels = 100;
+    if (++nodes_ > most_nodes || depth > most_levels) refuse(node);
+    for (const ConfigNode& item : node.items) count(item, depth + 1);
+    for (const auto& [key, value] : node.entries) count(value, depth + 1);
+  }
+  [[noreturn]] static void refuse(const ConfigNode& node) {
+    throw ConfigError{node.where, "too many nested or repeated nodes; check the aliases"};
   }
 
-  static constexpr int max_nodes = 200000;
-  static constexpr int max_depth = 100;
   const std::string& file_;
   ConfigErrors& errors_;
+  std::vector<Open> open_;  // from the root inwards
+  std::map<YAML::anchor_t, ConfigNode> anchors_;
   int nodes_ = 0;
-  int depth_ = 0;
-  bool refused_ = false;
 };
 
 /// yaml-cpp silently ends a file at some control characters, and results.json needs UTF-8.
@@ -105,58 +138,29 @@ bool is_text(const std::string& text, const std::string& name, ConfigErrors& err
   return false;
 }
 
-/// Locations of the root nodes of a text's documents.
-class DocumentRoots : public YAML::EventHandler {
- public:
-  std::vector<YAML::Mark> marks;
-  void OnDocumentStart(const YAML::Mark&) override { in_document_ = false; }
-  void OnDocumentEnd() override {}
-  void OnNull(const YAML::Mark& mark, YAML::anchor_t) override { node(mark); }
-  void OnAlias(const YAML::Mark& mark, YAML::anchor_t) override { node(mark); }
-  void OnScalar(const YAML::Mark& mark, const std::string&, YAML::anchor_t, const std::string&) override {
-    node(mark);
-  }
-  void OnSequenceStart(const YAML::Mark& mark, const std::string&, YAML::anchor_t,
-                       YAML::EmitterStyle::value) override {
-    node(mark);
-  }
-  void OnSequenceEnd() override {}
-  void OnMapStart(const YAML::Mark& mark, const std::string&, YAML::anchor_t,
-                  YAML::EmitterStyle::value) override {
-    node(mark);
-  }
-  void OnMapEnd() override {}
-
- private:
-  void node(const YAML::Mark& mark) {
-    if (!in_document_) marks.push_back(mark);
-    in_document_ = true;
-  }
-  bool in_document_ = false;
-};
-
-/// An error if there is more than one document. YAML::LoadAll would not terminate on a document that begins
-/// with
-/// "," or "]", which the parser leaves for the next one.
-bool is_one_document(const std::string& text, const std::string& name, ConfigErrors& errors) {
-  std::istringstream stream(text);
-  YAML::Parser parser(stream);
-  DocumentRoots documents;
-  while (documents.marks.size() < 2 && parser.HandleNextDocument(documents)) {
-  }
-  if (documents.marks.size() < 2) return true;
-  errors.push_back({place(name, documents.marks[1]), "a second document begins here; a config is one"});
-  return false;
-}
-
-ConfigNode parse_value(const std::string& text, const std::string& name, ConfigErrors& errors) {
-  if (!is_text(text, name, errors)) return {};
+/// The value of a text; nothing, with errors appended, for a faulty one.
+std::optional<ConfigNode> parse_value(const std::string& text, const std::string& name,
+                                      ConfigErrors& errors) {
+  if (!is_text(text, name, errors)) return std::nullopt;
+  ConfigErrors faults;
+  TreeBuilder documents(name, faults);
   try {
-    if (is_one_document(text, name, errors)) return Converter(name, errors).convert(YAML::Load(text));
+    std::istringstream stream(text);
+    YAML::Parser parser(stream);
+    // Two at most: of "," and "]", which the parser leaves for the next one, it would make documents for
+    // ever.
+    while (documents.roots.size() < 2 && parser.HandleNextDocument(documents)) {
+    }
+    if (documents.roots.size() == 2)
+      faults = {{documents.roots[1], "a second document begins here; a config is one"}};
   } catch (const YAML::Exception& error) {
-    errors.push_back({place(name, error.mark), "not valid YAML: " + error.msg});
+    faults = {{place(name, error.mark), "not valid YAML: " + error.msg}};
+  } catch (const ConfigError& endless) {
+    faults.push_back(endless);
   }
-  return {};
+  if (faults.empty()) return documents.tree;
+  errors.insert(errors.end(), faults.begin(), faults.end());
+  return std::nullopt;
 }
 
 /// The child of `node` that one word of a path names; a new key is added. Null without such a child.
@@ -179,16 +183,42 @@ ConfigNode* step(ConfigNode& node, const std::string& word, const Location& wher
   return &node.entries.back().second;
 }
 
+/// Whether a node is written on one line: what is empty, a scalar, and a list of scalars.
+bool fits_a_line(const ConfigNode& node) {
+  return node.entries.empty() &&
+         std::all_of(node.items.begin(), node.items.end(), [](const ConfigNode& item) {
+           return item.kind == Kind::scalar || item.kind == Kind::null;
+         });
+}
+
+/// Writes the lines of a node; the first continues the line it is on.
+void write(const ConfigNode& node, const std::string& indent, std::string& text) {
+  if (fits_a_line(node)) {
+    text += node.one_line() + "\n";
+    return;
+  }
+  std::string begin;
+  for (const ConfigNode& item : node.items) {
+    text += begin + "- ";
+    write(item, indent + "  ", text);
+    begin = indent;
+  }
+  for (const auto& [key, value] : node.entries) {
+    text += begin + ConfigNode::of(key).one_line() + (fits_a_line(value) ? ": " : ":\n  " + indent);
+    write(value, indent + "  ", text);
+    begin = indent;
+  }
+}
+
 }  // namespace
 
 ConfigNode parse_yaml(const std::string& text, const std::string& name, ConfigErrors& errors) {
-  const size_t before = errors.size();
-  ConfigNode node = parse_value(text, name, errors);
-  if (errors.size() != before) return {};
-  if (node.kind == Kind::map) return node;
-  errors.push_back({node.kind == Kind::null ? Location{name, 0, 0} : node.where,
-                    node.kind == Kind::null ? "is empty; a config is a map of keys and values"
-                                            : "a config must begin with a map of keys and values"});
+  const std::optional<ConfigNode> node = parse_value(text, name, errors);
+  if (!node || node->kind == Kind::map) return node.value_or(ConfigNode());
+  const bool empty = node->kind == Kind::null;
+  errors.push_back({empty ? Location{name, 0, 0} : node->where,
+                    empty ? "is empty; a config is a map of keys and values"
+                          : "a config must begin with a map of keys and values"});
   return {};
 }
 
@@ -201,12 +231,16 @@ ConfigNode read_yaml(const std::filesystem::path& file, ConfigErrors& errors) {
   }
 }
 
+std::string to_yaml(const ConfigNode& node) {
+  std::string text;
+  write(node, "", text);
+  return text;
+}
+
 std::optional<ConfigNode> value_of_option(const std::string& text, const std::string& option,
                                           ConfigErrors& errors) {
-  const size_t before = errors.size();
-  ConfigNode value = parse_value(text, option, errors);
-  if (errors.size() != before) return std::nullopt;
-  set_places(value, {option, 0, 0});
+  std::optional<ConfigNode> value = parse_value(text, option, errors);
+  if (value) set_places(*value, {option, 0, 0});
   return value;
 }
 
@@ -217,20 +251,15 @@ void set_places(ConfigNode& node, const Location& where) {
   for (Location& key : node.key_locations) key = where;
 }
 
-bool set_path(ConfigNode& root, const std::string& path, const std::string& value, ConfigErrors& errors) {
-  const std::string option = "--set " + path;
-  std::optional<ConfigNode> parsed = value_of_option(value, option, errors);
-  return parsed && set_path(root, path, std::move(*parsed), {option, 0, 0}, errors);
-}
-
 bool set_path(ConfigNode& root, const std::string& path, ConfigNode value, const Location& where,
               ConfigErrors& errors) {
-  ConfigNode* node = &root;
-  if (path.empty() || path.front() == '.' || path.back() == '.' || path.find("..") != std::string::npos) {
+  const std::vector<std::string> words = split(path, '.');
+  if (std::find(words.begin(), words.end(), "") != words.end()) {
     errors.push_back({where, "the path has an empty name"});
     return false;
   }
-  for (const std::string& word : split(path, '.')) {
+  ConfigNode* node = &root;
+  for (const std::string& word : words) {
     const size_t size = node->items.size();
     node = step(*node, word, where);
     if (!node) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 
 #include "core/kernel/plugin/config_node.h"
@@ -26,13 +27,10 @@ std::optional<ConfigNode> value_of_option(const std::string& text, const std::st
 /// Gives a node and all within it, keys too, one location.
 void set_places(ConfigNode& node, const Location& where);
 
-/// Sets the node at a path to a YAML value. A path consists of keys and, in lists, of indices from 0, types
-/// or names ("metrics.0.type", "energies.gravity.acceleration"). Missing maps are made; a plugin's bare name
-/// becomes `{type: name}`. Locations are named "--set <path>". Returns false, with an error appended, if the
-/// path does not exist.
-bool set_path(ConfigNode& root, const std::string& path, const std::string& value, ConfigErrors& errors);
-
-/// The same with a parsed value, which keeps its locations; `where` is the location of the path.
+/// Sets the node at a path to a value, which keeps its locations; `where` is the location of the path. A path
+/// consists of keys and, in lists, of indices from 0, types or names ("metrics.0.type",
+/// "energies.gravity.acceleration"). Missing maps are made; a plugin's bare name becomes `{type: name}`.
+/// Returns false, with an error appended, if the path does not exist.
 bool set_path(ConfigNode& root, const std::string& path, ConfigNode value, const Location& where,
               ConfigErrors& errors);
 

@@ -53,10 +53,12 @@ nlohmann::ordered_json results_of(const fs::path& folder) {
 ConfigNode saved_config(const Experiment& experiment) {
   ConfigNode config = experiment.resolved;
   ConfigErrors none;
-  if (experiment.parameters.cloth.shape == "file") set_path(config, "cloth.file", "rest/l0.ply", none);
-  if (!experiment.parameters.start.file.empty()) set_path(config, "start.file", "start.ply", none);
-  if (!experiment.parameters.reference.file.empty())
-    set_path(config, "reference.file", "reference.ply", none);
+  const auto set = [&](const char* key, const char* file) {
+    set_path(config, key, ConfigNode::of(file), {}, none);
+  };
+  if (experiment.parameters.cloth.shape == "file") set("cloth.file", "rest/l0.ply");
+  if (!experiment.parameters.start.file.empty()) set("start.file", "start.ply");
+  if (!experiment.parameters.reference.file.empty()) set("reference.file", "reference.ply");
   return config;
 }
 

@@ -24,10 +24,16 @@ std::string parse_fault(const std::string& yaml) {
   return errors[0].text();
 }
 
+bool set_to(ConfigNode& node, const std::string& path, const std::string& value, ConfigErrors& errors) {
+  const Location option{"--set " + path};
+  const std::optional<ConfigNode> parsed = value_of_option(value, option.file, errors);
+  return parsed && set_path(node, path, *parsed, option, errors);
+}
+
 std::string set(const std::string& yaml, const std::string& path, const std::string& value) {
   ConfigNode node = parsed(yaml);
   ConfigErrors errors;
-  const bool done = set_path(node, path, value, errors);
+  const bool done = set_to(node, path, value, errors);
   REQUIRE(done == errors.empty());
   return done ? node.one_line() : errors[0].text();
 }
@@ -164,7 +170,7 @@ TEST_CASE("a path that does not exist is reported") {
 TEST_CASE("a value that a path sets has the path as its location") {
   ConfigNode node = parsed("a: 1");
   ConfigErrors errors;
-  REQUIRE(set_path(node, "b.c", "{d: [5]}", errors));
+  REQUIRE(set_to(node, "b.c", "{d: [5]}", errors));
   const ConfigNode& c = *node.find("b")->find("c");
   CHECK(c.find("d")->items[0].where.text() == "--set b.c");
   CHECK(c.key_locations[0].text() == "--set b.c");
