@@ -1,5 +1,6 @@
 #include "core/app/files/csv.h"
 
+#include <algorithm>
 #include <cmath>
 #include <sstream>
 #include <stdexcept>
@@ -21,10 +22,9 @@ Csv::Csv(const std::filesystem::path& path) {
                                ": fewer cells than the header has; run the experiment again");
     std::vector<std::string> cells = split(line, ',');
     if (!cells.empty() && !cells.back().empty() && cells.back().back() == '\r') cells.back().pop_back();
-    if (columns_.empty()) {
-      for (std::size_t k = 0; k < cells.size(); ++k) columns_[cells[k]] = k;
+    if (names_.empty()) {
       names_ = std::move(cells);
-    } else if (cells.size() >= columns_.size()) {
+    } else if (cells.size() >= names_.size()) {
       rows_.push_back(std::move(cells));
     } else {
       cut_short = number;
@@ -33,8 +33,8 @@ Csv::Csv(const std::filesystem::path& path) {
 }
 
 std::string Csv::text(std::size_t row, const std::string& column) const {
-  const auto found = columns_.find(column);
-  return found == columns_.end() ? "" : rows_[row][found->second];
+  const auto found = std::find(names_.begin(), names_.end(), column);
+  return found == names_.end() ? "" : rows_[row][found - names_.begin()];
 }
 
 OptionalNumber Csv::number(std::size_t row, const std::string& column) const {

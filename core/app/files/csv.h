@@ -1,13 +1,14 @@
 #pragma once
 
 #include <filesystem>
-#include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
-#include "core/app/files/optional_number.h"
-
 namespace drape {
+
+/// A number of a run, absent if the run did not reach or measure it.
+using OptionalNumber = std::optional<double>;
 
 /// A table of a run, with columns by the header's names. An incomplete last line of a killed run is ignored;
 /// a missing file is an empty table. Throws std::runtime_error for an incomplete line before the last.
@@ -19,14 +20,12 @@ class Csv {
   std::size_t size() const { return rows_.size(); }
   /// In the file's order.
   const std::vector<std::string>& names() const { return names_; }
-  bool has(const std::string& column) const { return columns_.count(column) > 0; }
   /// Empty or absent without such a column.
   std::string text(std::size_t row, const std::string& column) const;
   OptionalNumber number(std::size_t row, const std::string& column) const;
 
  private:
   std::vector<std::string> names_;
-  std::map<std::string, std::size_t> columns_;
   std::vector<std::vector<std::string>> rows_;
 };
 

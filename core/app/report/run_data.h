@@ -9,7 +9,6 @@
 
 #include "core/app/experiment/declared_metrics.h"
 #include "core/app/files/csv.h"
-#include "core/app/files/optional_number.h"
 #include "core/app/files/snapshot_file.h"
 #include "core/kernel/interfaces/triangle_mesh.h"
 
