@@ -9,7 +9,7 @@
 #include "core/app/experiment/experiment_path.h"
 #include "core/app/experiment/fabrics.h"
 #include "core/app/experiment/read_experiment.h"
-#include "core/app/files/file_name.h"
+#include "core/app/files/json_file.h"
 #include "core/app/files/yaml_file.h"
 #include "core/kernel/files/message_text.h"
 #include "core/kernel/files/string_utils.h"

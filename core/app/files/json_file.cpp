@@ -3,6 +3,7 @@
 #include <cmath>
 #include <limits>
 #include <stdexcept>
+#include <type_traits>
 
 #include "core/kernel/files/message_text.h"
 
@@ -33,51 +34,46 @@ std::string ascii_json_text(const Json& json) {
   return json.dump(-1, ' ', true, Json::error_handler_t::replace);
 }
 
+std::string fault_of_file_name(const std::string& name) {
+  constexpr std::size_t most = 200;  // bytes: most file systems allow 255; a run appends endings
+  try {
+    Json(name).dump();
+  } catch (const Json::exception&) {
+    return "is no UTF-8, which results.json needs";
+  }
+  if (name.size() <= most) return "";
+  return "has " + std::to_string(name.size()) + " bytes, and may have " + std::to_string(most);
+}
+
 void JsonFile::refuse(const std::string& fault) const {
   throw std::runtime_error(path_.string() + ": " + fault + "; " + remedy_);
 }
 
-void JsonFile::refuse(const std::string& key, const std::string& kind, const Json& value) const {
-  const std::string found = json_text(value);
-  refuse("\"" + key + "\" must be " + kind + ", not " + excerpt(found));
-}
-
-template <>
-std::optional<bool> JsonFile::find(const Json& object, const std::string& key) const {
+template <class T>
+std::optional<T> JsonFile::find(const Json& object, const std::string& key) const {
   const Json& value = member_of(object, key);
   if (value.is_null()) return {};
-  if (!value.is_boolean()) refuse(key, "true or false", value);
-  return value.get<bool>();
+  const auto require = [&](bool fits, const char* kind) {
+    if (!fits) refuse("\"" + key + "\" must be " + kind + ", not " + excerpt(json_text(value)));
+  };
+  if constexpr (std::is_same_v<T, bool>) {
+    require(value.is_boolean(), "true or false");
+  } else if constexpr (std::is_same_v<T, std::string>) {
+    require(value.is_string(), "a text");
+  } else {
+    constexpr bool whole = std::is_same_v<T, int>;
+    const double number = value.is_number() ? value.get<double>() : std::nan("");
+    const bool fits =
+        whole ? number >= 0 && number <= std::numeric_limits<int>::max() && number == std::floor(number)
+              : std::isfinite(number);
+    require(fits, whole ? "a whole number" : "a number");
+  }
+  return value.get<T>();
 }
 
-template <>
-std::optional<double> JsonFile::find(const Json& object, const std::string& key) const {
-  const Json& value = member_of(object, key);
-  if (value.is_null()) return {};
-  if (!value.is_number() || !std::isfinite(value.get<double>())) refuse(key, "a number", value);
-  return value.get<double>();
-}
-
-template <>
-std::optional<int> JsonFile::find(const Json& object, const std::string& key) const {
-  const Json& value = member_of(object, key);
-  if (value.is_null()) return {};
-  const std::optional<int> whole = value.is_number() ? whole_number(value.get<double>()) : std::nullopt;
-  if (!whole) refuse(key, "a whole number", value);
-  return whole;
-}
-
-template <>
-std::optional<std::string> JsonFile::find(const Json& object, const std::string& key) const {
-  const Json& value = member_of(object, key);
-  if (value.is_null()) return {};
-  if (!value.is_string()) refuse(key, "a text", value);
-  return value.get<std::string>();
-}
-
-std::optional<int> whole_number(double value) {
-  if (!(value >= 0 && value <= std::numeric_limits<int>::max()) || value != std::floor(value)) return {};
-  return static_cast<int>(value);
-}
+template std::optional<bool> JsonFile::find(const Json& object, const std::string& key) const;
+template std::optional<int> JsonFile::find(const Json& object, const std::string& key) const;
+template std::optional<double> JsonFile::find(const Json& object, const std::string& key) const;
+template std::optional<std::string> JsonFile::find(const Json& object, const std::string& key) const;
 
 }  // namespace drape

@@ -28,8 +28,6 @@ class JsonFile {
   [[noreturn]] void refuse(const std::string& fault) const;
 
  private:
-  [[noreturn]] void refuse(const std::string& key, const std::string& kind, const Json& value) const;
-
   std::filesystem::path path_;
   std::string remedy_;
 };
@@ -47,7 +45,8 @@ std::string json_text(const nlohmann::ordered_json& json, int indent = -1);
 /// The same on one line of ASCII, other characters escaped: for scripts of a page, whatever its encoding.
 std::string ascii_json_text(const nlohmann::ordered_json& json);
 
-/// A whole, non-negative number as an int; empty otherwise.
-std::optional<int> whole_number(double value);
+/// Why files that results.json names cannot begin with this name, as in "has 300 bytes, and may have 200"; ""
+/// if they can. Checked before a run rather than left to the file system in its middle.
+std::string fault_of_file_name(const std::string& name);
 
 }  // namespace drape
