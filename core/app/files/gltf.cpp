@@ -25,6 +25,8 @@ using Rows = Eigen::Matrix<Number, Eigen::Dynamic, columns, columns == 1 ? Eigen
 constexpr int float_component = 5126, unsigned_int_component = 5125;
 constexpr int vertex_data = 34962, index_data = 34963, other_data = 0;
 
+constexpr float seconds_between_states = 0.25f;  // of an animation
+
 /// From z upwards to y upwards: a rotation, so triangles keep their orientation.
 Rows<float, 3> y_upwards(const Positions& x) {
   Rows<double, 3> turned(x.rows(), 3);
@@ -34,12 +36,6 @@ Rows<float, 3> y_upwards(const Positions& x) {
 
 class GlbWriter {
  public:
-  GlbWriter() {
-    json_["asset"] = {{"version", "2.0"}, {"generator", std::string("drape ") + version()}};
-    json_["materials"] = {material("cloth", {0.50, 0.60, 0.75, 1.0}),
-                          material("obstacle", {0.6, 0.6, 0.6, 1.0})};
-  }
-
   /// Adds a mesh and a node that shows it, both of the surface's index.
   void add(const GltfSurface& surface) {
     const int node = static_cast<int>(json_["nodes"].size());
@@ -143,12 +139,9 @@ class GlbWriter {
   /// 1, at the end none has.
   void animate(int node, const GltfSurface& surface) {
     const auto targets = static_cast<Eigen::Index>(surface.earlier.size());
-    Rows<float, 1> times(targets + 1);
-    Rows<float, 1> weights = Rows<float, 1>::Zero((targets + 1) * targets);
-    for (Eigen::Index k = 0; k <= targets; ++k) {
-      times[k] = static_cast<float>(static_cast<double>(k) * gltf_frame_seconds);
-      if (k < targets) weights[k * targets + k] = 1;
-    }
+    const float end = seconds_between_states * static_cast<float>(targets);
+    const Rows<float, 1> times = Rows<float, 1>::LinSpaced(targets + 1, 0, end);
+    const Rows<float, 1> weights = Eigen::MatrixXf::Identity(targets, targets + 1).reshaped();
     const int input = accessor<float, 1>(times, other_data, true),
               output = accessor<float, 1>(weights, other_data);
     Json sampler = {{"input", input}, {"interpolation", "LINEAR"}, {"output", output}};
@@ -157,10 +150,15 @@ class GlbWriter {
         {{"name", surface.name}, {"samplers", Json::array({sampler})}, {"channels", Json::array({channel})}});
   }
 
-  Json json_ = {{"asset", Json::object()},    {"scene", 0},
-                {"scenes", Json::array()},    {"nodes", Json::array()},
-                {"meshes", Json::array()},    {"materials", Json::array()},
-                {"accessors", Json::array()}, {"bufferViews", Json::array()}};
+  Json json_ = {{"asset", {{"version", "2.0"}, {"generator", std::string("drape ") + version()}}},
+                {"scene", 0},
+                {"scenes", Json::array()},
+                {"nodes", Json::array()},
+                {"meshes", Json::array()},
+                {"materials", Json::array({material("cloth", {0.50, 0.60, 0.75, 1.0}),
+                                           material("obstacle", {0.6, 0.6, 0.6, 1.0})})},
+                {"accessors", Json::array()},
+                {"bufferViews", Json::array()}};
   std::string binary_;
 };
 

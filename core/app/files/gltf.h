@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "core/kernel/interfaces/triangle_mesh.h"
+#include "core/numerics/mesh/texture_coordinates.h"
 
 namespace drape {
 
@@ -17,13 +18,11 @@ enum class GltfMaterial { cloth, obstacle };
 
 /// A surface of a glTF file.
 struct GltfSurface {
-  using TextureCoordinates = Eigen::Matrix<double, Eigen::Dynamic, 2, Eigen::RowMajor>;
-
   std::string name;
   GltfMaterial material = GltfMaterial::cloth;
   Triangles triangles;  ///< m×3, m > 0
   GltfState state;
-  TextureCoordinates uv;           ///< n×2, v upwards; may be empty
+  UvVertices::Coordinates uv;      ///< n×2, v upwards; may be empty
   std::vector<GltfState> earlier;  ///< states before `state`, which an animation shows; may be empty
 };
 
@@ -32,9 +31,6 @@ struct GltfScene {
   std::string name;
   std::vector<int> surfaces;
 };
-
-/// Seconds from one state of an animation to the next.
-inline constexpr double gltf_frame_seconds = 0.25;
 
 /// A binary glTF 2.0 file (Khronos Group, "glTF 2.0 Specification", ISO/IEC 12113). The last scene is the one
 /// that viewers show. Axes become glTF's: y upwards, v downwards. Earlier states are morph targets of an
