@@ -28,8 +28,6 @@ double memory_of(const std::string& key) {
   return kilobytes.empty() ? unknown_memory : 1024 * std::stod(kilobytes);
 }
 
-ContainerMemory own_container() { return ContainerMemory::of("/sys/fs/cgroup"); }
-
 }  // namespace
 
 std::string cpu_name() {
@@ -38,14 +36,14 @@ std::string cpu_name() {
 }
 
 double machine_memory() {
-  double bytes = std::min(memory_of("MemTotal"), own_container().limit);
+  double bytes = std::min(memory_of("MemTotal"), ContainerMemory::of().limit);
   rlimit shell{};
   if (getrlimit(RLIMIT_AS, &shell) == 0 && shell.rlim_cur != RLIM_INFINITY)
     bytes = std::min(bytes, static_cast<double>(shell.rlim_cur));
   return bytes;
 }
 
-double available_memory() { return std::min(memory_of("MemAvailable"), own_container().available); }
+double available_memory() { return std::min(memory_of("MemAvailable"), ContainerMemory::of().available); }
 
 ContainerMemory ContainerMemory::of(const std::filesystem::path& group) {
   double limit = 0, used = 0;

@@ -18,7 +18,7 @@ double available_memory();
 struct ContainerMemory {
   double limit, available;
   /// As the files of a control group, version 2, say in this folder.
-  static ContainerMemory of(const std::filesystem::path& group);
+  static ContainerMemory of(const std::filesystem::path& group = "/sys/fs/cgroup");
 };
 /// Resets the process's peak resident memory, if the kernel supports it.
 void reset_peak_memory();
