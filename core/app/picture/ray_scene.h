@@ -41,7 +41,7 @@ class RayScene {
   /// Throws std::runtime_error if Embree fails.
   explicit RayScene(const Drawing& drawing);
 
-  /// From a camera's eye through a place in its picture, as Camera::seen gives it. Coordinates of rays are
+  /// From a camera's eye through a place in its picture, −1 … 1 to the right and up. Coordinates of rays are
   /// relative to the scene's centre: single precision holds offsets from it only [m].
   Ray through(const Camera& camera, double right, double up) const;
 

@@ -1,17 +1,22 @@
 #include "core/app/picture/render.h"
 
+#include <png.h>
+
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <thread>
+#include <utility>
 #include <vector>
 
-#include "core/app/picture/sample_grid.h"
+#include "core/app/picture/lighting.h"
 #include "core/kernel/threads/parallel.h"
 
 namespace drape {
 
 namespace {
 
+constexpr int split = 2;  // samples along the side of a pixel
 // Weights, along a row or a column, of the samples around a pixel's middle: a tent.
 constexpr float tent[2 * split] = {0.125f, 0.375f, 0.375f, 0.125f};
 constexpr float edge_width = 1e-3f;  // of the picture's height
@@ -25,6 +30,59 @@ float show_through(const SurfacePoint& obstacle) {
   return 0.05f + 0.3f * (1 - obstacle.facing) * (1 - obstacle.facing);
 }
 
+template <class T>
+using Grid = Eigen::Array<T, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;  // rows from the top
+
+/// Calls body(column, row) for all places of a grid, row by row, on all threads.
+template <class Body>
+void for_places(int width, int height, const std::function<bool()>& cancelled, const Body& body) {
+  const std::thread::id caller = std::this_thread::get_id();
+  parallel_for(height, 1, [&](int row, int) {
+    if (cancelled && std::this_thread::get_id() == caller && cancelled()) throw RenderingCancelled();
+    for (int column = 0; column < width; ++column) body(column, row);
+  });
+}
+
+/// What a ray through a place in the picture meets, and the light that arrives there.
+struct Sample : Seen {
+  float share = 1;  // of its light that edges and an obstacle behind let through
+  Arriving arriving = Arriving::Zero();
+};
+
+/// 1 between samples of one smooth surface; falls with the angle between them and with the distance of one
+/// from the other's plane.
+float likeness(const Sample& a, const Sample& b, float sample_size) {
+  if (a.surface != b.surface) return 0;
+  const float off_plane = a.normal.dot(b.position - a.position) / sample_size;
+  const float alike = 1 / (1 + 0.125f * off_plane * off_plane + 10 * (b.normal - a.normal).squaredNorm());
+  return alike * alike * alike;
+}
+
+/// Takes the noise of few random rays out of the light that arrives, by means over neighbours on the same
+/// smooth surface (H. Dammertz et al., Edge-avoiding À-Trous wavelet transform, HPG 2010). `sample_size`:
+/// distance between samples on a surface that faces the eye, about [m].
+void smooth(Grid<Sample>& samples, float sample_size) {
+  constexpr float spline[] = {0.375f, 0.25f, 0.0625f};
+  const int width = static_cast<int>(samples.cols()), height = static_cast<int>(samples.rows());
+  Grid<Arriving> smoothed(height, width);
+  // Steps of 1 are left to the means over pixels.
+  for (const auto& [right, down] : {std::pair(2, 0), {0, 2}, {4, 0}, {0, 4}, {8, 0}, {0, 8}}) {
+    for_places(width, height, {}, [&](int column, int row) {
+      Arriving sum = Arriving::Zero();
+      float weights = 0;
+      for (int k = -2; k <= 2; ++k) {
+        const int x = column + k * right, y = row + k * down;
+        if (x < 0 || x >= width || y < 0 || y >= height) continue;
+        const float alike = likeness(samples(row, column), samples(y, x), (right + down) * sample_size);
+        sum += spline[std::abs(k)] * alike * samples(y, x).arriving;
+        weights += spline[std::abs(k)] * alike;
+      }
+      smoothed(row, column) = sum / weights;
+    });
+    for (Eigen::Index k = 0; k < samples.size(); ++k) samples.data()[k].arriving = smoothed.data()[k];
+  }
+}
+
 /// One picture: what is seen through a grid of samples, with random rays to the lights; the light that
 /// arrives, smoothed; means over the samples around a pixel's middle.
 class Painting {
@@ -34,27 +92,27 @@ class Painting {
         camera_(camera),
         scene_(drawing),
         lighting_(scene_, camera),
-        grid_(split * width, split * height) {}
+        samples_(split * height, split * width) {}
 
   void see(int column, int row) {
     for (int y = split * row; y < split * (row + 1); ++y)
       for (int x = split * column; x < split * (column + 1); ++x) {
         const Ray ray =
-            scene_.through(camera_, (2 * x + 1.0) / grid_.width - 1, 1 - (2 * y + 1.0) / grid_.height);
+            scene_.through(camera_, (2 * x + 1.0) / samples_.cols() - 1, 1 - (2 * y + 1.0) / samples_.rows());
         const std::optional<SurfacePoint> point = scene_.nearest(ray);
-        if (point) grid_.at(x, y) = {*point, share(*point, ray), lighting_.arriving(*point, x, y)};
+        if (point) samples_(y, x) = {*point, share(*point, ray), lighting_.arriving(*point, x, y)};
       }
   }
 
-  void smooth() { grid_.smooth(sample_size(scene_.through(camera_, 0, 0).origin().norm())); }
+  void smooth() { drape::smooth(samples_, sample_size(scene_.through(camera_, 0, 0).origin().norm())); }
 
   Rgb colour(int column, int row) const {
     Rgb sum = Rgb::Zero();
     for (int k = 0; k < 4 * split * split; ++k) {
       const int x = k % (2 * split), y = k / (2 * split);
       sum += tent[x] * tent[y] *
-             light(std::clamp(split * column + x - split / 2, 0, grid_.width - 1),
-                   std::clamp(split * row + y - split / 2, 0, grid_.height - 1));
+             light(std::clamp<Eigen::Index>(split * column + x - split / 2, 0, samples_.cols() - 1),
+                   std::clamp<Eigen::Index>(split * row + y - split / 2, 0, samples_.rows() - 1));
     }
     return sum;
   }
@@ -62,11 +120,11 @@ class Painting {
  private:
   /// The distance between samples on a surface that faces the eye, that far away [m].
   float sample_size(double distance) const {
-    return static_cast<float>(2 * camera_.tangent[1] / grid_.height * distance);
+    return static_cast<float>(2 * camera_.tangent[1] / samples_.rows() * distance);
   }
 
-  Rgb light(int x, int y) const {
-    const Sample& sample = grid_.at(x, y);
+  Rgb light(Eigen::Index x, Eigen::Index y) const {
+    const Sample& sample = samples_(y, x);
     return sample.share * lighting_.to_eye(sample, sample.arriving);
   }
 
@@ -75,7 +133,7 @@ class Painting {
     float taken = 0;
     if (point.surface != Seen::Surface::cloth) return 1;
     if (drawing_.edges) {  // lines along the triangle's, with soft borders
-      const float half_width = std::max(edge_width * grid_.height, 0.6f * split) / 2, soft = 0.25f * split;
+      const float half_width = std::max(edge_width * samples_.rows(), 0.6f * split) / 2, soft = 0.25f * split;
       const float distance = point.edge_distance.minCoeff() / sample_size(point.distance);
       taken = edge_opacity * std::clamp((half_width + soft - distance) / (2 * soft), 0.0f, 1.0f);
     }
@@ -88,42 +146,44 @@ class Painting {
   const Camera& camera_;
   const RayScene scene_;
   const Lighting lighting_;
-  SampleGrid grid_;
+  Grid<Sample> samples_;
 };
 
-/// Calls body for all pixels, row by row, on all threads.
-void for_pixels(int width, int height, const std::function<bool()>& cancelled,
-                const std::function<void(int column, int row)>& body) {
-  const std::thread::id caller = std::this_thread::get_id();
-  parallel_for(height, 1, [&](int row, int) {
-    if (cancelled && std::this_thread::get_id() == caller && cancelled()) throw RenderingCancelled();
-    for (int column = 0; column < width; ++column) body(column, row);
-  });
-}
-
-/// Which samples of a picture a mesh covers, row by row.
-std::vector<unsigned char> cover_of(const TriangleMesh& mesh, const Camera& camera, int width, int height) {
-  std::vector<unsigned char> covered(static_cast<std::size_t>(width) * height);
+/// Which samples of a picture a mesh covers.
+Grid<bool> cover_of(const TriangleMesh& mesh, const Camera& camera, int width, int height) {
+  Grid<bool> covered(height, width);
   const RayScene scene(Drawing{mesh});
-  parallel_for(height, 8, [&](int begin, int end) {
-    for (int row = begin; row < end; ++row)
-      for (int column = 0; column < width; ++column)
-        covered[static_cast<std::size_t>(row) * width + column] = scene.blocked(
-            scene.through(camera, (2 * column + 1.0) / width - 1, 1 - (2 * row + 1.0) / height));
+  for_places(width, height, {}, [&](int column, int row) {
+    covered(row, column) =
+        scene.blocked(scene.through(camera, (2 * column + 1.0) / width - 1, 1 - (2 * row + 1.0) / height));
   });
   return covered;
 }
 
 }  // namespace
 
+std::string encode_png(const Image& image) {
+  png_image header{};
+  header.version = PNG_IMAGE_VERSION;
+  header.width = image.width;
+  header.height = image.height;
+  header.format = PNG_FORMAT_RGB;
+  std::string bytes(PNG_IMAGE_PNG_SIZE_MAX(header), 0);
+  png_alloc_size_t size = bytes.size();
+  if (!png_image_write_to_memory(&header, bytes.data(), &size, 0, image.pixels.data(), 0, nullptr))
+    throw std::runtime_error(std::string("cannot encode a picture: ") + header.message);
+  bytes.resize(size);
+  return bytes;
+}
+
 Image render(const Drawing& drawing, const Camera& camera, int width, int height,
              const std::function<bool()>& cancelled) {
   Painting painting(drawing, camera, width, height);
-  for_pixels(width, height, cancelled, [&](int column, int row) { painting.see(column, row); });
+  for_places(width, height, cancelled, [&](int column, int row) { painting.see(column, row); });
   painting.smooth();
   Image image{width, height, {}};
   image.pixels.resize(3 * static_cast<std::size_t>(width) * height);
-  for_pixels(width, height, cancelled, [&](int column, int row) {
+  for_places(width, height, cancelled, [&](int column, int row) {
     const Rgb colour = painting.colour(column, row);
     const std::size_t first = 3 * (static_cast<std::size_t>(row) * width + column);
     for (int k = 0; k < 3; ++k) image.pixels[first + k] = srgb_byte(colour[k]);
@@ -134,11 +194,11 @@ Image render(const Drawing& drawing, const Camera& camera, int width, int height
 void draw_outline(Image& image, const TriangleMesh& mesh, const Camera& camera,
                   const Eigen::Vector3f& colour) {
   const int width = split * image.width, height = split * image.height;
-  const std::vector<unsigned char> covered = cover_of(mesh, camera, width, height);
+  const Grid<bool> covered = cover_of(mesh, camera, width, height);
   const float edge = std::max(outline_width * image.height, least_outline_width) / 2 + softness;
   // The squared distance of each pixel's centre to the nearest border between a covered and an uncovered
   // sample, as far as the line reaches [pixels].
-  std::vector<float> distances(static_cast<std::size_t>(image.width) * image.height, edge * edge);
+  Grid<float> distances = Grid<float>::Constant(image.height, image.width, edge * edge);
   const auto add_border = [&](float x, float y) {
     x /= split, y /= split;
     const int last_row = std::min(static_cast<int>(y + edge), image.height - 1),
@@ -146,19 +206,18 @@ void draw_outline(Image& image, const TriangleMesh& mesh, const Camera& camera,
     for (int row = std::max(static_cast<int>(y - edge), 0); row <= last_row; ++row)
       for (int column = std::max(static_cast<int>(x - edge), 0); column <= last_column; ++column) {
         const float across = column + 0.5f - x, down = row + 0.5f - y;
-        float& distance = distances[static_cast<std::size_t>(row) * image.width + column];
-        distance = std::min(distance, across * across + down * down);
+        distances(row, column) = std::min(distances(row, column), across * across + down * down);
       }
   };
   for (int row = 0; row < height; ++row)
     for (int column = 0; column < width; ++column) {
-      const std::size_t here = static_cast<std::size_t>(row) * width + column;
-      if (column + 1 < width && covered[here + 1] != covered[here]) add_border(column + 1.0f, row + 0.5f);
-      if (row + 1 < height && covered[here + width] != covered[here]) add_border(column + 0.5f, row + 1.0f);
+      const bool here = covered(row, column);
+      if (column + 1 < width && covered(row, column + 1) != here) add_border(column + 1.0f, row + 0.5f);
+      if (row + 1 < height && covered(row + 1, column) != here) add_border(column + 0.5f, row + 1.0f);
     }
   const Rgb line = linear_of_srgb(colour);
-  for (std::size_t k = 0; k < distances.size(); ++k) {
-    const float share = std::min((edge - std::sqrt(distances[k])) / (2 * softness), 1.0f);
+  for (Eigen::Index k = 0; k < distances.size(); ++k) {
+    const float share = std::min((edge - std::sqrt(distances.data()[k])) / (2 * softness), 1.0f);
     if (share <= 0) continue;
     unsigned char* pixel = &image.pixels[3 * k];
     const Rgb before = linear_of_srgb(Eigen::Vector3f(pixel[0], pixel[1], pixel[2]) / 255);

@@ -4,24 +4,28 @@
 #include <functional>
 #include <optional>
 #include <stdexcept>
+#include <string>
 #include <vector>
 
-#include "core/app/picture/image.h"
 #include "core/kernel/interfaces/triangle_mesh.h"
 
 namespace drape {
+
+/// A picture in memory: rows from the top, three bytes (red, green, blue; sRGB) a pixel.
+struct Image {
+  int width = 0;
+  int height = 0;
+  std::vector<unsigned char> pixels;  ///< 3·width·height
+};
+
+/// The bytes of a PNG file. Throws std::runtime_error if libpng refuses the image.
+std::string encode_png(const Image& image);
 
 /// The camera of a picture.
 struct Camera {
   Eigen::Matrix3d frame = Eigen::Matrix3d::Identity();  ///< rows: right, up and towards the camera
   Eigen::Vector3d eye = Eigen::Vector3d::UnitZ();       ///< in that frame [m]
   Eigen::Vector2d tangent = {1, 1};                     ///< of half the angle of view, across and up
-
-  /// Where a point is seen: right and up, −1 … 1 within the picture, and how far ahead [m].
-  Eigen::Vector3d seen(const Eigen::Vector3d& point) const {
-    const Eigen::Vector3d p = frame * point - eye;
-    return {p[0] / (-p[2] * tangent[0]), p[1] / (-p[2] * tangent[1]), -p[2]};
-  }
 
   /// Perspective from `direction` (towards the camera), z up, or y up along z, as close as possible with all
   /// points in view.

@@ -64,9 +64,15 @@ int brightness(const Image& image, int column, int row) {
   return p[0] + p[1] + p[2];
 }
 
+/// Where a point is seen: right and up, −1 … 1 within the picture, and how far ahead [m].
+Eigen::Vector3d seen(const Camera& camera, const Eigen::Vector3d& point) {
+  const Eigen::Vector3d p = camera.frame * point - camera.eye;
+  return {p[0] / (-p[2] * camera.tangent[0]), p[1] / (-p[2] * camera.tangent[1]), -p[2]};
+}
+
 /// Where a point is seen [pixels].
 Eigen::Vector2i pixel_of(const Eigen::Vector3d& point, const Camera& camera, const Image& image) {
-  const Eigen::Vector3d p = camera.seen(point);
+  const Eigen::Vector3d p = seen(camera, point);
   return {static_cast<int>((p[0] + 1) / 2 * image.width), static_cast<int>((1 - p[1]) / 2 * image.height)};
 }
 
@@ -81,7 +87,7 @@ TEST_CASE("the camera sees all of every state and wastes no picture") {
   for (const Positions* x : {&sheet.vertices, static_cast<const Positions*>(&other)}) {
     for (int i = 0; i < x->rows(); ++i) {
       if (!x->row(i).allFinite()) continue;
-      const Eigen::Vector3d p = camera.seen(x->row(i));
+      const Eigen::Vector3d p = seen(camera, x->row(i));
       CHECK(p[2] > 0);
       CHECK(p.head<2>().cwiseAbs().maxCoeff() < 1);
       reach = std::max(reach, p.head<2>().cwiseAbs().maxCoeff());
@@ -89,7 +95,7 @@ TEST_CASE("the camera sees all of every state and wastes no picture") {
   }
   CHECK(reach > 0.9);
   const Camera above = Camera::around({&sheet.vertices}, {0, 0, 2}, 1);
-  const Eigen::Vector3d far_side = above.seen({0.5, 1, 0});
+  const Eigen::Vector3d far_side = seen(above, {0.5, 1, 0});
   CHECK(far_side[0] == Approx(0).margin(1e-12));  // y is up
   CHECK(far_side[1] == Approx(1 / 1.06));
 }
