@@ -6,7 +6,6 @@
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
-#include "core/app/report/model_keys.h"
 #include "core/app/report/run_table.h"
 #include "core/kernel/files/message_text.h"
 #include "core/kernel/files/string_utils.h"
@@ -144,7 +143,53 @@ Names first_of(Names names, std::size_t most) {
   return names;
 }
 
+using Kind = ConfigNode::Kind;
+
+/// What an experiment says of whose energy is minimised, without the record of where a material's numbers are
+/// from.
+ConfigNode model_part(const ConfigNode& config) {
+  ConfigNode model;
+  model.kind = Kind::map;
+  for (const char* key : {"cloth", "levels", "material", "pins", "handles", "schedule", "energies", "refiner",
+                          "contact", "obstacles", "friction"})
+    if (const ConfigNode* part = config.find(key)) model.add(key, *part);
+  for (auto& [key, part] : model.entries)
+    if (key == "material")
+      std::erase_if(part.entries, [](const auto& e) { return e.first == "from_fabric"; });
+  return model;
+}
+
+/// The word that names an item of a list in a path: its type or name, or its index.
+std::string word_of(const ConfigNode& item, std::size_t index) {
+  for (const char* key : {"type", "name"})
+    if (const ConfigNode* word = item.find(key); word && !word->scalar.empty()) return word->scalar;
+  return std::to_string(index);
+}
+
+void add_differences(const ConfigNode& a, const ConfigNode& b, const std::string& path, Names& differing) {
+  const auto within = [&](const std::string& word) { return path.empty() ? word : path + "." + word; };
+  const bool lists = a.kind == Kind::list && b.kind == Kind::list && a.items.size() == b.items.size();
+  const auto is_map = [](const ConfigNode& item) { return item.kind == Kind::map; };
+  if (lists && std::all_of(a.items.begin(), a.items.end(), is_map)) {
+    for (std::size_t i = 0; i < a.items.size(); ++i)
+      add_differences(a.items[i], b.items[i], within(word_of(a.items[i], i)), differing);
+  } else if (is_map(a) && is_map(b)) {
+    for (const auto& [key, value] : a.entries)
+      if (const ConfigNode* other = b.find(key)) add_differences(value, *other, within(key), differing);
+  } else if (a.one_line() != b.one_line()) {
+    differing.push_back(path);
+  }
+}
+
 }  // namespace
+
+std::string model_of(const ConfigNode& config) { return model_part(config).one_line(); }
+
+Names differing_model_keys(const ConfigNode& a, const ConfigNode& b) {
+  Names differing;
+  add_differences(model_part(a), model_part(b), "", differing);
+  return differing;
+}
 
 Comparison compare(const RunCollection& before, const RunCollection& after, const Names& bounds) {
   const bool named = before.runs.size() > 1 || after.runs.size() > 1;

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "core/app/report/run_collection.h"
+#include "core/kernel/plugin/config_node.h"
 
 namespace drape {
 
@@ -19,5 +20,13 @@ struct Comparison {
 /// says nothing, and if nothing matches, or no match has a bound's quantity.
 Comparison compare(const RunCollection& before, const RunCollection& after,
                    const std::vector<std::string>& bounds);
+
+/// The paths of the keys in which two experiments differ, among those that say whose energy is minimised:
+/// cloth, levels, material, boundary conditions, schedule, energies, refiner, contact, obstacles and
+/// friction, and neither start nor methods. A key that one of them lacks is no difference.
+std::vector<std::string> differing_model_keys(const ConfigNode& a, const ConfigNode& b);
+
+/// The values of these keys as one text, which two experiments share if they minimise the same energy.
+std::string model_of(const ConfigNode& config);
 
 }  // namespace drape

@@ -6,7 +6,7 @@
 #include <stdexcept>
 
 #include "core/app/files/json_file.h"
-#include "core/app/report/model_keys.h"
+#include "core/app/report/compare.h"
 #include "core/app/report/pictures.h"
 #include "core/app/report/report_view.h"
 #include "core/app/report/run_table.h"

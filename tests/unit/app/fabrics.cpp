@@ -5,7 +5,7 @@
 #include <catch2/catch.hpp>
 
 #include "core/app/files/yaml_file.h"
-#include "core/app/report/model_keys.h"
+#include "core/app/report/compare.h"
 #include "core/numerics/elements/orthotropic_stiffness.h"
 #include "tests/support/command.h"
 #include "tests/support/solve.h"
