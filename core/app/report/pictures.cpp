@@ -23,12 +23,10 @@ int height_of(int width) { return static_cast<int>(std::lround(width * 7.0 / 9))
 Positions near_cloth(const Positions& obstacle, const Eigen::AlignedBox3d& cloth) {
   const double margin = cloth.isEmpty() ? 0 : cloth.diagonal().norm() / 4;
   const Eigen::AlignedBox3d near(cloth.min().array() - margin, cloth.max().array() + margin);
-  Positions chosen(obstacle.rows(), 3);
-  Eigen::Index count = 0;
+  std::vector<Eigen::Index> chosen;
   for (Eigen::Index i = 0; i < obstacle.rows(); ++i)
-    if (near.contains(obstacle.row(i).transpose())) chosen.row(count++) = obstacle.row(i);
-  chosen.conservativeResize(count, 3);
-  return chosen;
+    if (near.contains(obstacle.row(i).transpose())) chosen.push_back(i);
+  return obstacle(chosen, Eigen::all);
 }
 
 /// A mesh of the run's folder; none, with a note, if it cannot be read.
@@ -63,7 +61,7 @@ PictureScene::PictureScene(const RunData& run, std::vector<std::string>& notes, 
   for (const MethodRecord& method : run.methods)
     for (const LevelRecord& level : method.levels)
       if (auto mesh = mesh_or_note(run, level.mesh, notes))
-        all.push_back(&states_.insert_or_assign({method.name, level.level}, *mesh).first->second.vertices);
+        all.push_back(&states_.emplace(&level, *mesh).first->second.vertices);
   Eigen::AlignedBox3d box;
   for (const Positions* x : all) box.extend(bounding_box(*x));
   std::list<Positions> near;
@@ -77,8 +75,8 @@ PictureScene::PictureScene(const RunData& run, std::vector<std::string>& notes, 
   camera_ = Camera::around(all, frame.direction, double(frame.width) / height_of(frame.width));
 }
 
-const TriangleMesh* PictureScene::state(const std::string& method, int level) const {
-  const auto found = states_.find({method, level});
+const TriangleMesh* PictureScene::state(const LevelRecord& level) const {
+  const auto found = states_.find(&level);
   return found == states_.end() ? nullptr : &found->second;
 }
 
@@ -109,13 +107,6 @@ std::string outline_picture(const MethodRecord& method, int coarse, int fine) {
   return file_part(method.name) + "_l" + std::to_string(coarse) + "_on_l" + std::to_string(fine) + ".png";
 }
 
-std::vector<int> drawn_levels(const MethodRecord& method) {
-  std::vector<int> levels;
-  for (const LevelRecord& level : method.levels)
-    if (!level.mesh.empty()) levels.push_back(level.level);
-  return levels;
-}
-
 PictureSet draw_pictures(const RunData& run, const std::function<bool()>& cancelled,
                          std::optional<int> width) {
   PictureSet set;
@@ -132,14 +123,14 @@ PictureSet draw_pictures(const RunData& run, const std::function<bool()>& cancel
         const std::string name = state_picture(method, level.level);
         // An earlier report may have drawn a state whose mesh is gone.
         std::filesystem::remove(folder / name);
-        if (const TriangleMesh* state = scene.state(method.name, level.level)) keep(name, scene.draw(*state));
+        if (const TriangleMesh* state = scene.state(level)) keep(name, scene.draw(*state));
       }
-      const std::vector<int> levels = drawn_levels(method);
+      const std::vector<const LevelRecord*> levels = method.recorded_levels();
       if (levels.size() < 2) continue;
-      const std::string name = outline_picture(method, levels.front(), levels.back());
+      const std::string name = outline_picture(method, levels.front()->level, levels.back()->level);
       std::filesystem::remove(folder / name);
-      const TriangleMesh* coarse = scene.state(method.name, levels.front());
-      const Image* fine = set.find(state_picture(method, levels.back()));
+      const TriangleMesh* coarse = scene.state(*levels.front());
+      const Image* fine = set.find(state_picture(method, levels.back()->level));
       if (!coarse || !fine) continue;
       Image outlined = *fine;
       scene.draw_outline(outlined, *coarse);

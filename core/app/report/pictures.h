@@ -28,13 +28,13 @@ struct PictureFrame {
 /// them all.
 class PictureScene {
  public:
-  /// Reads the states and obstacles; a mesh that cannot be read becomes a note. Once `cancelled`, which may
-  /// be empty, returns true, drawing throws RenderingCancelled.
+  /// Reads the states and obstacles of a run that outlives the scene; a mesh that cannot be read becomes a
+  /// note. Once `cancelled`, which may be empty, returns true, drawing throws RenderingCancelled.
   PictureScene(const RunData& run, std::vector<std::string>& notes, const PictureFrame& frame = {},
                std::function<bool()> cancelled = {});
 
-  /// The final state of a level; null without one.
-  const TriangleMesh* state(const std::string& method, int level) const;
+  /// The final state of a level of the run; null without one.
+  const TriangleMesh* state(const LevelRecord& level) const;
 
   /// Draws cloth among the obstacles, a coarse mesh with its edges.
   Image draw(const TriangleMesh& cloth, bool xray = false) const;
@@ -42,7 +42,7 @@ class PictureScene {
   void draw_outline(Image& picture, const TriangleMesh& cloth) const;
 
  private:
-  std::map<std::pair<std::string, int>, TriangleMesh> states_;  // by method and level
+  std::map<const LevelRecord*, TriangleMesh> states_;
   std::vector<TriangleMesh> obstacles_;
   Camera camera_;
   std::optional<double> floor_;  // height below everything
@@ -61,9 +61,6 @@ struct PictureSet {
 
 std::string state_picture(const MethodRecord& method, int level);
 std::string outline_picture(const MethodRecord& method, int coarse, int fine);
-
-/// The levels with a final state, coarse to fine.
-std::vector<int> drawn_levels(const MethodRecord& method);
 
 /// Draws all pictures of a run, `width` (default: 900) pixels wide, and writes them to DIR/pictures: each
 /// state, and each method's finest with the outline of its coarsest. A missing or unreadable mesh becomes a

@@ -69,9 +69,9 @@ Json styles_json(const RunCollection& collection) {
 Json pictures_json(const RunData& run, const PictureSet& set) {
   Json pictures = Json::array();
   for (const MethodRecord& method : run.methods) {
-    const std::vector<int> levels = drawn_levels(method);
+    const std::vector<const LevelRecord*> levels = method.recorded_levels();
     if (levels.empty()) continue;
-    const int coarse = levels.front(), fine = levels.back();
+    const int coarse = levels.front()->level, fine = levels.back()->level;
     const Image* picture =
         set.find(coarse < fine ? outline_picture(method, coarse, fine) : state_picture(method, fine));
     if (!picture) continue;
@@ -92,8 +92,7 @@ Json thumbnails(const RunData& run) {
   const PictureScene scene(run, notes, {.width = 240});
   Json all = Json::array();
   for (const MethodRecord& method : run.methods)
-    if (const TriangleMesh* end =
-            method.levels.empty() ? nullptr : scene.state(method.name, method.levels.back().level))
+    if (const TriangleMesh* end = method.levels.empty() ? nullptr : scene.state(method.levels.back()))
       all.push_back({{"method", method.name}, {"png", base64(encode_png(scene.draw(*end)))}});
   return all;
 }

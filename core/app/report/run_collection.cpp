@@ -64,8 +64,7 @@ std::string config_but_seed(const RunData& run, OptionalNumber& seed) {
 }
 
 void read_single_runs(const std::vector<fs::path>& folders, RunCollection& collection) {
-  std::map<std::string, std::set<std::string>> configs_of;  // by the experiment's name
-  std::map<std::string, std::string> folder_of;             // by the configuration
+  std::map<std::string, std::map<std::string, std::string>> folder_of;  // by experiment and configuration
   std::vector<std::string> configs;
   const std::size_t first = collection.runs.size();
   for (const fs::path& folder : folders) {
@@ -73,7 +72,7 @@ void read_single_runs(const std::vector<fs::path>& folders, RunCollection& colle
     run.folder = folder;
     run.data = read_run(folder);
     configs.push_back(config_but_seed(*run.data, run.seed));
-    configs_of[run.data->experiment].insert(configs.back());
+    folder_of[run.data->experiment].try_emplace(configs.back(), folder.string());
     bool converged = run.data->complete;
     for (const MethodRecord& m : run.data->methods) converged = converged && has_converged(m.status);
     run.status = converged ? "converged" : "not_converged";
@@ -81,9 +80,8 @@ void read_single_runs(const std::vector<fs::path>& folders, RunCollection& colle
   }
   for (std::size_t k = 0; k < folders.size(); ++k) {
     RunRecord& run = collection.runs[first + k];
-    const std::string& experiment = run.data->experiment;
-    const std::string& folder = folder_of.try_emplace(configs[k], folders[k].string()).first->second;
-    run.name = run.variation = configs_of[experiment].size() == 1 ? experiment : folder;
+    const auto& variations = folder_of[run.data->experiment];
+    run.name = run.variation = variations.size() == 1 ? run.data->experiment : variations.at(configs[k]);
   }
 }
 

@@ -80,6 +80,13 @@ int MethodRecord::first_level() const {
   return first;
 }
 
+std::vector<const LevelRecord*> MethodRecord::recorded_levels() const {
+  std::vector<const LevelRecord*> recorded;
+  for (const LevelRecord& level : levels)
+    if (!level.mesh.empty()) recorded.push_back(&level);
+  return recorded;
+}
+
 OptionalNumber MethodRecord::cost(const std::string& value) const {
   OptionalNumber sum;
   for (const LevelRecord& level : levels) {
@@ -103,14 +110,7 @@ int RunData::finest_level() const {
   return finest;
 }
 
-TriangleMesh RunData::mesh(const std::string& name) const {
-  TriangleMesh mesh = read_mesh(folder / name);
-  const bool inside = mesh.triangles.size() == 0 ||
-                      (mesh.triangles.minCoeff() >= 0 && mesh.triangles.maxCoeff() < mesh.vertices.rows());
-  if (!inside)
-    throw std::runtime_error((folder / name).string() + ": a triangle names a vertex that is not there");
-  return mesh;
-}
+TriangleMesh RunData::mesh(const std::string& name) const { return read_mesh(folder / name); }
 
 SnapshotFile RunData::snapshots(const LevelRecord& level, Eigen::Index n) const {
   const std::string name = text_member(level.snapshots, "file");

@@ -50,6 +50,8 @@ struct MethodRecord {
   OptionalNumber cost(const std::string& value) const;
   /// The coarsest level that the last state builds on.
   int first_level() const;
+  /// The levels with a stored final state, coarse to fine.
+  std::vector<const LevelRecord*> recorded_levels() const;
 };
 
 /// Everything a finished or interrupted run has written, except meshes.
@@ -73,8 +75,7 @@ struct RunData {
   bool has_contact() const;
   int finest_level() const;  ///< over all methods; -1 without levels
 
-  /// A mesh of the run's folder. Throws std::runtime_error if it cannot be read, or if a triangle names a
-  /// vertex that is not there.
+  /// A mesh of the run's folder. Throws std::runtime_error if it cannot be read.
   TriangleMesh mesh(const std::string& name) const;
   /// The snapshots of a level of n vertices, in order; none if the run has recorded none. Throws
   /// std::runtime_error for a file that is missing or damaged.

@@ -35,19 +35,16 @@ const MethodRecord& chosen_method(const RunData& run, const std::string& asked) 
 }
 
 /// The levels with a recorded state, coarse to fine, or the one that is asked for.
-std::vector<const LevelRecord*> recorded_levels(const MethodRecord& method, std::optional<int> asked) {
-  std::vector<const LevelRecord*> all;
+std::vector<const LevelRecord*> chosen_levels(const MethodRecord& method, std::optional<int> asked) {
+  std::vector<const LevelRecord*> levels = method.recorded_levels();
+  if (levels.empty()) throw std::runtime_error(method.name + " has not finished a level; nothing to export");
   std::vector<std::string> known;
-  for (const LevelRecord& level : method.levels) {
-    if (level.mesh.empty()) continue;
-    known.push_back(std::to_string(level.level));
-    if (!asked || level.level == *asked) all.push_back(&level);
-  }
-  if (known.empty()) throw std::runtime_error(method.name + " has not finished a level; nothing to export");
-  if (all.empty())
+  for (const LevelRecord* level : levels) known.push_back(std::to_string(level->level));
+  std::erase_if(levels, [&](const LevelRecord* level) { return asked && level->level != *asked; });
+  if (levels.empty())
     throw std::runtime_error("--level " + std::to_string(*asked) + ": the levels of " + method.name +
                              " are " + joined(known));
-  return all;
+  return levels;
 }
 
 /// The cloth at the end of a level, with texture coordinates: those of the cloth's file, or, for a flat rest
@@ -74,13 +71,9 @@ GltfState gltf_state(const TriangleMesh& mesh, const UvVertices& split) {
   return {split.of(mesh.vertices), split.of(normals)};
 }
 
-GltfSurface gltf_surface(const std::string& name, const TriangleMesh& mesh, const UvVertices& split) {
-  GltfSurface surface;
-  surface.name = name;
-  surface.triangles = split.triangles;
-  surface.state = gltf_state(mesh, split);
-  surface.uv = split.uv;
-  return surface;
+GltfSurface gltf_surface(const std::string& name, GltfMaterial material, const TriangleMesh& mesh,
+                         const UvVertices& split) {
+  return {name, material, split.triangles, gltf_state(mesh, split), split.uv, {}};
 }
 
 /// Why a level has fewer snapshots than an animation needs, with a remedy.
@@ -116,7 +109,8 @@ GltfSurface cloth_surface(const RunData& run, const MethodRecord& method, const 
   const TriangleMesh mesh = cloth_mesh(run, level);
   const UvVertices split = split_at_seams(mesh);
   const std::string cloth = run.experiment.empty() ? "cloth" : run.experiment;
-  GltfSurface surface = gltf_surface(cloth + " level " + std::to_string(level.level), mesh, split);
+  GltfSurface surface =
+      gltf_surface(cloth + " level " + std::to_string(level.level), GltfMaterial::cloth, mesh, split);
   if (with_frames)
     for (Positions& x : earlier_states(run, method, level, mesh.vertices.rows(), 2))
       surface.earlier.push_back(gltf_state({std::move(x), mesh.triangles}, split));
@@ -130,12 +124,10 @@ std::string gltf_of(const RunData& run, const MethodRecord& method,
   for (std::size_t k = 0; k < run.obstacles.size(); ++k) {
     const TriangleMesh mesh = run.mesh(run.obstacles[k]);
     if (mesh.triangles.rows() == 0) continue;
-    const std::string& name = run.obstacle_names[k];
-    GltfSurface surface =
-        gltf_surface(name.empty() ? "obstacle " + std::to_string(k) : name, mesh, split_at_seams(mesh));
-    surface.material = GltfMaterial::obstacle;
+    const std::string& given = run.obstacle_names[k];
+    const std::string name = given.empty() ? "obstacle " + std::to_string(k) : given;
     obstacles.push_back(static_cast<int>(surfaces.size()));
-    surfaces.push_back(std::move(surface));
+    surfaces.push_back(gltf_surface(name, GltfMaterial::obstacle, mesh, split_at_seams(mesh)));
   }
   std::vector<GltfScene> scenes;
   for (const LevelRecord* level : levels) {
@@ -198,8 +190,7 @@ std::vector<fs::path> export_pictures(const RunData& run, const MethodRecord& me
   std::vector<std::string> notes;  // of states that are not drawn here; the report has them
   const PictureScene scene(run, notes, frame);
   std::optional<TriangleMesh> coarsest;
-  for (const LevelRecord& level : method.levels)
-    if (options.picture.outline && !coarsest && !level.mesh.empty()) coarsest = run.mesh(level.mesh);
+  if (options.picture.outline) coarsest = run.mesh(method.recorded_levels().front()->mesh);
   for (std::size_t k = 0; k < states.size(); ++k) {
     Image image = scene.draw(states[k], options.picture.xray);
     if (coarsest) scene.draw_outline(image, *coarsest);
@@ -233,7 +224,7 @@ std::vector<fs::path> export_run(const fs::path& folder, const fs::path& file, c
   const std::string extension = file.extension().string();
   const RunData run = read_run(folder);
   const MethodRecord& method = chosen_method(run, options.method);
-  std::vector<const LevelRecord*> levels = recorded_levels(method, options.level);
+  std::vector<const LevelRecord*> levels = chosen_levels(method, options.level);
   const bool all_levels = extension == ".glb" ? !options.frames : extension == ".png" && options.frames;
   if (!all_levels) levels = {levels.back()};
   if (extension == ".png") return export_pictures(run, method, levels, file, options);
