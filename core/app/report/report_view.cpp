@@ -88,8 +88,9 @@ Json states_json(const RunData& run, const LevelRecord& level, const State& last
   } catch (const std::exception& error) {
     notes.push_back("3D viewer: " + reason_of(error));
   }
+  const std::size_t bytes_of_state = last.x.rows() * (6 + surface_fields().size());
   const std::size_t count = snapshots.count() > 0 ? snapshots.count() - 1 : 0,
-                    shown = std::min(count, bytes / document.state_bytes(level.level));
+                    shown = std::min(count, bytes / bytes_of_state);
   for (std::size_t k = 0; k < shown; ++k) {
     const std::size_t f = k * count / shown;
     const Positions x = snapshots.positions(f);

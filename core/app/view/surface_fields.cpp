@@ -12,7 +12,6 @@ namespace drape {
 namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-constexpr double shown_part_of_diagonal = 2e-3;
 constexpr double quantile = 0.98;  // of the values inside the colours' range
 
 /// Lowers gap[i] to the distance of each point i to every triangle within `range` that `counts(i, t)`.
@@ -81,7 +80,7 @@ Eigen::VectorXd contact_gap(const Level& level, const Positions& x,
   const Triangles& triangles = level.rest.triangles;
   lower_to_distance(gap, points, x, x, triangles, range, [&](int i, int t) {
     for (int k = 0; k < 3; ++k)
-      if (triangles(t, k) == i || (rest.row(triangles(t, k)) - rest.row(i)).norm() < 3 * range) return false;
+      if ((rest.row(triangles(t, k)) - rest.row(i)).norm() < 3 * range) return false;
     return true;
   });
   for (double& g : gap) g = g <= range ? g : nan;
@@ -90,10 +89,6 @@ Eigen::VectorXd contact_gap(const Level& level, const Positions& x,
 
 void add_contact_pressure(SurfaceFields& fields, const Eigen::VectorXd& pressure) {
   if (pressure.size() > 0) fields.emplace("contact_pressure", (pressure.array() > 0).select(pressure, nan));
-}
-
-double shown_gap(const Level& level) {
-  return shown_part_of_diagonal * bounding_box_diagonal(level.rest.vertices);
 }
 
 std::pair<double, double> field_range(const FieldKind& kind,

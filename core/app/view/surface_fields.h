@@ -32,9 +32,6 @@ Eigen::VectorXd contact_gap(const Level& level, const Positions& x,
 /// Adds LevelModel::contact_pressure, unless it is empty. NaN where there is no force.
 void add_contact_pressure(SurfaceFields& fields, const Eigen::VectorXd& pressure);
 
-/// The range of displayed gaps: a fraction of the rest shape's diagonal [m].
-double shown_gap(const Level& level);
-
 /// The colour range of a kind: nearly all values lie inside.
 std::pair<double, double> field_range(const FieldKind& kind,
                                       const std::vector<const Eigen::VectorXd*>& values, double gap_range);

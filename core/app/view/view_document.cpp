@@ -1,9 +1,14 @@
 #include "core/app/view/view_document.h"
 
+#include <zlib.h>
+
+#include <Eigen/Geometry>
 #include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <stdexcept>
 #include <tuple>
 
-#include "core/app/view/view_blocks.h"
 #include "core/numerics/elements/green_strain.h"
 #include "core/numerics/elements/vertex_fields.h"
 #include "core/numerics/mesh_files/base64.h"
@@ -25,12 +30,21 @@ ViewDocument::Json warp_arrows(const Level& level) {
   return arrows;
 }
 
+constexpr double steps = 65535;
+
+template <class T>
+void append(std::string& bytes, T value) {
+  static_assert(__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__);
+  bytes.append(reinterpret_cast<const char*>(&value), sizeof value);
+}
+
 }  // namespace
 
 ViewDocument::ViewDocument(const std::vector<Level>& levels, const Obstacles& obstacles, bool with_gaps,
                            Keep keep, const std::vector<FieldKind>& further)
     : levels_(levels),
       with_gaps_(with_gaps),
+      gap_range_(2e-3 * bounding_box_diagonal(levels.front().rest.vertices)),
       obstacles_(obstacles),
       keep_(std::move(keep)),
       kinds_(surface_fields()) {
@@ -57,8 +71,7 @@ SurfaceFields ViewDocument::fields(int level, const Positions& x, const Obstacle
   const Level& l = levels_[level];
   SurfaceFields all = {{"mean_curvature", mean_curvature(x, l.rest.triangles, l.hinges)},
                        {"stretch", largest_stretch(l, x)}};
-  if (with_gaps_)
-    all.emplace("gap", contact_gap(l, x, moved ? *moved : obstacles_, shown_gap(levels_.front())));
+  if (with_gaps_) all.emplace("gap", contact_gap(l, x, moved ? *moved : obstacles_, gap_range_));
   return all;
 }
 
@@ -68,8 +81,7 @@ void ViewDocument::set_ranges(const std::vector<const SurfaceFields*>& states) {
     for (const SurfaceFields* state : states)
       if (const auto field = state->find(kind.name); field != state->end() && !field->second.isZero(0))
         values.push_back(&field->second);  // the finest level's difference from itself is zero
-    if (!values.empty())
-      std::tie(kind.low, kind.high) = field_range(kind, values, shown_gap(levels_.front()));
+    if (!values.empty()) std::tie(kind.low, kind.high) = field_range(kind, values, gap_range_);
   }
 }
 
@@ -93,10 +105,6 @@ ViewDocument::Json ViewDocument::state(const std::string& name, const Positions&
   return entry;
 }
 
-std::size_t ViewDocument::state_bytes(int level) const {
-  return levels_[level].vertex_count() * (6 + surface_fields().size());
-}
-
 ViewDocument::Json ViewDocument::document(const std::string& title, Json methods) const {
   Json fields = Json::array();
   for (const FieldKind& kind : kinds_)
@@ -113,6 +121,62 @@ ViewDocument::Json ViewDocument::document(const std::string& title, Json methods
           {"obstacles", obstacle_entries_},
           {"fields", fields},
           {"methods", std::move(methods)}};
+}
+
+std::string encode_positions(const Positions& x) {
+  Eigen::AlignedBox3d bounds = bounding_box(x);
+  if (bounds.isEmpty()) bounds.extend(Eigen::Vector3d::Zero());
+  const Eigen::AlignedBox3f box = bounds.cast<float>();
+  std::string bytes;
+  bytes.reserve(24 + 6 * x.rows());
+  for (int k = 0; k < 3; ++k) append(bytes, box.min()[k]);
+  for (int k = 0; k < 3; ++k) append(bytes, box.sizes()[k]);
+  for (int k = 0; k < 3; ++k) {
+    const double lower = box.min()[k], size = box.sizes()[k];
+    std::uint16_t before = 0;
+    for (Eigen::Index i = 0; i < x.rows(); ++i) {
+      const double place = size > 0 && std::isfinite(x(i, k)) ? (x(i, k) - lower) / size : 0;
+      const auto q = static_cast<std::uint16_t>(std::lround(std::clamp(place, 0.0, 1.0) * steps));
+      append(bytes, static_cast<std::uint16_t>(q - before));
+      before = q;
+    }
+  }
+  return bytes;
+}
+
+std::string encode_triangles(const Triangles& triangles) {
+  std::string bytes;
+  bytes.reserve(4 * triangles.size());
+  for (int k = 0; k < 3; ++k) {
+    std::int32_t before = 0;
+    for (Eigen::Index t = 0; t < triangles.rows(); ++t) {
+      append(bytes, static_cast<std::int32_t>(triangles(t, k) - before));
+      before = triangles(t, k);
+    }
+  }
+  return bytes;
+}
+
+std::string encode_scalars(const Eigen::VectorXd& values, double low, double high) {
+  std::string bytes;
+  bytes.reserve(8 + values.size());
+  append(bytes, static_cast<float>(low));
+  append(bytes, static_cast<float>(high));
+  for (const double value : values) {
+    const double place = std::clamp((value - low) / (high - low), 0.0, 1.0);
+    append(bytes, static_cast<std::uint8_t>(std::isnan(place) ? 255 : std::lround(place * 254)));
+  }
+  return bytes;
+}
+
+std::string deflated(std::string_view bytes) {
+  uLongf size = compressBound(bytes.size());
+  std::string packed(size, '\0');
+  const int code = compress2(reinterpret_cast<Bytef*>(packed.data()), &size,
+                             reinterpret_cast<const Bytef*>(bytes.data()), bytes.size(), Z_BEST_COMPRESSION);
+  if (code != Z_OK) throw std::runtime_error("zlib cannot compress a block of the viewer");
+  packed.resize(size);
+  return packed;
 }
 
 std::string block_element(const std::string& name, const std::string& bytes) {

@@ -3,6 +3,7 @@
 #include <functional>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/app/view/surface_fields.h"
@@ -33,8 +34,6 @@ class ViewDocument {
   /// Encodes a state; its blocks are named after `name`.
   Json state(const std::string& name, const Positions& x, const SurfaceFields& fields,
              const Obstacles* moved = nullptr);
-  /// Uncompressed size of a state of that level [bytes].
-  std::size_t state_bytes(int level) const;
 
   /// The document, with `methods` as {"name", "levels": [{"level", "status", "states": [...]}]}.
   Json document(const std::string& title, Json methods) const;
@@ -42,11 +41,27 @@ class ViewDocument {
  private:
   const std::vector<Level>& levels_;
   bool with_gaps_;
+  double gap_range_;  // the range of displayed gaps: a fraction of the rest shape's diagonal [m]
   const Obstacles& obstacles_;
   Keep keep_;
   std::vector<FieldKind> kinds_;
   Json level_entries_ = Json::array(), obstacle_entries_ = Json::array();
 };
+
+// The viewer's blocks of bytes, little endian; docs/guide/viewer.md says what each holds.
+
+/// Six float32, lower corner and size of the box, then x, y and z plane by plane as uint16 within it, each
+/// the difference from the vertex before modulo 2^16. What is not finite becomes the lower corner.
+std::string encode_positions(const Positions& x);
+
+/// Plane by plane, each corner as an int32 difference from the triangle before.
+std::string encode_triangles(const Triangles& triangles);
+
+/// Two float32, low and high, then a uint8 a value: 0 … 254 within them, ends included, 255 for NaN.
+std::string encode_scalars(const Eigen::VectorXd& values, double low, double high);
+
+/// In zlib's format, which browsers call "deflate".
+std::string deflated(std::string_view bytes);
 
 /// A named block as a <script> element, for pages that embed it.
 std::string block_element(const std::string& name, const std::string& bytes);

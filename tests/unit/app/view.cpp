@@ -6,7 +6,6 @@
 
 #include "core/app/report/report.h"
 #include "core/app/view/surface_fields.h"
-#include "core/app/view/view_blocks.h"
 #include "core/app/view/view_document.h"
 #include "core/numerics/elements/vertex_fields.h"
 #include "core/numerics/patterns/generate.h"
