@@ -30,8 +30,12 @@ def measures_of(errors, target: str) -> list[str]:
     return [name.removeprefix(target + "_") for name in names if errors[name].notna().any()]
 
 
-def plot_errors(result, measure: str, target: str, cost: str, axes=None):
-    """See Result.plot_errors."""
+def plot_errors(result, measure: str = "", target: str = "reference", cost: str = "seconds", axes=None):
+    """Error over cost, a line for each method, in the report's colours; returns matplotlib's axes.
+
+    measure: as in errors.csv; by default the first there, rms unless the experiment leaves it out. A method
+    whose levels do not build on each other has its finest level alone.
+    """
     table = result.errors
     measures = measures_of(table, target)
     if not measures:
@@ -53,7 +57,7 @@ def plot_errors(result, measure: str, target: str, cost: str, axes=None):
 
 
 def plot_convergence(result, axes=None):
-    """See Result.plot_convergence."""
+    """Force residual over time, a line for each level of each method; returns matplotlib's axes."""
     axes = _axes(axes)
     for method in result.methods:
         table = result.iterations[result.iterations["method"] == method]

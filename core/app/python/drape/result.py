@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any, Dict, List, Mapping, Optional, Tuple, Uni
 import numpy
 import pandas
 
-from . import _core
+from . import _core, plots
 
 
 class Page:
@@ -158,21 +158,8 @@ class Result:
         """Open the 3D viewer in a browser."""
         self.page.open()
 
-    def plot_errors(self, measure: str = "", target: str = "reference", cost: str = "seconds", axes=None):
-        """Error over cost, a line for each method, in the report's colours; returns matplotlib's axes.
-
-        measure: as in errors.csv; by default the first there, rms unless the experiment leaves it out. A method
-        whose levels do not build on each other has its finest level alone.
-        """
-        from .plots import plot_errors
-
-        return plot_errors(self, measure, target, cost, axes)
-
-    def plot_convergence(self, axes=None):
-        """Force residual over time, a line for each level of each method; returns matplotlib's axes."""
-        from .plots import plot_convergence
-
-        return plot_convergence(self, axes)
+    plot_errors = plots.plot_errors
+    plot_convergence = plots.plot_convergence
 
     def _repr_html_(self) -> str:
         return self.page._repr_html_()
