@@ -3,7 +3,6 @@
 #include "core/app/experiment/cloth.h"
 #include "core/app/files/yaml_file.h"
 #include "core/app/python/module.h"
-#include "core/app/python/python_call.h"
 #include "core/app/python/values.h"
 #include "core/app/scene/scene_summary.h"
 
@@ -14,8 +13,7 @@ namespace {
 ExperimentHandle experiment_of(const py::object& source) {
   if (py::isinstance<py::dict>(source)) return {node_of(source)};
   if (!py::isinstance<py::str>(source) && !py::hasattr(source, "__fspath__"))
-    throw py::type_error("an experiment is the path of a YAML file or a dict, not " +
-                         std::string(py::repr(source)));
+    throw py::type_error("an experiment is the path of a YAML file or a dict, not " + shown(source));
   ConfigErrors errors;
   ExperimentHandle experiment{read_yaml(source.cast<std::filesystem::path>(), errors)};
   throw_errors(errors);

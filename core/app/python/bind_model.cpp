@@ -1,5 +1,4 @@
 #include "core/app/python/module.h"
-#include "core/app/python/python_call.h"
 #include "core/app/python/values.h"
 #include "core/kernel/plugin/bounds.h"
 #include "core/numerics/model/objective.h"

@@ -5,7 +5,6 @@
 
 #include "core/app/experiment/experiment.h"
 #include "core/app/python/module.h"
-#include "core/app/python/python_call.h"
 #include "core/app/python/values.h"
 #include "core/app/report/report.h"
 #include "core/app/report/run_export.h"
@@ -59,8 +58,7 @@ class Callbacks : public Observer {
   static SharedObject function(const char* name, const py::object& given) {
     if (given.is_none()) return nullptr;
     if (!PyCallable_Check(given.ptr()))
-      throw py::type_error(std::string(name) + " must be a function or None, not " +
-                           std::string(py::repr(given)));
+      throw py::type_error(std::string(name) + " must be a function or None, not " + shown(given));
     return share(given);
   }
 
@@ -77,8 +75,7 @@ class Callbacks : public Observer {
       else if (word == "refine")
         refine_ = true;
       else if (!answer.is_none())
-        throw py::value_error("a callback must return None, \"stop\" or \"refine\", not " +
-                              std::string(py::repr(answer)));
+        throw py::value_error("a callback must return None, \"stop\" or \"refine\", not " + shown(answer));
     } catch (const std::exception&) {  // raised at the end of the run, whose results are saved until then
       error_ = std::current_exception();
       stop_ = true;

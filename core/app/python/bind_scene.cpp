@@ -1,5 +1,4 @@
 #include "core/app/python/module.h"
-#include "core/app/python/python_call.h"
 #include "core/app/python/values.h"
 #include "core/app/report/report.h"
 #include "core/numerics/mesh/check.h"
@@ -10,8 +9,8 @@ namespace {
 
 constexpr auto shared_view = py::return_value_policy::reference_internal;
 
-std::shared_ptr<Level> make_level(const py::object& rest, const py::object& triangles) {
-  TriangleMesh mesh{state_of(rest).any(), integer_rows(triangles, 3, "triangles")};
+std::shared_ptr<Level> make_level(const State& rest, const py::object& triangles) {
+  TriangleMesh mesh{rest.x, integer_rows(triangles, 3, "triangles")};
   std::string faults;
   for (const std::string& fault : check_mesh(mesh)) faults += (faults.empty() ? "" : "\n") + fault;
   if (!faults.empty()) throw py::value_error(faults);

@@ -2,7 +2,6 @@
 #include <set>
 
 #include "core/app/python/module.h"
-#include "core/app/python/python_call.h"
 #include "core/app/python/values.h"
 #include "core/app/run/saved_run.h"
 #include "core/app/scene/scene.h"

@@ -12,6 +12,54 @@ namespace drape::python {
 
 namespace py = pybind11;
 
+/// A Python object that C++ holds: copied and destroyed in any thread, with the GIL or without.
+using SharedObject = std::shared_ptr<const py::object>;
+SharedObject share(py::object object);
+
+/// A call from C++ into Python, for as long as the object lives. Calls nest, where Python calls C++ that
+/// calls Python.
+class PythonCall {
+ public:
+  PythonCall();
+  ~PythonCall();
+  PythonCall(const PythonCall&) = delete;
+  PythonCall& operator=(const PythonCall&) = delete;
+
+  /// Stores the exception in flight, of this thread, unless an earlier one is stored or the call is nested:
+  /// then Python may yet handle it. For use in a handler.
+  void remember_failure() const;
+
+ private:
+  py::gil_scoped_acquire gil_;
+};
+
+/// Whether an exception is stored in this thread.
+bool has_failed();
+void forget_failure();
+/// Raises the exception that is stored, if any. Call with the GIL held.
+void raise_failure();
+
+/// Calls `body`, which uses Python, from C++ that holds no GIL. An exception goes on through C++, where a run
+/// turns it into the failure of a method; it is stored too, so that the binding can raise it.
+template <class Body>
+auto with_python(const Body& body) {
+  const PythonCall call;
+  try {
+    return body();
+  } catch (...) {
+    call.remember_failure();
+    throw;
+  }
+}
+
+/// The result of `body`, which runs without the GIL: it takes long, or calls prototypes, which take it
+/// themselves.
+template <class Body>
+auto without_gil(const Body& body) {
+  const py::gil_scoped_release released;
+  return body();
+}
+
 /// The process's plugins, loaded at the first call, and the prototypes that Python has registered. Call with
 /// the GIL held. Throws std::runtime_error for a library that cannot be loaded.
 const Registry& registry();
@@ -83,6 +131,13 @@ struct Iteration : IterationRow {
 struct MethodLevelResult : LevelResult {
   std::string method;
 };
+
+// The implementations of the kernel's interfaces by objects of Python's classes (drape/prototypes.py), as
+// pointers to the interface. Call with the GIL held. They throw TypeError or ValueError for a declaration
+// that is not one.
+
+std::shared_ptr<Energy> prototype_energy(const py::object& prototype);
+std::shared_ptr<Solver> prototype_solver(const py::object& prototype);
 
 // What each file adds to the module; Python's own part of the package is in drape/.
 

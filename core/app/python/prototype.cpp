@@ -1,12 +1,87 @@
-#include "core/app/python/prototype.h"
-
 #include <variant>
 
+#include "core/app/python/module.h"
 #include "core/app/python/values.h"
 
 namespace drape::python {
 
 namespace {
+
+Better better_of(const std::string& word) {
+  if (word == "lower") return Better::lower;
+  if (word == "higher") return Better::higher;
+  if (word == "neither") return Better::neither;
+  throw py::value_error("better must be lower, higher or neither, not \"" + word + "\"");
+}
+
+MetricColumn column_of(const std::string& name, const py::handle& declared) {
+  MetricColumn column;
+  column.name = name;
+  column.label = declared.attr("label").cast<std::optional<std::string>>().value_or(name);
+  column.unit = declared.attr("unit").cast<std::string>();
+  column.better = better_of(declared.attr("better").cast<std::string>());
+  column.error = declared.attr("error").cast<std::string>();
+  return column;
+}
+
+/// A metric that a Python object measures: see drape.Metric.
+class PythonMetric final : public Metric {
+ public:
+  explicit PythonMetric(const py::object& prototype) : prototype_(share(prototype)) {
+    const auto scope = prototype.attr("scope").cast<std::string>();
+    if (scope != "state" && scope != "pair")
+      throw py::value_error("scope must be state or pair, not \"" + scope + "\"");
+    scope_ = scope == "pair" ? MetricScope::pair : MetricScope::state;
+    for (const auto& [name, column] : prototype.attr("_declared")().cast<py::dict>())
+      declaration_.columns.push_back(column_of(py::str(name), column));
+  }
+
+  MetricScope scope() const override { return scope_; }
+  MetricDeclaration declaration() const override { return declaration_; }
+
+ private:
+  MetricResult measure(const MetricInput& input) const override {
+    return with_python([&] {
+      std::optional<Positions> other;
+      if (input.other) other = *input.other;
+      const py::object returned =
+          prototype_->attr("_measured")(std::make_shared<Level>(input.level), Positions(input.x), other);
+      MetricResult result;
+      for (const auto& [name, number] : returned.cast<py::dict>())
+        result.values.push_back({py::str(name), number.cast<double>()});
+      return result;
+    });
+  }
+
+  SharedObject prototype_;
+  MetricScope scope_ = MetricScope::state;
+  MetricDeclaration declaration_;
+};
+
+/// A refiner whose weights a Python object gives: see drape.Refiner.
+class PythonRefiner final : public Refiner {
+ public:
+  explicit PythonRefiner(const py::object& prototype) : prototype_(share(prototype)) {}
+
+  ProlongationMatrix weights(const Level& coarse) const override {
+    return with_python([&] {
+      const py::object answer = prototype_->attr("weights")(std::make_shared<Level>(coarse));
+      const py::object to_csr = py::module_::import("scipy.sparse").attr("csr_matrix");
+      return to_csr(answer).cast<ProlongationMatrix>();
+    });
+  }
+
+ private:
+  SharedObject prototype_;
+};
+
+std::shared_ptr<Metric> prototype_metric(const py::object& prototype) {
+  return std::make_shared<PythonMetric>(prototype);
+}
+
+std::shared_ptr<Refiner> prototype_refiner(const py::object& prototype) {
+  return std::make_shared<PythonRefiner>(prototype);
+}
 
 /// The parameter struct of a prototype: a value for each parameter of the schema.
 using Value = std::variant<bool, int, double, std::string>;
@@ -16,7 +91,7 @@ Value default_of(const std::string& name, const py::object& initial) {
   py::detail::make_caster<Value> caster;
   if (!caster.load(initial, false))
     throw py::type_error("the parameter " + name + " must default to a bool, int, float or str, not " +
-                         std::string(py::repr(initial)));
+                         shown(initial));
   return py::detail::cast_op<Value>(caster);
 }
 

@@ -2,7 +2,7 @@
 #include <cmath>
 #include <limits>
 
-#include "core/app/python/prototype.h"
+#include "core/app/python/module.h"
 #include "core/app/python/values.h"
 #include "core/kernel/plugin/make.h"
 #include "core/kernel/threads/parallel.h"
@@ -114,7 +114,7 @@ class BoundPythonEnergy final : public BoundEnergy {
       std::string wanted;
       for (const py::ssize_t n : shape) wanted += (wanted.empty() ? "" : ", ") + std::to_string(n);
       throw py::value_error(std::string(py::str(py::type::of(*prototype_))) + "." + function +
-                            " must return the shape (" + wanted + "), not " + shape_text(values));
+                            " must return the shape (" + wanted + "), not " + shown(values.attr("shape")));
     }
     return values;
   }

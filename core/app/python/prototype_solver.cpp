@@ -1,6 +1,6 @@
 #include <stdexcept>
 
-#include "core/app/python/prototype.h"
+#include "core/app/python/module.h"
 #include "core/app/python/values.h"
 #include "core/kernel/threads/stopwatch.h"
 

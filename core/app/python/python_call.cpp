@@ -1,8 +1,8 @@
-#include "core/app/python/python_call.h"
-
 #include <exception>
 #include <string>
 #include <utility>
+
+#include "core/app/python/module.h"
 
 namespace drape::python {
 

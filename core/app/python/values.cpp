@@ -33,10 +33,10 @@ std::string text_of(const py::handle& value) {
   try {
     text = value.cast<std::string>();
   } catch (const py::cast_error&) {
-    throw py::value_error(std::string(py::repr(value)) + " is no text that UTF-8 can hold");
+    throw py::value_error(shown(value) + " is no text that UTF-8 can hold");
   }
   if (text.find('\0') != std::string::npos)
-    throw py::value_error(std::string(py::repr(value)) + " has a NUL character; take it out");
+    throw py::value_error(shown(value) + " has a NUL character; take it out");
   return text;
 }
 
@@ -56,7 +56,7 @@ ConfigNode nested_node(const py::handle& value, int depth) {
     node.kind = ConfigNode::Kind::map;
     for (const auto& [key, entry] : py::reinterpret_borrow<py::dict>(value)) {
       if (!py::isinstance<py::str>(key))
-        throw py::type_error("a key of an experiment must be a str, not " + std::string(py::repr(key)));
+        throw py::type_error("a key of an experiment must be a str, not " + shown(key));
       node.add(text_of(key), nested_node(entry, depth + 1));
     }
     return node;
@@ -68,12 +68,10 @@ ConfigNode nested_node(const py::handle& value, int depth) {
   }
   if (py::hasattr(value, "tolist")) return nested_node(value.attr("tolist")(), depth + 1);  // numpy's
   if (py::hasattr(value, "__fspath__")) return ConfigNode::of(text_of(value.attr("__fspath__")()));
-  throw py::type_error("an experiment cannot hold " + std::string(py::repr(value)));
+  throw py::type_error("an experiment cannot hold " + shown(value));
 }
 
 }  // namespace
-
-std::string shape_text(const py::array& array) { return std::string(py::str(array.attr("shape"))); }
 
 py::array_t<double> real_array(const py::handle& values, const std::string& name) {
   return py::array_t<double>::ensure(array_of_kind(values, "fiu", name, "real numbers"));
@@ -85,7 +83,8 @@ Eigen::Matrix<int, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> integer_rows
   const auto array = py::array_t<std::int64_t>::ensure(array_of_kind(values, "iu", name, "integers"));
   if (array.ndim() != 2 || (columns >= 0 && array.shape(1) != columns))
     throw py::value_error(name + " must have the shape (m, " +
-                          (columns >= 0 ? std::to_string(columns) : "k") + "), not " + shape_text(array));
+                          (columns >= 0 ? std::to_string(columns) : "k") + "), not " +
+                          shown(array.attr("shape")));
   const auto wide =
       array.cast<Eigen::Matrix<std::int64_t, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>>();
   using Limits = std::numeric_limits<int>;
@@ -95,17 +94,18 @@ Eigen::Matrix<int, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> integer_rows
 }
 
 const Positions& State::of(Eigen::Index vertices) const {
-  if (x_.rows() != vertices)
+  if (x.rows() != vertices)
     throw py::value_error("positions must have the shape (" + std::to_string(vertices) +
-                          ", 3), one row a vertex, not (" + std::to_string(x_.rows()) + ", 3)");
-  return x_;
+                          ", 3), one row a vertex, not (" + std::to_string(x.rows()) + ", 3)");
+  return x;
 }
 
 State state_of(const py::handle& values) {
   const auto array = real_array(values, "positions");
   if (array.ndim() != 2 || array.shape(1) != 3)
-    throw py::value_error("positions must have the shape (n, 3), one row a vertex, not " + shape_text(array));
-  return State(array.cast<Positions>());
+    throw py::value_error("positions must have the shape (n, 3), one row a vertex, not " +
+                          shown(array.attr("shape")));
+  return {array.cast<Positions>()};
 }
 
 py::object bsr_matrix(const BlockMatrix& matrix) {

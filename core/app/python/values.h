@@ -14,8 +14,8 @@ namespace drape::python {
 
 namespace py = pybind11;
 
-/// "(441, 3)"
-std::string shape_text(const py::array& array);
+/// Python's repr() of a value, for messages.
+inline std::string shown(const py::handle& value) { return py::repr(value); }
 
 /// An array of doubles, in any order in memory. Throws TypeError for what is not made of real numbers.
 py::array_t<double> real_array(const py::handle& values, const std::string& name);
@@ -27,16 +27,10 @@ Eigen::Matrix<int, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> integer_rows
 
 /// Positions that Python gives: n×3 real numbers of any type. A wrong type raises TypeError, a wrong shape
 /// ValueError.
-class State {
- public:
-  State() = default;
-  explicit State(Positions x) : x_(std::move(x)) {}
-  /// Throws ValueError, with both shapes, unless there are so many.
+struct State {
+  Positions x;
+  /// x. Throws ValueError, with both shapes, unless it has so many rows.
   const Positions& of(Eigen::Index vertices) const;
-  const Positions& any() const { return x_; }
-
- private:
-  Positions x_;
 };
 State state_of(const py::handle& values);
 

@@ -99,6 +99,30 @@ class Metric(_Prototype):
         """Values by the names in `columns`. x is n×3 [m], of a pair the fine state; `other` is the coarse one."""
         raise NotImplementedError
 
+    def _declared(self) -> dict:
+        owner, columns = type(self).__name__, self.columns
+        if not isinstance(columns, dict) or not columns:
+            raise TypeError(f"{owner}.columns must be a dict with a drape.Column for every value that measure returns, "
+                            f"such as {{\"height\": drape.Column(\"m\")}}, not {columns!r}")
+        for name, column in columns.items():
+            if not isinstance(column, Column):
+                raise TypeError(f"{owner}.columns: \"{name}\" must be a drape.Column, such as drape.Column(\"m\"), "
+                                f"not {column!r}")
+        return columns
+
+    def _measured(self, level: _core.Level, x: numpy.ndarray, other: Optional[numpy.ndarray]) -> dict:
+        owner, values = type(self).__name__, self.measure(level, x, other)
+        if not isinstance(values, dict):
+            raise TypeError(f"{owner}.measure must return a dict from the names in {owner}.columns to numbers, "
+                            f"not {values!r}")
+        for name, value in values.items():
+            if name not in self.columns:
+                raise ValueError(f"{owner}.measure returned \"{name}\", which is not in {owner}.columns; "
+                                 "add it there with its drape.Column")
+            if not hasattr(value, "__float__"):
+                raise TypeError(f"{owner}.measure must return a number for \"{name}\", not {value!r}")
+        return values
+
 
 class Refiner(_Prototype):
     """Where the vertices of a 1→4 subdivision lie, by the rest shape alone."""
