@@ -2,11 +2,11 @@
 
 namespace folders {
 
-std::string source() { return DRAPE_SOURCE_DIR; }
-std::string commands() { return DRAPE_BUILD_DIR "/bin"; }
-std::string plugins() { return DRAPE_BUILD_DIR "/lib/drape"; }
-std::string test_plugins() { return DRAPE_BUILD_DIR "/tests/plugins"; }
-std::string example_plugins() { return DRAPE_BUILD_DIR "/tests/examples"; }
-std::string tests() { return DRAPE_BUILD_DIR "/tests"; }
+std::filesystem::path source() { return DRAPE_SOURCE_DIR; }
+std::filesystem::path commands() { return DRAPE_BUILD_DIR "/bin"; }
+std::filesystem::path plugins() { return DRAPE_BUILD_DIR "/lib/drape"; }
+std::filesystem::path test_plugins() { return DRAPE_BUILD_DIR "/tests/plugins"; }
+std::filesystem::path example_plugins() { return DRAPE_BUILD_DIR "/tests/examples"; }
+std::filesystem::path tests() { return DRAPE_BUILD_DIR "/tests"; }
 
 }  // namespace folders

@@ -16,9 +16,9 @@ using Json = nlohmann::json;
 
 namespace {
 
-const std::string with_failing = "DRAPE_PLUGIN_PATH=" + folders::test_plugins() + "/failing";
+const std::string with_failing = "DRAPE_PLUGIN_PATH=" + (folders::test_plugins() / "failing").string();
 
-Json results_in(const Scratch& folder) { return Json::parse(text_of(folder / "out/results.json")); }
+Json results_in(const Scratch& folder) { return json_in(folder / "out/results.json"); }
 
 /// The small experiment with one more method before its own, and energies of its own.
 void write_experiment(const Scratch& folder, const std::string& method, const std::string& energy = "") {
@@ -74,9 +74,8 @@ TEST_CASE("A method that throws has failed, with level and cause, and the others
       CHECK(page["table"]["rows"].size() == 4);
       CHECK(page["results"]["methods"]["odd"]["levels"][1]["status"] == "failed");
     }
-    const Ended table = drape_with("table out --columns method,status,message", folder.path);
-    CHECK(table.exit_code == drape::exit_not_converged);
-    CHECK_THAT(table.out, Contains("converged, failed") && Contains("level 1: " + cause));
+    CHECK_THAT(drape_ends("table out --columns method,status,message", folder, drape::exit_not_converged).out,
+               Contains("converged, failed") && Contains("level 1: " + cause));
     CHECK(drape_with("run --resume out", folder.path, with_failing).exit_code == drape::exit_not_converged);
   }
 }
@@ -85,9 +84,8 @@ TEST_CASE("An energy that throws fails every method that evaluates it, where it 
   const Scratch folder;
   SECTION("while a level is solved") {
     write_experiment(folder, "", "{type: failing, level: 1, gradients: 5}");
-    const Ended ended =
-        drape_with("run e.yaml --out out --method all --no-report", folder.path, with_failing);
-    CHECK(ended.exit_code == drape::exit_not_converged);
+    CHECK(drape_with("run e.yaml --out out --method all --no-report", folder.path, with_failing).exit_code ==
+          drape::exit_not_converged);
     const Json all = results_in(folder);
     CHECK(all["complete"] == true);
     // The finest level's energies are made once: the first method to evaluate them is the one that fails.
@@ -101,9 +99,8 @@ TEST_CASE("An energy that throws fails every method that evaluates it, where it 
   }
   SECTION("while a level's result is recorded") {
     write_experiment(folder, "{type: failing, level: 9}", "{type: failing, level: 0, values: 0}");
-    const Ended ended =
-        drape_with("run e.yaml --out out --no-report --method odd,newton", folder.path, with_failing);
-    CHECK(ended.exit_code == drape::exit_not_converged);
+    CHECK(drape_with("run e.yaml --out out --no-report --method odd,newton", folder.path, with_failing)
+              .exit_code == drape::exit_not_converged);
     const Json odd = results_in(folder)["methods"]["odd"];
     CHECK(odd["status"] == "failed");
     REQUIRE(odd["levels"].size() == 1);
@@ -132,12 +129,12 @@ TEST_CASE("A folder that is deleted during a run aborts it with its own code, an
     CHECK_THAT(all["aborted"].get<std::string>(), StartsWith("cannot write out/levels/odd_l1.ply"));
     CHECK(all["methods"]["odd"]["status"] == "aborted");
     CHECK(events(folder, "run_aborted").size() == 1);
-    CHECK(drape_with("report out --width 90", folder.path).exit_code == drape::exit_done);
+    drape_ends("report out --width 90", folder);
     CHECK_THAT(page_data(text_of(folder / "out/report.html"))["results"]["aborted"].get<std::string>(),
                StartsWith("cannot write "));
-    const Ended on = drape_with("run --resume out --quiet --no-report", folder.path,
-                                with_failing);  // which fails at the same
-    CHECK(on.exit_code == drape::exit_aborted);
+    // which fails at the same
+    CHECK(drape_with("run --resume out --quiet --no-report", folder.path, with_failing).exit_code ==
+          drape::exit_aborted);
   }
 }
 
@@ -146,7 +143,7 @@ TEST_CASE("A full disk aborts the run with its own code; once there is room it c
   const std::string arguments =
       " run e.yaml --method all --quiet --no-report --threads 1 --set cloth.columns=24 --set cloth.rows=24 "
       "--set newton.max_steps=3 --set snapshots=0 --out ";
-  REQUIRE(drape_with(arguments + "whole", folder.path).exit_code == drape::exit_not_converged);
+  drape_ends(arguments + "whole", folder, drape::exit_not_converged);
   // A limit on every file's size stands for the disk. It falls between what is written at the beginning and
   // what has the whole state in it.
   const auto largest = fs::file_size(folder / "whole/rest/l1.ply");
@@ -168,9 +165,9 @@ TEST_CASE("A full disk aborts the run with its own code; once there is room it c
   for (const auto& entry : fs::recursive_directory_iterator(folder / "out"))
     CHECK(entry.path().extension() != ".part");
 
-  const Ended on = drape_with("run --resume out --quiet --no-report --threads 1", folder.path);
-  CHECK(on.err == "");
-  CHECK(on.exit_code == drape::exit_not_converged);
+  CHECK(
+      drape_ends("run --resume out --quiet --no-report --threads 1", folder, drape::exit_not_converged).err ==
+      "");
   CHECK_FALSE(results_in(folder).contains("aborted"));
   for (const char* mesh : {"levels/pcs_l1.ply", "levels/newton_l1.ply"})
     CHECK((text_of(folder / "out" / mesh) == text_of(folder / "whole" / mesh)));
@@ -197,9 +194,7 @@ TEST_CASE("Names that the file system does not allow are refused before the firs
   const Scratch folder;
   const std::string longest(200, 'm'), too_long(201, 'm');
   const auto refused = [&](const std::string& line, const std::string& expected) {
-    const Ended ended = drape_with(line, folder.path);
-    CHECK(ended.exit_code == drape::exit_bad_input);
-    CHECK_THAT(ended.err, Contains(expected));
+    CHECK_THAT(refused_by(line, folder.path), Contains(expected));
     CHECK(std::distance(fs::directory_iterator(folder.path), {}) == 1);
   };
   folder.write("e.yaml", replaced(small_experiment(), "  pcs: {}\n", "  " + too_long + ": {type: pcs}\n"));
@@ -214,16 +209,14 @@ TEST_CASE("Names that the file system does not allow are refused before the firs
   folder.write("e.yaml", replaced(small_experiment(), "  pcs: {}\n", "  \"a\xff\": {type: pcs}\n"));
   refused("run e.yaml --out out", "error: ");
   folder.write("e.yaml", replaced(small_experiment(), "  pcs: {}\n", "  " + longest + ": {type: pcs}\n"));
-  CHECK(drape_with("run e.yaml --method all --quiet --no-report --out out", folder.path).exit_code ==
-        drape::exit_done);
+  drape_ends("run e.yaml --method all --quiet --no-report --out out", folder);
 }
 
 TEST_CASE("The exit codes are in every help") {
   const Scratch folder;
   for (const char* help : {"--help", "run --help", "sweep --help", "table --help"}) {
     INFO(help);
-    const Ended ended = drape_with(help, folder.path);
-    CHECK(ended.exit_code == drape::exit_done);
-    for (const drape::ExitCode& code : drape::exit_codes) CHECK_THAT(ended.out, Contains(code.description));
+    const std::string shown = shown_by(help, folder.path);
+    for (const drape::ExitCode& code : drape::exit_codes) CHECK_THAT(shown, Contains(code.description));
   }
 }

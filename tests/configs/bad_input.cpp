@@ -63,10 +63,7 @@ const std::string top_keys =
 
 TEST_CASE("the base file of these cases is valid: each case has exactly one fault") {
   const Scratch folder(small_experiment());
-  const Ended ended = drape_with("check e.yaml", folder.path);
-  CHECK(ended.exit_code == 0);
-  CHECK(ended.err == "");
-  CHECK_THAT(ended.out,
+  CHECK_THAT(shown_by("check e.yaml", folder.path),
              Catch::Matches("e\\.yaml: valid\\. Vertices by level: 36, 121\n"
                             "Memory to solve them, at most about: 0\\.1 GB, 0\\.1 GB; this machine has "
                             "[0-9.]+ GB\n"
@@ -546,8 +543,7 @@ TEST_CASE("a run that was killed before its first write blocks no other run") {
     if (made > 1) folder.write("out/checkpoint/lock", "");
     if (made > 2) fs::create_directory(folder / "out/levels");
     CAPTURE(made);
-    CHECK(drape_with("run e.yaml --out out --quiet --no-report --levels 1 --method pcs", folder.path)
-              .exit_code == 0);
+    drape_ends("run e.yaml --out out --quiet --no-report --levels 1 --method pcs", folder);
   }
 }
 
@@ -571,9 +567,8 @@ TEST_CASE("a run may be overwritten by a run of its own config.yaml") {
   drape_ends("run e.yaml --set start.file=first/rest/l0.ply" + options + "out", folder);
   const std::string start = text_of(folder / "out/start.ply"),
                     state = text_of(folder / "out/levels/pcs_l0.ply");
-  const Ended again = drape_with("run out/config.yaml --overwrite" + options + "out", folder.path);
+  const Ended again = drape_ends("run out/config.yaml --overwrite" + options + "out", folder);
   CHECK(again.err == "");
-  CHECK(again.exit_code == 0);
   CHECK(text_of(folder / "out/start.ply") == start);
   CHECK(text_of(folder / "out/levels/pcs_l0.ply") == state);
 }
@@ -583,7 +578,7 @@ TEST_CASE("plugin libraries that do not fit") {
   const auto said = [&](const std::string& path) {
     return refused(folder, "run e.yaml --out out", "DRAPE_PLUGIN_PATH=" + path);
   };
-  CHECK_THAT(said(std::string(folders::test_plugins()) + "/wrong_abi"),
+  CHECK_THAT(said(folders::test_plugins() / "wrong_abi"),
              Catch::Matchers::Contains("/libwrong_abi.so: does not fit this drape, rebuild it: "));
   CHECK(said("nowhere") == "error: DRAPE_PLUGIN_PATH names nowhere, which is not a folder\n");
 }

@@ -31,7 +31,7 @@ double nearest_to_centre(const std::filesystem::path& ply) {
 TEST_CASE("a cloth passes from cage to cage without intersection, and ends on the obstacle itself") {
   const Scratch folder(caged);
   drape_ends("run e.yaml --out out --method all --quiet --no-report", folder);
-  const auto all = nlohmann::json::parse(text_of(folder / "out/results.json"));
+  const auto all = json_in(folder / "out/results.json");
   CHECK(drape::read_mesh(folder / "out/obstacles/0.ply").vertices.rows() == 162);  // the ball, no cage
   for (const std::string method : {"pcs", "cascadic"}) {
     INFO(method);

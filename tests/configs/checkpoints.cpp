@@ -68,7 +68,7 @@ std::map<std::string, std::string> outcome_of(const fs::path& folder) {
     if (fs::exists(folder / part))
       for (const auto& entry : fs::directory_iterator(folder / part))
         all[part + ("/" + entry.path().filename().string())] = text_of(entry.path());
-  all["results.json"] = timeless(Json::parse(text_of(folder / "results.json"))).dump(1);
+  all["results.json"] = timeless(json_in(folder / "results.json")).dump(1);
   all["iterations.csv"] = without_column(text_of(folder / "iterations.csv"), "seconds");
   all["errors.csv"] = without_column(text_of(folder / "errors.csv"), "seconds");
   return all;
@@ -121,7 +121,7 @@ int check_in_parts(const Scratch& scratch, Overrides overrides,
   const fs::path& folder = scratch.path;
   const Experiment experiment = experiment_in(folder / "e.yaml", overrides);
   run_experiment(experiment, *scene_of(experiment), silent(folder / "whole"));
-  REQUIRE(Json::parse(text_of(folder / "whole/results.json"))["complete"] == true);
+  REQUIRE(json_in(folder / "whole/results.json")["complete"] == true);
 
   int parts = 1, patience = 2, asked = 0;
   RunOptions options = silent(folder / "parts");
@@ -175,19 +175,18 @@ TEST_CASE("So does one whose iterations share a matrix, and one with several of 
 
 TEST_CASE(
     "So does one of PCS whose levels relax, into a matrix of the same pattern, of another, with contact") {
-  const fs::path data = fs::path(folders::source()) / "tests/configs/data";
   const std::string interpolation = "interpolation: {membrane: refiner, bending: refiner, external: refiner}";
   const Overrides small = {
       {"levels", "2"}, {"cloth.columns", "5"}, {"cloth.rows", "5"}, {"reference", "pcs"}};
-  for (const auto& [file, pcs] : {std::pair("golden.yaml", std::string()),
-                                  {"golden.yaml", interpolation},
-                                  {"contact.yaml", std::string()},
-                                  {"contact.yaml", interpolation}}) {
-    INFO(file << ": " << pcs);
-    const Scratch folder(text_of(data / file));
+  for (const auto& [name, pcs] : {std::pair(std::string("golden"), std::string()),
+                                  {"golden", interpolation},
+                                  {"contact", ""},
+                                  {"contact", interpolation}}) {
+    INFO(name << ": " << pcs);
+    const Scratch folder(experiment_of_tests(name));
     Overrides overrides = small;
     overrides.push_back({"methods", "{pcs: {" + pcs + "}}"});
-    overrides.push_back({"newton.force_tolerance", file == std::string("golden.yaml") ? "1e-8" : "1e-4"});
+    overrides.push_back({"newton.force_tolerance", name == "golden" ? "1e-8" : "1e-4"});
     int relaxing = 0;
     CHECK(check_in_parts(folder, overrides,
                          [&](const NewtonState& state) { relaxing += state.switched_to_plain; }) > 15);
@@ -198,7 +197,7 @@ TEST_CASE(
 TEST_CASE("So does one whose contact stiffness is raised") {
   const Scratch folder(drum("7", "2", "5", "pcs"));
   CHECK(check_in_parts(folder, {}) > 20);
-  const Json levels = Json::parse(text_of(folder / "whole/results.json"))["methods"]["pcs"]["levels"];
+  const Json levels = json_in(folder / "whole/results.json")["methods"]["pcs"]["levels"];
   const auto stiffness = [&](int level) {
     return levels[level]["contact_stiffness"].get<std::vector<double>>();
   };
@@ -297,9 +296,7 @@ methods: {pcs: {}, newton: {}}
   };
   const auto restored = [&] { return text_of(out / "log.jsonl").find("file_restored") != std::string::npos; };
   asked = 0;
-  options.stop = [&] {
-    return Json::parse(text_of(out / "results.json"))["methods"].contains("newton") && ++asked > 3;
-  };
+  options.stop = [&] { return json_in(out / "results.json")["methods"].contains("newton") && ++asked > 3; };
   resume();  // pcs to its end, then newton's first steps
   CHECK(height() == Approx(0.8));
   CHECK_FALSE(restored());
@@ -330,7 +327,7 @@ TEST_CASE("So does one under load stepping with a level that begins at the scene
   const Scratch folder;
   write_mesh(folder / "fan.obj", fan);
   folder.write("e.yaml",
-               replaced(text_of(fs::path(folders::source()) / "configs/hard/drape.yaml"),
+               replaced(text_of(folders::source() / "configs/hard/drape.yaml"),
                         "{shape: square, side: 1, columns: 16, rows: 16}", "{shape: file, file: fan.obj}") +
                    R"(
 schedule: {steps: 3, keys: [{parameter: energies.gravity.acceleration, times: [0, 1], values: [[0, 0, -9.81], [1, 0, -9.81]]}]}
@@ -341,7 +338,7 @@ schedule: {steps: 3, keys: [{parameter: energies.gravity.acceleration, times: [0
                            {"snapshots", "2"},
                            {"newton.max_steps", "60"}};
   CHECK(check_in_parts(folder, stuck) > 15);
-  const Json levels = Json::parse(text_of(folder / "parts/results.json"))["methods"]["cascadic"]["levels"];
+  const Json levels = json_in(folder / "parts/results.json")["methods"]["cascadic"]["levels"];
   REQUIRE(levels.size() == 2);
   CHECK_THAT(levels[1]["message"].get<std::string>(),
              Contains("the level starts from the scene's start instead"));
@@ -529,7 +526,7 @@ TEST_CASE("Damaged snapshots are skipped in errors.csv, without other effects") 
   std::string snapshots = text_of(folder / "out/snapshots/pcs_l0.bin");
   snapshots[snapshots.size() / 2] ^= 1;
   folder.write("out/snapshots/pcs_l0.bin", snapshots);
-  CHECK(drape_with("run --resume out --quiet --no-report", folder.path).exit_code == 0);
+  drape_ends("run --resume out --quiet --no-report", folder);
   CHECK_THAT(text_of(folder / "out/log.jsonl"), Contains("snapshots/pcs_l0.bin: is damaged"));
   const std::string errors = text_of(folder / "out/errors.csv");
   CHECK(errors.find("\npcs,0,") == std::string::npos);
@@ -542,18 +539,15 @@ TEST_CASE("Resuming a complete run returns its exit code and checks its files") 
                     said = ": the run is complete; there is nothing to resume\n";
   drape_ends(run + "good", folder);
   drape_ends(run + "poor --set newton.max_steps=2", folder, 1);
-  const Ended good = drape_with("run --resume good", folder.path);
-  CHECK(good.exit_code == 0);
+  const Ended good = drape_ends("run --resume good", folder);
   CHECK(good.out == "good" + said);
   CHECK(good.err == "");
-  const Ended poor = drape_with("run --resume poor", folder.path);
-  CHECK(poor.exit_code == 1);
+  const Ended poor = drape_ends("run --resume poor", folder, 1);
   CHECK(poor.out == "poor" + said);
 
   const std::string rest = text_of(folder / "good/rest/l1.ply");
   fs::remove_all(folder / "good/rest");
-  const Ended restored = drape_with("run --resume good", folder.path);
-  CHECK(restored.exit_code == 0);
+  const Ended restored = drape_ends("run --resume good", folder);
   CHECK(restored.err == "warning: damaged or missing files were written again: rest/l0.ply, rest/l1.ply\n");
   CHECK((text_of(folder / "good/rest/l1.ply") == rest));
 
@@ -657,8 +651,8 @@ methods: {newton: {}}
 }
 
 TEST_CASE("An obstacle's mesh that changed since is named") {
-  const Scratch folder(replaced(text_of(fs::path(folders::source()) / "tests/configs/data/contact.yaml"),
-                                "obstacles: [", "obstacles: [{mesh: box.obj, translate: [0, 0, -1]}, "));
+  const Scratch folder(replaced(experiment_of_tests("contact"), "obstacles: [",
+                                "obstacles: [{mesh: box.obj, translate: [0, 0, -1]}, "));
   write_mesh(folder / "box.obj", grid({0.4, 0.4}, 2, 2, Diagonals::one_way));
   Command command("exec " + drape_command + " " + sheets_run, folder.path);
   wait_for_steps(command, folder / "out", 3);
@@ -682,7 +676,7 @@ TEST_CASE("A run warm-starts from a saved state under changed parameters, in ano
 
   drape_ends(flow + "--out last", folder, 1);
   CHECK(rows("last").starts_with("pcs,1,0,0,"));  // the level under way after 12 steps of 8 a level
-  const Json last = Json::parse(text_of(folder / "last/results.json"));
+  const Json last = json_in(folder / "last/results.json");
   CHECK(last["warm_started_from"] == "out, method pcs, level 1");
   REQUIRE(last["methods"].size() == 1);
   REQUIRE(last["methods"]["pcs"]["levels"].size() == 2);

@@ -17,17 +17,8 @@ using Catch::Matchers::StartsWith;
 
 namespace {
 
-Ended drape_of(const std::string& arguments) { return drape_with(arguments, folders::source()); }
+std::string shown_by(const std::string& arguments) { return ::shown_by(arguments, folders::source()); }
 
-/// Standard output of what must succeed in silence.
-std::string shown_by(const std::string& arguments) {
-  const Ended ended = drape_of(arguments);
-  CHECK(ended.exit_code == 0);
-  CHECK(ended.err == "");
-  return ended.out;
-}
-
-/// Standard error of what must be refused without a word on standard output.
 std::string refusal_of(const std::string& arguments) { return refused_by(arguments, folders::source()); }
 
 }  // namespace
@@ -78,7 +69,8 @@ TEST_CASE("check-energy compares the derivatives of an energy with differences")
 
 TEST_CASE("check-energy finds an energy or a force that jumps, and passes a law whose stiffness does") {
   const auto check = [](const std::string& term) {
-    return drape_of("check-energy \"{type: formula, density: '100*(g11^2+g22^2+2*g12^2) + " + term + "'}\"");
+    return drape_with("check-energy \"{type: formula, density: '100*(g11^2+g22^2+2*g12^2) + " + term + "'}\"",
+                      folders::source());
   };
   for (const auto& [term, jump] : {std::pair("if(g11 > 0.01, 1, 0)", "the energy jumps by "),
                                    {"if(J > 1, 3, 0)", "the energy jumps by "},
@@ -99,9 +91,7 @@ TEST_CASE("check of a sweep says so, and checks every variation") {
   const std::string sweep =
       "name: s\nbase: e.yaml\nrepeats: 2\nablation:\n  - {name: one}\n  - name: two\n    set: ";
   folder.write("s.yaml", sweep + "{levels: 1}\n");
-  const Ended valid = drape_with("check s.yaml", folder.path);
-  CHECK(valid.err == "");
-  CHECK(valid.out ==
+  CHECK(shown_by("check s.yaml", folder.path) ==
         "s.yaml: valid. A sweep of 4 runs: 2 variations, 2 seeds each. `drape sweep s.yaml` runs it.\n");
   folder.write("s.yaml", sweep + "{start.scale: [0, 0, 1]}\n");
   const std::string flat = refused_by("check s.yaml", folder.path);
@@ -115,28 +105,22 @@ TEST_CASE("check of a sweep says so, and checks every variation") {
 
 TEST_CASE("new writes an experiment that passes check and runs, and overwrites nothing") {
   const Scratch folder;
-  const Ended made = drape_with("new", folder.path);
-  CHECK(made.err == "");
-  CHECK(made.out == "written: first.yaml\nnext: drape run first.yaml\n");
+  CHECK(shown_by("new", folder.path) == "written: first.yaml\nnext: drape run first.yaml\n");
   const std::string text = text_of(folder / "first.yaml");
   CHECK_THAT(text, StartsWith("# ") && Contains("drape run first.yaml") && Contains("\nname: \"first\"\n"));
-  const Ended check = drape_with("check first.yaml", folder.path);
-  CHECK(check.err == "");
-  CHECK(check.out.find("first.yaml: valid. Vertices by level: 900, 3481, 13689\n") == 0);
-  const Ended run = drape_with(
+  CHECK_THAT(shown_by("check first.yaml", folder.path),
+             StartsWith("first.yaml: valid. Vertices by level: 900, 3481, 13689\n"));
+  shown_by(
       "run first.yaml --quiet --no-report --levels 1 --set cloth.vertices=256 "
       "--set newton.force_tolerance=1e-2",
       folder.path);
-  CHECK(run.err == "");
-  CHECK(run.exit_code == 0);
   CHECK(fs::exists(folder / "results/first/levels/pcs_l0.ply"));
 
-  const Ended again = drape_with("new first", folder.path);  // the extension is added
-  CHECK(again.exit_code == 2);
-  CHECK(again.err == "error: first.yaml: exists already; name another file, as in drape new first_2.yaml\n");
+  CHECK(refused_by("new first", folder.path) ==  // the extension is added
+        "error: first.yaml: exists already; name another file, as in drape new first_2.yaml\n");
   CHECK(text_of(folder / "first.yaml") == text);
-  CHECK(drape_with("new null.yml", folder.path).exit_code == 0);
-  CHECK(drape_with("check null.yml", folder.path).exit_code == 0);
+  drape_ends("new null.yml", folder);
+  drape_ends("check null.yml", folder);
   CHECK_THAT(drape_with("new 'a b.yaml'", folder.path).err,
              Contains("\"a b\" names files: write it with letters"));
   CHECK_FALSE(fs::exists(folder / "a b.yaml"));
@@ -226,14 +210,14 @@ TEST_CASE("reference is docs/reference/configuration.md, which is up to date") {
   REQUIRE(first != page.npos);
   CHECK(page.find(row, first + 1) == page.npos);
   CHECK_THAT(page, !Contains("`newton.step_growth`") && Contains("see [Newton](#newton)"));
-  const fs::path stored = fs::path(folders::source()) / "docs/reference/configuration.md";
+  const fs::path stored = folders::source() / "docs/reference/configuration.md";
   INFO("after a change, run: build/bin/drape reference > docs/reference/configuration.md");
   CHECK((text_of(stored) == page));
 }
 
 TEST_CASE("every plugin has a page of its own, with its parameters up to date") {
   const Scratch folder;
-  const fs::path plugins = fs::path(folders::source()) / "plugins";
+  const fs::path plugins = folders::source() / "plugins";
   for (const auto& entry : test_registry().entries()) {
     const fs::path name = fs::path(entry->kind) / entry->name / "README.md";
     INFO(name.string());
@@ -259,22 +243,18 @@ TEST_CASE("report rewrites a run's page, or names what is missing") {
   const Scratch folder(small_experiment());
   drape_ends("run e.yaml --out out --levels 1 --method newton --quiet --no-report", folder);
   REQUIRE(!fs::exists(folder / "out/report.html"));
-  const Ended ended = drape_with("report out", folder.path);
-  CHECK(ended.exit_code == 0);
-  CHECK(ended.out == "report: out/report.html\n");
+  CHECK(shown_by("report out", folder.path) == "report: out/report.html\n");
   CHECK(text_of(folder / "out/report.html").ends_with("</html>\n"));
   CHECK(refusal_of("report nowhere") ==
         "error: nowhere: neither results.json nor sweep.json here; give the folder of a run or a sweep\n");
   CHECK_THAT(refusal_of("report out --width 15"), Contains("must be 16 to 8000 pixels, not 15"));
   CHECK(refusal_of("report out out --out both.html --width 90") ==
         "error: --width is for the pictures of one run; a page of several runs has none\n");
-  CHECK(ended.err == "");
   REQUIRE(fs::exists(folder / "out/pictures/newton_l0.png"));
   folder.write("out/pictures/mine.png", "mine");
   fs::remove(folder / "out/levels/newton_l0.ply");
-  const Ended without = drape_with("report out", folder.path);
-  CHECK(without.exit_code == 0);
-  CHECK(without.err == "warning: cannot read out/levels/newton_l0.ply: No such file or directory\n");
+  CHECK(drape_ends("report out", folder).err ==
+        "warning: cannot read out/levels/newton_l0.ply: No such file or directory\n");
   CHECK_FALSE(fs::exists(folder / "out/pictures/newton_l0.png"));
   CHECK(fs::exists(folder / "out/pictures/mine.png"));
   folder.write("out/results.json", "{\"experiment\": ");
@@ -283,7 +263,6 @@ TEST_CASE("report rewrites a run's page, or names what is missing") {
 
 TEST_CASE("a --set takes one value, so that the config may follow it") {
   const Scratch folder(small_experiment());
-  const Ended ended = drape_with("check --set levels=1 --set cloth.rows=7 e.yaml", folder.path);
-  CHECK(ended.err == "");
-  CHECK_THAT(ended.out, StartsWith("e.yaml: valid. Vertices by level: 42\n"));
+  CHECK_THAT(shown_by("check --set levels=1 --set cloth.rows=7 e.yaml", folder.path),
+             StartsWith("e.yaml: valid. Vertices by level: 42\n"));
 }

@@ -65,8 +65,8 @@ TEST_CASE("-v shows every iteration, -q nothing, and both exclude each other") {
   const Scratch folder(small_experiment());
   const std::string run =
       "run e.yaml --levels 1 --set newton.max_steps=2 --no-report --overwrite -j 1 -o out ";
-  const Ended verbose = drape_with(run + "-v", folder.path);
-  CHECK_THAT(verbose.err, Contains("pcs level 0/0 step 0 iteration 0  residual ") && Contains("step size "));
+  CHECK_THAT(drape_with(run + "-v", folder.path).err,
+             Contains("pcs level 0/0 step 0 iteration 0  residual ") && Contains("step size "));
   CHECK(drape_with(run + "-q", folder.path).err == "");
   CHECK_THAT(refused_by(run + "-q -v", folder.path), Contains(" excludes --"));
 }

@@ -8,7 +8,6 @@
 
 #include "core/numerics/mesh_files/io.h"
 #include "tests/support/command.h"
-#include "tests/support/folders.h"
 #include "tests/support/glb.h"
 
 using namespace drape;
@@ -24,7 +23,7 @@ namespace {
 const fs::path& finished_run() {
   static const Scratch folder;
   static const fs::path path = [] {
-    folder.write("e.yaml", text_of(fs::path(folders::source()) / "tests/configs/data/contact.yaml"));
+    folder.write("e.yaml", experiment_of_tests("contact"));
     drape_ends("run e.yaml -o out -j 1 -q --no-report --method pcs,newton", folder);
     return folder / "out";
   }();
@@ -112,7 +111,7 @@ TEST_CASE("a .glb has every level of a method as a scene, with the obstacle, and
 }
 
 TEST_CASE("with --frames a .glb has the recorded snapshots of one level as an animation") {
-  const Json results = Json::parse(text_of(finished_run() / "results.json"));
+  const Json results = json_in(finished_run() / "results.json");
   for (const std::string options : {"--frames", "--frames --level 0"}) {
     INFO(options);
     const int level = options == "--frames" ? 1 : 0;
@@ -134,7 +133,7 @@ TEST_CASE("with --frames a .glb has the recorded snapshots of one level as an an
 TEST_CASE("an animation of a level of one step is refused with the levels that have more") {
   const Scratch folder;
   fs::copy(finished_run(), folder / "run", fs::copy_options::recursive);
-  Json results = Json::parse(text_of(folder / "run/results.json"));
+  Json results = json_in(folder / "run/results.json");
   Json& level = results["methods"]["pcs"]["levels"][1];
   level["iterations"] = 1;
   const Json all = level["snapshots"];
@@ -267,7 +266,7 @@ TEST_CASE("a .png is the report's picture of a state, at any width") {
 }
 
 TEST_CASE("with --frames a .png is a series of every level's snapshots, coarse to fine") {
-  const Json levels = Json::parse(text_of(finished_run() / "results.json"))["methods"]["pcs"]["levels"];
+  const Json levels = json_in(finished_run() / "results.json")["methods"]["pcs"]["levels"];
   std::vector<std::size_t> recorded;
   for (const Json& level : levels) recorded.push_back(level["snapshots"]["iterations"].size());
   REQUIRE(recorded.size() == 2);
@@ -308,7 +307,7 @@ TEST_CASE("a series of pictures leaves none of a longer one behind it") {
   REQUIRE(count > 1);
   for (std::size_t k = 0; k < count; ++k) fs::remove(folder / name(k));
   for (const std::size_t k : {count, count + 1, count + 3}) folder.write(name(k), "longer");
-  CHECK(drape_with(film, folder.path).exit_code == 2);
+  drape_ends(film, folder, 2);
   CHECK_FALSE(fs::exists(folder / name(0)));
   drape_ends(film + " --overwrite", folder);
   CHECK(fs::exists(folder / name(count - 1)));
@@ -326,7 +325,7 @@ TEST_CASE("snapshots that are damaged are neither exported nor shown") {
     CHECK_THAT(refused_by("export out --frames --to " + name, folder.path),
                EndsWith("snapshots/pcs_l1.bin: is damaged: its checksum does not fit\n"));
   }
-  CHECK(drape_with("export out --frames --level 0 --to a.glb", folder.path).exit_code == 0);
+  drape_ends("export out --frames --level 0 --to a.glb", folder);
   drape_ends("report out --width 90", folder);
   CHECK_THAT(text_of(folder / "out/report.html"),
              Contains("snapshots/pcs_l1.bin: is damaged: its checksum does not fit"));
@@ -358,11 +357,11 @@ TEST_CASE("an export replaces no file unless it is asked to") {
     CHECK(refused_by(arguments, folder.path) ==
           "error: " + name + ": exists already; name another file, or replace it with --overwrite\n");
     CHECK(text_of(folder / name) == "mine");
-    CHECK(drape_with(arguments + " --overwrite", folder.path).exit_code == 0);
+    drape_ends(arguments + " --overwrite", folder);
     CHECK((text_of(folder / name) != "mine"));
   }
   folder.write("film_0003.png", "mine");  // before any picture is drawn
-  CHECK(drape_with("export " + run + " --to film.png --frames --width 90", folder.path).exit_code == 2);
+  drape_ends("export " + run + " --to film.png --frames --width 90", folder, 2);
   CHECK_FALSE(fs::exists(folder / "film_0000.png"));
 }
 

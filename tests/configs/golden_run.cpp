@@ -4,7 +4,6 @@
 #include <nlohmann/json.hpp>
 
 #include "tests/support/command.h"
-#include "tests/support/folders.h"
 
 namespace {
 
@@ -56,13 +55,9 @@ const Golden golden[] = {
 }  // namespace
 
 TEST_CASE("the golden run: energies to 1e-6, measures of consistency to 1 %") {
-  const Scratch folder;
-  const Ended ended =
-      drape_with("run " + folders::source() +
-                     "/tests/configs/data/golden.yaml --out out --method all --quiet --no-report",
-                 folder.path);
-  REQUIRE(ended.exit_code == 0);
-  const auto methods = nlohmann::json::parse(text_of(folder / "out/results.json")).at("methods");
+  const Scratch folder(experiment_of_tests("golden"));
+  drape_ends("run e.yaml --out out --method all --quiet --no-report", folder);
+  const auto methods = json_in(folder / "out/results.json").at("methods");
   CHECK(methods.size() == std::size(golden));
   for (const Golden& g : golden) {
     INFO(g.method);

@@ -48,7 +48,7 @@ Json huge_beside_tiny(const std::string& method, const std::string& options) {
       "--set start.perturbation=1e-6 --method " +
           method + options + " --out run --no-report",
       folder.path);
-  return Json::parse(text_of(folder / "run/results.json"))["methods"][method]["levels"];
+  return json_in(folder / "run/results.json")["methods"][method]["levels"];
 }
 
 }  // namespace
@@ -59,8 +59,7 @@ TEST_CASE("hard cases end as they should") {
   int rows = 0;
   for (const std::string theme : {"friction", "contact", "steps", "closing", "folded", "sleeve", "pins"}) {
     drape_with("sweep hard/sweeps/" + theme + ".yaml --out " + theme, folder.path);
-    const Ended table = drape_with("table " + theme + " --format json", folder.path);
-    for (const Json& row : Json::parse(table.out)) {
+    for (const Json& row : Json::parse(drape_with("table " + theme + " --format json", folder.path).out)) {
       INFO(theme << ": " << row.dump());
       CHECK(row["pass"] == true);
       ++rows;

@@ -38,7 +38,7 @@ TEST_CASE("SIGINT ends a run after the step, with all results so far and the rep
   CHECK(ended.exit_code == 130);
   CHECK(ended.out == "report: out/report.html\n");
   CHECK_THAT(ended.err, Catch::Matchers::EndsWith("stopped on request; everything up to then is in out\n"));
-  const Json all = Json::parse(text_of(folder / "out/results.json"));
+  const Json all = json_in(folder / "out/results.json");
   CHECK(all["complete"] == false);
   REQUIRE(all["methods"].size() == 1);  // the next method is not begun
   const Json& pcs = all["methods"]["pcs"];
@@ -92,7 +92,7 @@ TEST_CASE("A run goes on where nobody reads its progress") {
           " run e.yaml --levels 1 --method pcs --no-report -v --out out 2>&1; echo $? > code ) | head -c 1",
       folder.path);
   command.wait();
-  CHECK(Json::parse(text_of(folder / "out/results.json"))["complete"] == true);
+  CHECK(json_in(folder / "out/results.json")["complete"] == true);
 }
 
 TEST_CASE("An interrupted run is resumed although its results.json is damaged and its config.yaml is gone") {
@@ -115,7 +115,7 @@ TEST_CASE("An interrupted run is resumed although its results.json is damaged an
                      [&] { return contents(folder / "out/iterations.csv").size() > before.size() + 500; });
   resumed.send(SIGINT);
   CHECK(resumed.wait().exit_code == 130);
-  CHECK(Json::parse(text_of(folder / "out/results.json"))["methods"]["pcs"]["status"] == "cancelled");
+  CHECK(json_in(folder / "out/results.json")["methods"]["pcs"]["status"] == "cancelled");
 }
 
 TEST_CASE("SIGKILL at any moment leaves complete files, sufficient for a report") {
@@ -129,7 +129,7 @@ TEST_CASE("SIGKILL at any moment leaves complete files, sufficient for a report"
     command.send(SIGKILL);
     REQUIRE(command.wait().exit_code == 128 + SIGKILL);
 
-    const Json all = Json::parse(text_of(folder / "out/results.json"));
+    const Json all = json_in(folder / "out/results.json");
     CHECK(all["complete"] == false);
     for (const auto& [name, method] : all["methods"].items())
       for (const Json& level : method["levels"])
@@ -144,11 +144,9 @@ TEST_CASE("SIGKILL at any moment leaves complete files, sufficient for a report"
       if (extension == ".vtp" || extension == ".pvd") CHECK(text_of(entry.path()).ends_with("</VTKFile>\n"));
     }
     if (level_lines != 10) continue;
-    CHECK(drape_with("report out --width 90", folder.path).exit_code == 0);
-    CHECK(drape_with(endless, folder.path).exit_code == 2);  // still somebody's results
-    const Ended again = drape_with(
-        endless + "--overwrite --quiet --no-report --levels 1 --set newton.max_steps=3", folder.path);
-    CHECK(again.exit_code == 1);
+    drape_ends("report out --width 90", folder);
+    drape_ends(endless, folder, 2);  // still somebody's results
+    drape_ends(endless + "--overwrite --quiet --no-report --levels 1 --set newton.max_steps=3", folder, 1);
     for (const auto& entry : fs::recursive_directory_iterator(folder / "out"))
       CHECK(entry.path().extension() != ".part");
   }

@@ -16,7 +16,7 @@ namespace {
 Positions end_of(const std::string& experiment, const Scratch& folder, int finest) {
   folder.write("e.yaml", experiment);
   drape_ends("run e.yaml --out out --overwrite --quiet --no-report", folder);
-  const auto all = nlohmann::json::parse(text_of(folder / "out/results.json"));
+  const auto all = json_in(folder / "out/results.json");
   CHECK(all["methods"]["pcs"]["status"] == "converged");
   REQUIRE(all["methods"]["pcs"]["levels"].size() == static_cast<std::size_t>(finest + 1));
   for (const auto& level : all["methods"]["pcs"]["levels"]) CHECK(level["intersections"] == 0);
@@ -121,7 +121,7 @@ obstacles: [{name: ball, meshed_shape: sphere, radius: 0.1, subdivisions: 3}]
   const Scratch folder;
   const auto iterations = [&](const std::string& more) {
     end_of(draped + more, folder, 0);
-    const auto all = nlohmann::json::parse(text_of(folder / "out/results.json"));
+    const auto all = json_in(folder / "out/results.json");
     return all["methods"]["pcs"]["levels"][0]["iterations"].get<int>();
   };
   const int still = iterations(shapes);  // one part at a time, 3000 to 6000 more
@@ -175,7 +175,7 @@ methods: {pcs: {}, newton: {}}
     INFO(plate);
     const Scratch folder(raised + plate);
     drape_with("run e.yaml --out out --method all --quiet --no-report", folder.path);
-    const auto all = nlohmann::json::parse(text_of(folder / "out/results.json"));
+    const auto all = json_in(folder / "out/results.json");
     CHECK(all["obstacles"] == nlohmann::json{"obstacles/0.ply"});
     CHECK(drape::read_mesh(folder / "out/obstacles/0.ply").vertices.col(2).mean() == Approx(0.05));
   }

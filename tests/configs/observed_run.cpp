@@ -38,8 +38,8 @@ struct Observed {
 Observed observed(Watch& watch, const Overrides& overrides = {}) {
   const Scratch folder;
   ConfigErrors errors;
-  const auto experiment = read_experiment(fs::path(folders::source()) / "tests/configs/data/small.yaml",
-                                          overrides, test_registry(), errors);
+  const auto experiment = read_experiment(folders::source() / "tests/configs/data/small.yaml", overrides,
+                                          test_registry(), errors);
   throw_errors(errors);
   const auto scene = build_scene(*experiment, errors);
   throw_errors(errors);

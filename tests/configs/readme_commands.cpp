@@ -76,7 +76,7 @@ void run_all(const fs::path& file, std::size_t at_least) {
   const Scratch folder;
   for (const char* name : {"configs", "docs", "benchmarks"})
     fs::copy(source / name, folder / name, fs::copy_options::recursive);
-  fs::create_directory_symlink(fs::path(folders::commands()).parent_path(), folder / "build");
+  fs::create_directory_symlink(folders::commands().parent_path(), folder / "build");
   fs::create_directory_symlink(source / "data", folder / "data");
   const Page page = page_of(source / file);
   for (const auto& [name, text] : page.files) folder.write(name, text);

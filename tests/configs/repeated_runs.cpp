@@ -58,7 +58,7 @@ TEST_CASE("so are runs whose contact stiffness is raised") {
   const auto run_with = [&](int threads) {
     drape_ends("run e.yaml --out out --overwrite --quiet --no-report --threads " + std::to_string(threads),
                folder);
-    const auto results = nlohmann::json::parse(text_of(folder / "out/results.json"));
+    const auto results = json_in(folder / "out/results.json");
     CHECK(results["methods"]["newton"]["levels"][0]["contact_stiffness"][1] > 10 * 9.81 * 20 * 3e-4 * 3.9);
     return text_of(folder / "out/levels/newton_l0.ply");
   };

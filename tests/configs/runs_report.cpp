@@ -127,10 +127,7 @@ TEST_CASE("the table counts steps of the levels that the last state builds on") 
 }
 
 TEST_CASE("report of a sweep is one page with every row, state and failure") {
-  const Ended ended = drape_with("report sweep", sweep().parent_path());
-  INFO(ended.err);
-  REQUIRE(ended.exit_code == 0);
-  CHECK(ended.out == "report: sweep/report.html\n");
+  CHECK(shown_by("report sweep", sweep().parent_path()) == "report: sweep/report.html\n");
   const OrderedJson data = page_data(text_of(sweep() / "report.html"));
   CHECK(data["kind"] == "runs");
   CHECK(data["table"]["rows"].size() == 19);
@@ -147,8 +144,8 @@ TEST_CASE("report of a sweep is one page with every row, state and failure") {
   CHECK(data["runs"][6]["pictures"].empty());
   CHECK(data["runs"][4]["report"] == nullptr);
   // A run's own page is linked to where it is.
-  REQUIRE(drape_with("report 'runs/matrix=coarse/seed_2' --width 90", sweep()).exit_code == 0);
-  REQUIRE(drape_with("report .", sweep()).exit_code == 0);
+  shown_by("report 'runs/matrix=coarse/seed_2' --width 90", sweep());
+  shown_by("report .", sweep());
   CHECK(page_data(text_of(sweep() / "report.html"))["runs"][4]["report"] ==
         "runs/matrix=coarse/seed_2/report.html");
 }
@@ -162,19 +159,15 @@ TEST_CASE("report of several folders takes a page's name, and groups runs by all
         "error: --out is for the page of several runs; a run's own is report.html in its folder\n");
   CHECK(!fs::exists(sweep() / "x.html"));
   const Scratch folder;
-  const Ended ended = drape_with("report runs/matrix=galerkin/seed_1 runs/matrix=galerkin/seed_2 --out " +
-                                     (folder / "two.html").string(),
-                                 sweep());
-  CHECK(ended.exit_code == 0);
+  shown_by("report runs/matrix=galerkin/seed_1 runs/matrix=galerkin/seed_2 --out " +
+               (folder / "two.html").string(),
+           sweep());
   CHECK(page_data(text_of(folder / "two.html"))["runs"].size() == 2);
-  const RunCollection collection =
-      read_runs({sweep() / "runs/matrix=galerkin/seed_1", sweep() / "runs/matrix=coarse/seed_1",
-                 sweep() / "runs/matrix=coarse/seed_3"});
-  CHECK((variations_of({sweep() / "runs/matrix=galerkin/seed_1", sweep() / "runs/matrix=coarse/seed_1",
-                        sweep() / "runs/matrix=coarse/seed_3"}) ==
-         std::vector<std::string>{(sweep() / "runs/matrix=galerkin/seed_1").string(),
-                                  (sweep() / "runs/matrix=coarse/seed_1").string()}));
-  CHECK(collection.runs[2].seed.value() == 3);
+  const std::vector<fs::path> three = {sweep() / "runs/matrix=galerkin/seed_1",
+                                       sweep() / "runs/matrix=coarse/seed_1",
+                                       sweep() / "runs/matrix=coarse/seed_3"};
+  CHECK((variations_of(three) == std::vector<std::string>{three[0].string(), three[1].string()}));
+  CHECK(read_runs(three).runs[2].seed.value() == 3);
 }
 
 TEST_CASE("variations of one name are kept apart if they are of different sweeps") {
@@ -247,7 +240,7 @@ TEST_CASE("an incomplete sweep is read as far as it got") {
   folder.write(
       "sweep.json",
       R"({"sweep": "s", "complete": false, "runs": [{"name": "a", "seed": 1, "folder": "r", "status": "running"}]})");
-  CHECK(drape_with("report .", folder.path).exit_code == 0);
+  drape_ends("report .", folder);
   const OrderedJson data = page_data(text_of(folder / "report.html"));
   CHECK(data["complete"] == false);
   CHECK(data["runs"][0]["status"] == "running");

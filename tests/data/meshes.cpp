@@ -21,7 +21,7 @@ namespace {
 /// Where `third_party/data/fetch` has put the meshes. Where it has not, this ends as a test that was skipped.
 fs::path folder() {
   const char* set = std::getenv("DRAPE_TEST_MESHES");
-  const fs::path path = set ? set : fs::path(folders::source()) / "data";
+  const fs::path path = set ? set : folders::source() / "data";
   if (!fs::exists(path / "bunny.ply")) {
     std::cerr << "skipped: " << path.string() << " holds no meshes; `make data` fetches them\n";
     std::exit(77);
@@ -31,7 +31,7 @@ fs::path folder() {
 
 /// Names in the recipe's first column.
 std::vector<std::string> names() {
-  std::ifstream recipe(fs::path(folders::source()) / "third_party/data/meshes.txt");
+  std::ifstream recipe(folders::source() / "third_party/data/meshes.txt");
   std::vector<std::string> all;
   for (std::string line; std::getline(recipe, line);)
     if (!line.empty() && line[0] != '#') all.push_back(line.substr(0, line.find(' ')));

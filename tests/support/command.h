@@ -12,6 +12,7 @@
 #include <filesystem>
 #include <fstream>
 #include <functional>
+#include <nlohmann/json.hpp>
 #include <sstream>
 #include <string>
 #include <thread>
@@ -46,6 +47,10 @@ inline std::string text_of(const std::filesystem::path& file) {
   std::ostringstream text;
   text << stream.rdbuf();
   return text.str();
+}
+
+inline nlohmann::json json_in(const std::filesystem::path& file) {
+  return nlohmann::json::parse(text_of(file));
 }
 
 /// Many times what any command of the tests takes to end …
@@ -156,7 +161,7 @@ inline void wait_until(const std::string& what, const std::function<bool()>& con
   while (!condition()) std::this_thread::sleep_for(std::chrono::milliseconds(5));
 }
 
-inline const std::string drape_command = folders::commands() + "/drape";
+inline const std::string drape_command = (folders::commands() / "drape").string();
 
 /// `drape` with these arguments, in that folder, to its end.
 inline Ended drape_with(const std::string& arguments, const std::filesystem::path& folder,
@@ -171,6 +176,14 @@ inline Ended drape_ends(const std::string& arguments, const Scratch& folder, int
   INFO("drape " << arguments << "\n" << ended.err);
   REQUIRE(ended.exit_code == exit_code);
   return ended;
+}
+
+/// Standard output of what must succeed without a word on standard error.
+inline std::string shown_by(const std::string& arguments, const std::filesystem::path& folder) {
+  const Ended ended = drape_with(arguments, folder);
+  CHECK(ended.exit_code == 0);
+  CHECK(ended.err == "");
+  return ended.out;
 }
 
 /// Standard error of what must be refused without a word on standard output.
@@ -192,7 +205,10 @@ inline std::string replaced(std::string text, const std::string& from, const std
   return text.replace(at, from.size(), to);
 }
 
-/// Three methods on a square of 6 × 6 vertices and 2 levels.
-inline std::string small_experiment() {
-  return text_of(std::filesystem::path(folders::source()) / "tests/configs/data/small.yaml");
+/// An experiment of tests/configs/data, by its name there.
+inline std::string experiment_of_tests(const std::string& name) {
+  return text_of(folders::source() / "tests/configs/data" / (name + ".yaml"));
 }
+
+/// Three methods on a square of 6 × 6 vertices and 2 levels.
+inline std::string small_experiment() { return experiment_of_tests("small"); }

@@ -21,8 +21,7 @@ inline bool declares(const drape::RegistryEntry& entry, const std::string& param
 /// The parameters in plugins/<kind>/<name>/conformance.yaml, with which a plugin asks to be tested. Empty
 /// without the file.
 inline std::string conformance_parameters(const drape::RegistryEntry& entry) {
-  std::ifstream file(std::filesystem::path(folders::source()) / "plugins" / entry.kind / entry.name /
-                     "conformance.yaml");
+  std::ifstream file(folders::source() / "plugins" / entry.kind / entry.name / "conformance.yaml");
   return {std::istreambuf_iterator<char>(file), {}};
 }
 
@@ -31,7 +30,7 @@ inline std::string conformance_parameters(const drape::RegistryEntry& entry) {
 inline std::vector<std::pair<std::string, std::string>> more_conformance_parameters(
     const drape::RegistryEntry& entry) {
   std::vector<std::pair<std::string, std::string>> all;
-  const auto folder = std::filesystem::path(folders::source()) / "plugins" / entry.kind / entry.name;
+  const auto folder = folders::source() / "plugins" / entry.kind / entry.name;
   if (!std::filesystem::exists(folder)) return all;
   for (const auto& found : std::filesystem::directory_iterator(folder)) {
     const std::string name = found.path().stem().string();

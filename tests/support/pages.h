@@ -28,8 +28,7 @@ inline std::vector<std::string> lines_of(const std::filesystem::path& file) {
 inline std::vector<std::filesystem::path> below(const std::vector<std::string>& folders) {
   std::vector<std::filesystem::path> found;
   for (const std::string& folder : folders)
-    for (const auto& entry :
-         std::filesystem::recursive_directory_iterator(std::filesystem::path(folders::source()) / folder))
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(folders::source() / folder))
       if (entry.path().extension() == ".md") found.push_back(entry.path());
   std::sort(found.begin(), found.end());
   return found;
@@ -38,8 +37,7 @@ inline std::vector<std::filesystem::path> below(const std::vector<std::string>& 
 /// README.md, CONTRIBUTING.md and everything in docs/.
 inline std::vector<std::filesystem::path> documents() {
   std::vector<std::filesystem::path> found = below({"docs"});
-  for (const char* page : {"README.md", "CONTRIBUTING.md"})
-    found.push_back(std::filesystem::path(folders::source()) / page);
+  for (const char* page : {"README.md", "CONTRIBUTING.md"}) found.push_back(folders::source() / page);
   return found;
 }
 

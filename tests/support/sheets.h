@@ -3,7 +3,6 @@
 #include "core/numerics/mesh_files/io.h"
 #include "core/numerics/patterns/generate.h"
 #include "tests/support/command.h"
-#include "tests/support/folders.h"
 
 /// Writes an experiment, e.yaml: two sheets of n × n vertices, one close above the other, fall on a ball,
 /// with self-contact, friction and a strain limit.
@@ -16,8 +15,7 @@ inline void write_sheets(const Scratch& folder, int n) {
   sheets.triangles.resize(2 * triangles.rows(), 3);
   sheets.triangles << triangles, triangles.array() + n * n;
   drape::write_mesh(folder / "sheets.obj", sheets);
-  folder.write(
-      "e.yaml",
-      replaced(text_of(std::filesystem::path(folders::source()) / "tests/configs/data/contact.yaml"),
-               "{shape: square, side: 0.4, columns: 9, rows: 9}", "{shape: file, file: sheets.obj}"));
+  folder.write("e.yaml",
+               replaced(experiment_of_tests("contact"), "{shape: square, side: 0.4, columns: 9, rows: 9}",
+                        "{shape: file, file: sheets.obj}"));
 }

@@ -7,9 +7,12 @@
 
 #include "tests/support/command.h"
 
+/// The beginning of a sweep of e.yaml on its coarsest level, by Newton's method.
+inline const std::string coarsest_by_newton = "name: s\nbase: e.yaml\nset: {levels: 1}\nmethods: [newton]\n";
+
 /// The runs of a sweep's folder, as its sweep.json lists them.
 inline nlohmann::json runs_of(const std::filesystem::path& sweep) {
-  return nlohmann::json::parse(text_of(sweep / "sweep.json"))["runs"];
+  return json_in(sweep / "sweep.json")["runs"];
 }
 
 /// What a sweep computed: every level's mesh and every energy, by file and method.
@@ -20,7 +23,7 @@ inline std::map<std::string, std::string> outcome_of(const std::filesystem::path
     for (const auto& entry : std::filesystem::directory_iterator(sweep / folder / "levels"))
       if (entry.path().extension() == ".ply")
         all[folder + "/" + entry.path().filename().string()] = text_of(entry.path());
-    const nlohmann::json results = nlohmann::json::parse(text_of(sweep / folder / "results.json"));
+    const nlohmann::json results = json_in(sweep / folder / "results.json");
     for (const auto& [name, method] : results["methods"].items())
       for (const nlohmann::json& level : method["levels"])
         all[folder + ":" + name] += level["energy"].dump() + " " + level["iterations"].dump() + " ";

@@ -46,7 +46,7 @@ TEST_CASE("a sweep that was killed runs an experiment that has changed since fro
   cut_slow(folder, SIGKILL);
   folder.write("s.yaml", replaced(text_of(folder / "s.yaml"), "max_steps: 400", "max_steps: 3"));
   drape_with("sweep s.yaml --out out", folder.path);
-  const auto results = nlohmann::json::parse(text_of(folder / "out/runs/slow/seed_1/results.json"));
+  const auto results = json_in(folder / "out/runs/slow/seed_1/results.json");
   CHECK(results["methods"]["newton"]["levels"][0]["steps"] == 3);
   CHECK_THAT(text_of(folder / "out/runs/slow/seed_1/log.jsonl"),
              !Catch::Matchers::Contains("\"run_resumed\""));
@@ -123,7 +123,7 @@ TEST_CASE("a sweep starts no run once its program was replaced, and the same com
   std::filesystem::create_directory_symlink(std::filesystem::path(drape_command).parent_path() / "../lib",
                                             folder / "lib");
   folder.write("e.yaml", small_experiment());
-  folder.write("s.yaml", "name: s\nbase: e.yaml\nset: {levels: 1}\nmethods: [newton]\nrepeats: 20\n");
+  folder.write("s.yaml", coarsest_by_newton + "repeats: 20\n");
   Command command("exec bin/drape sweep s.yaml --out out --workers 1", folder.path);
   wait_for(command, folder / "out", "converged", 1);
   std::filesystem::rename(folder / "bin/new", folder / "bin/drape");
@@ -132,7 +132,7 @@ TEST_CASE("a sweep starts no run once its program was replaced, and the same com
   CHECK_THAT(ended.err, Catch::Matchers::Contains("bin/drape was replaced or removed while the sweep ran"));
   CHECK(count_of(runs_of(folder / "out"), "failed") == 0);
   CHECK(count_of(runs_of(folder / "out"), "pending") > 0);
-  CHECK(drape_with("sweep s.yaml --out out", folder.path).exit_code == 0);
+  drape_ends("sweep s.yaml --out out", folder);
   CHECK(count_of(runs_of(folder / "out"), "converged") == 20);
 }
 
@@ -144,8 +144,6 @@ TEST_CASE("a sweep's folders may have wildcards in their names, and bytes that a
   for (const std::string files : {"e1.yaml", "e*.yaml"}) {
     folder.write(name + "/s.yaml",
                  "name: s\nexperiments: [" + files + "]\nset: {levels: 1}\nmethods: [newton]\n");
-    const Ended ended = drape_with("sweep '" + name + "/s.yaml' --out out -q", folder.path);
-    CHECK(ended.err == "");
-    CHECK(ended.exit_code == 0);
+    CHECK(drape_ends("sweep '" + name + "/s.yaml' --out out -q", folder).err == "");
   }
 }

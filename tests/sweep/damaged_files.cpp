@@ -4,13 +4,13 @@
 #include <functional>
 #include <nlohmann/json.hpp>
 
-#include "tests/support/command.h"
+#include "tests/support/sweep_runs.h"
 
 using Json = nlohmann::json;
 
 TEST_CASE("a value of the wrong kind in a sweep's files is named with its file and its key") {
   const Scratch folder(small_experiment());
-  folder.write("s.yaml", "name: s\nbase: e.yaml\nset: {levels: 1}\nmethods: [newton]\n");
+  folder.write("s.yaml", coarsest_by_newton);
   drape_ends("sweep s.yaml --out out", folder);
   const auto said = [&](const std::string& file, const std::function<void(Json&)>& damage) {
     const std::string sound = text_of(folder / file);

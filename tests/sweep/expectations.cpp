@@ -33,6 +33,17 @@ ablation:
 )";
 }
 
+/// A run of one method and one level, both of this status.
+RunRecord run_of(const std::string& status, const std::map<std::string, double>& values) {
+  RunRecord run;
+  run.status = "converged";
+  MethodRecord& method = run.data.emplace().methods.emplace_back();
+  LevelRecord& level = method.levels.emplace_back();
+  method.status = level.status = status;
+  level.values = {values};
+  return run;
+}
+
 /// One more, and a limit on the clock, which a busy machine lets no other case exceed: they have ended
 /// before.
 const std::string endless =
@@ -44,20 +55,16 @@ const std::string endless =
 TEST_CASE("a run passes when it ends as its sweep expects, for the reason expected") {
   const Scratch folder(small_experiment());
   folder.write("s.yaml", cases());
-  const Ended ended_by_themselves = drape_with("sweep s.yaml --out out", folder.path);
-  CHECK(ended_by_themselves.exit_code == 1);
-  CHECK_THAT(ended_by_themselves.err, Contains("unheld, seed 1: refused, as expected, after"));
+  CHECK_THAT(drape_ends("sweep s.yaml --out out", folder, 1).err,
+             Contains("unheld, seed 1: refused, as expected, after"));
   folder.write("s.yaml", cases() + endless);
-  const Ended swept = drape_with("sweep s.yaml --out out", folder.path);
-  CHECK(swept.exit_code == 1);
+  const Ended swept = drape_ends("sweep s.yaml --out out", folder, 1);
   CHECK_THAT(swept.err, Contains("endless, seed 1: failed") && Contains("exceeded the sweep's time_limit"));
   CHECK_THAT(swept.err, Contains("; 1 failed"));
   CHECK_THAT(swept.out, Contains("unheld     ") && Contains("refused, as expected  ") &&
                             !Contains("widen its region") && Contains("exceeded the sweep's time_limit"));
 
-  const Ended ended = drape_with("table out --format json", folder.path);
-  CHECK(ended.exit_code == 1);
-  const OrderedJson rows = OrderedJson::parse(ended.out);
+  const OrderedJson rows = OrderedJson::parse(drape_ends("table out --format json", folder, 1).out);
   REQUIRE(rows.size() == 5);
   const auto outcome = [&](int k) {
     return rows[k]["run"].get<std::string>() + ": " + rows[k]["status"].get<std::string>() +
@@ -75,14 +82,13 @@ TEST_CASE("a run passes when it ends as its sweep expects, for the reason expect
   CHECK(rows[1]["vertices"].is_null());
   CHECK_THAT(rows[1]["message"].get<std::string>(), Contains("selects no vertex"));
 
-  const Ended few = drape_with("table out --columns run,pass,status,steps", folder.path);
-  CHECK_THAT(few.out, StartsWith("| run | pass | status | steps |\n| --- | --- | --- | ---: |\n"));
+  const std::string few = drape_with("table out --columns run,pass,status,steps", folder.path).out;
+  CHECK_THAT(few, StartsWith("| run | pass | status | steps |\n| --- | --- | --- | ---: |\n"));
   CHECK_THAT(
-      few.out,
-      Contains("| short | yes | max_steps_reached | 1 |\n| for another reason | NO | max_steps_reached "
-               "| 2 |\n| endless | NO | timeout |  |\n"));
-  const Ended csv = drape_with("table out --format csv --columns run,pass,status", folder.path);
-  CHECK_THAT(csv.out, StartsWith("run,pass,status\neasy,yes,converged\n"));
+      few, Contains("| short | yes | max_steps_reached | 1 |\n| for another reason | NO | max_steps_reached "
+                    "| 2 |\n| endless | NO | timeout |  |\n"));
+  CHECK_THAT(drape_with("table out --format csv --columns run,pass,status", folder.path).out,
+             StartsWith("run,pass,status\neasy,yes,converged\n"));
   CHECK(drape_with("table out --columns runs", folder.path).err ==
         "error: there is no column \"runs\"; did you mean \"run\"?\n");
 }
@@ -110,25 +116,12 @@ TEST_CASE("every value that a metric declares is a column by its name") {
 }
 
 TEST_CASE("an intersection, or an energy that is no number, fails whatever the status") {
-  const auto rows = [](OptionalNumber energy, OptionalNumber intersections) {
-    RunData data;
-    data.methods.push_back({});
-    data.methods[0].name = "newton";
-    data.methods[0].status = "converged";
-    LevelRecord level;
-    level.status = "converged";
-    if (energy) level.values["energy_released"] = *energy;
-    if (intersections) level.values["intersections"] = *intersections;
-    data.methods[0].levels.push_back(level);
-    RunRecord run;
-    run.variation = "case";
-    run.status = "converged";
-    run.data = data;
-    return table_of({"set", true, {run}});
+  const auto passes = [](const std::map<std::string, double>& values) {
+    return table_of({"set", true, {run_of("converged", values)}}).all_pass();
   };
-  CHECK(rows(1.0, 0.0).all_pass());
-  CHECK(!rows(1.0, 1.0).all_pass());
-  CHECK(!rows({}, 0.0).all_pass());
+  CHECK(passes({{"energy_released", 1}, {"intersections", 0}}));
+  CHECK(!passes({{"energy_released", 1}, {"intersections", 1}}));
+  CHECK(!passes({{"intersections", 0}}));
 }
 
 TEST_CASE("a run that has converged passes no more once its results are gone") {
@@ -139,29 +132,15 @@ TEST_CASE("a run that has converged passes no more once its results are gone") {
 }
 
 TEST_CASE("a table counts no shortened steps where rows of iterations.csv are missing") {
-  RunRecord run;
-  run.status = "converged";
-  run.data.emplace();
-  run.data->methods.push_back({});
-  run.data->methods[0].status = "converged";
-  run.data->methods[0].levels.push_back({});
-  run.data->methods[0].levels[0].values["iterations"] = 3;
-  CHECK(table_of({"set", true, {run}}).rows[0]["shortened_steps"].is_null());
+  CHECK(table_of({"set", true, {run_of("converged", {{"iterations", 3}})}})
+            .rows[0]["shortened_steps"]
+            .is_null());
 }
 
 TEST_CASE("what has converged to rounding passes where it was to converge, and is told apart") {
   const auto passes = [](const std::string& status, const std::string& expected) {
-    RunData data;
-    data.methods.push_back({});
-    data.methods[0].status = status;
-    LevelRecord level;
-    level.status = status;
-    level.values["energy_released"] = 1;
-    data.methods[0].levels.push_back(level);
-    RunRecord run;
-    run.status = "converged";
+    RunRecord run = run_of(status, {{"energy_released", 1}});
     run.expected = expected;
-    run.data = data;
     return table_of({"set", true, {run}}).all_pass();
   };
   CHECK(passes("converged_to_rounding", "converged"));
@@ -197,7 +176,7 @@ TEST_CASE("a sweep over several experiments names each run by its experiment") {
   folder.write("scenes/a.yaml", called("first"));
   folder.write("sweeps/s.yaml",
                "name: s\nexperiments: [../scenes/*.yaml]\nset: {levels: 1}\nmethods: [newton]\n");
-  CHECK(drape_with("sweep sweeps/s.yaml --out out", folder.path).exit_code == 0);
+  drape_ends("sweep sweeps/s.yaml --out out", folder);
   CHECK_THAT(drape_with("table out --columns run,method,pass", folder.path).out,
              Contains("| first | newton | yes |\n| second | newton | yes |\n"));
   CHECK(std::filesystem::exists(folder / "out/runs/first/seed_1/results.json"));

@@ -22,8 +22,6 @@ methods: {pcs: {}, newton: {}}
 metrics: [{type: drape_coefficient, support_radius: 0.09}, stretch]
 )";
 
-json json_of(const std::filesystem::path& file) { return json::parse(text_of(file)); }
-
 }  // namespace
 
 TEST_CASE("a fit finds the factor that gave a drape coefficient, and resumes") {
@@ -33,12 +31,12 @@ TEST_CASE("a fit finds the factor that gave a drape coefficient, and resumes") {
       "--set material.bias_bending=7.425e-5";  // three times
   drape_ends("run e.yaml --no-report -o stiffer " + stiffer, folder);
   const double target =
-      json_of(folder / "stiffer/results.json")["methods"]["pcs"]["levels"][0]["drape_coefficient"];
+      json_in(folder / "stiffer/results.json")["methods"]["pcs"]["levels"][0]["drape_coefficient"];
 
   const std::string fit =
       "fit e.yaml --by material.bending --starts 1 --tolerance 0.1 -o fit --to " + json(target).dump();
   const Ended first = drape_ends(fit, folder);
-  const json result = json_of(folder / "fit/fit.json");
+  const json result = json_in(folder / "fit/fit.json");
   CHECK(result["reached"] == true);
   CHECK(result["factor"] == Approx(3).epsilon(0.01));
   CHECK(result["median"] == Approx(target).epsilon(1e-3));
@@ -51,7 +49,7 @@ TEST_CASE("a fit finds the factor that gave a drape coefficient, and resumes") {
 
   // The fitted experiment is the best sample's.
   drape_ends("run fit/fitted.yaml --no-report -o again", folder);
-  const json again = json_of(folder / "again/results.json")["methods"]["pcs"]["levels"][0];
+  const json again = json_in(folder / "again/results.json")["methods"]["pcs"]["levels"][0];
   CHECK(again["drape_coefficient"] == result["median"]);
 
   // The same command runs nothing again.
@@ -63,13 +61,13 @@ TEST_CASE("a fit finds the factor that gave a drape coefficient, and resumes") {
 
 TEST_CASE("a fit reports the median and the range over its starts") {
   const Scratch folder(specimen);
-  const Ended ended = drape_ends("fit e.yaml --by material.bending --to 45 -o fit", folder);
-  const json result = json_of(folder / "fit/fit.json");
+  const std::string shown = drape_ends("fit e.yaml --by material.bending --to 45 -o fit", folder).out;
+  const json result = json_in(folder / "fit/fit.json");
   CHECK(result["values"].size() == 3);
   CHECK(result["low"] < result["high"]);
   CHECK(result["median"] == result["values"][1]);
   CHECK(result["median"] == Approx(45).epsilon(0.01));
-  CHECK_THAT(ended.out, Catch::Contains(" in 3 of 3 starts)"));
+  CHECK_THAT(shown, Catch::Contains(" in 3 of 3 starts)"));
 }
 
 TEST_CASE("a fit that misses its target says what it saw, and keeps the nearest") {
@@ -77,7 +75,7 @@ TEST_CASE("a fit that misses its target says what it saw, and keeps the nearest"
   const Ended high = drape_ends("fit e.yaml --by material.bending --starts 1 --to 145 -o high", folder, 1);
   CHECK_THAT(high.err, Catch::Contains("error: drape_coefficient 145 is out of reach: factors from 1 to 1024 "
                                        "gave 3"));
-  CHECK(json_of(folder / "high/fit.json")["reached"] == false);
+  CHECK(json_in(folder / "high/fit.json")["reached"] == false);
   // Beyond a bound of the parameter.
   const Ended bound = drape_ends(
       "fit e.yaml --by material.poisson_ratio --set material.poisson_ratio=0.3 --starts 1 --to 90 -o bound",

@@ -18,7 +18,8 @@ using Json = nlohmann::json;
 
 namespace {
 
-const std::string small_sweep = "sweep " + folders::source() + "/tests/sweep/small_sweep.yaml ";
+const std::string small_sweep =
+    "sweep " + (folders::source() / "tests/sweep/small_sweep.yaml").string() + " ";
 
 /// Waits until the run that never ends makes steps.
 void wait_for_endless(Command& command, const Scratch& folder) {
@@ -31,21 +32,22 @@ void wait_for_endless(Command& command, const Scratch& folder) {
 /// A folder with two runs that converge at once and, between them, one that never does.
 void write_endless(const Scratch& folder) {
   folder.write("e.yaml", small_experiment());
-  folder.write("s.yaml",
-               "name: s\nbase: e.yaml\nset: {levels: 1}\nmethods: [newton]\nablation:\n  - {name: first}\n"
-               "  - {name: endless, set: {newton: {step_size: 1e-7, step_growth: 1, max_steps: 100000000}}}\n"
-               "  - {name: last, set: {refiner: midpoint}}\n");
+  folder.write(
+      "s.yaml",
+      coarsest_by_newton +
+          "ablation:\n  - {name: first}\n"
+          "  - {name: endless, set: {newton: {step_size: 1e-7, step_growth: 1, max_steps: 100000000}}}\n"
+          "  - {name: last, set: {refiner: midpoint}}\n");
 }
 
 }  // namespace
 
 TEST_CASE("24 runs give the same results with one worker and with two, and are not run again") {
   const Scratch folder;
-  const Ended one = drape_with(small_sweep + "--out one --workers 1", folder.path);
-  CHECK(one.exit_code == 0);
+  const Ended one = drape_ends(small_sweep + "--out one --workers 1", folder);
   CHECK_THAT(one.err, Contains("[24/24] refiner=midpoint,levels=2,step_growth=3, seed 3: converged after "));
   if (drape::core_count() >= 2) {
-    CHECK(drape_with(small_sweep + "--out two --workers 2", folder.path).exit_code == 0);
+    drape_ends(small_sweep + "--out two --workers 2", folder);
     const auto expected = outcome_of(folder / "one");
     CHECK(expected.size() == 24 * 2 + 12 * 2 + 12 * 4);  // energies by method; meshes by method and level
     CHECK((outcome_of(folder / "two") == expected));
@@ -57,10 +59,7 @@ TEST_CASE("24 runs give the same results with one worker and with two, and are n
   }
 
   const std::string before = text_of(folder / "one/sweep.json");
-  const Ended again = drape_with(small_sweep + "--out one", folder.path);
-  CHECK(again.exit_code == 0);
-  CHECK(again.err == "");
-  CHECK(again.out == one.out);
+  CHECK(shown_by(small_sweep + "--out one", folder.path) == one.out);
   CHECK(text_of(folder / "one/sweep.json") == before);
   const Json runs = runs_of(folder / "one");
   REQUIRE(runs.size() == 24);
@@ -88,8 +87,7 @@ TEST_CASE("24 runs give the same results with one worker and with two, and are n
 
   // A run can be repeated by hand from the file beside it.
   const std::string run = "one/" + runs[23]["folder"].get<std::string>();
-  CHECK(drape_with("run " + run + ".yaml --out by_hand --method all --quiet --no-report", folder.path)
-            .exit_code == 0);
+  drape_ends("run " + run + ".yaml --out by_hand --method all --quiet --no-report", folder);
   CHECK(text_of(folder / "by_hand/levels/pcs_l1.ply") == text_of(folder / (run + "/levels/pcs_l1.ply")));
 }
 
@@ -125,8 +123,7 @@ TEST_CASE("kill -9 loses only the active runs") {
     REQUIRE(command.wait().exit_code == 128 + SIGKILL);
   }
   const Json before = runs_of(folder / "cut");
-  const Ended ended = drape_with(small_sweep + "--out cut", folder.path);
-  CHECK(ended.exit_code == 0);
+  drape_ends(small_sweep + "--out cut", folder);
   CHECK((outcome_of(folder / "cut") == outcome_of(folder / "whole")));
   const Json after = runs_of(folder / "cut");
   const int workers = drape::core_count();
@@ -159,30 +156,28 @@ TEST_CASE("Ctrl-C stops the runs, which save their state, and the same command r
   CHECK(stopped[1]["status"] == "cancelled");
   CHECK(stopped[2]["status"] == "pending");
   CHECK(stopped[2]["starts"] == 0);
-  const Json results = Json::parse(text_of(folder / "out/runs/endless/seed_1/results.json"));
+  const Json results = json_in(folder / "out/runs/endless/seed_1/results.json");
   CHECK(results["methods"]["newton"]["status"] == "cancelled");
 
   // With fewer steps it ends, though not converged: those are results, and the exit code says so.
   folder.write("s.yaml", replaced(text_of(folder / "s.yaml"), "max_steps: 100000000", "max_steps: 3"));
-  const Ended on = drape_with("sweep s.yaml --out out", folder.path);
-  CHECK(on.exit_code == 1);
+  drape_ends("sweep s.yaml --out out", folder, 1);
   const Json after = runs_of(folder / "out");
   CHECK(after[0]["starts"] == 1);
   CHECK(after[1]["status"] == "not_converged");
   CHECK(after[1]["exit_code"] == 1);
   CHECK(after[1]["starts"] == 2);
   CHECK(after[2]["starts"] == 1);
-  CHECK(Json::parse(text_of(folder / "out/sweep.json"))["complete"] == true);
+  CHECK(json_in(folder / "out/sweep.json")["complete"] == true);
 }
 
 TEST_CASE("a failed run is listed with its error, does not stop the others, and is retried only on request") {
   const Scratch folder(small_experiment());
-  folder.write("s.yaml",
-               "name: s\nbase: e.yaml\nset: {levels: 1}\nmethods: [newton]\nablation:\n"
-               "  - {name: unheld, set: {pins: [{region: ball, point: [5, 5, 5]}]}}\n  - {name: fine}\n");
+  folder.write("s.yaml", coarsest_by_newton +
+                             "ablation:\n  - {name: unheld, set: {pins: [{region: ball, point: [5, 5, "
+                             "5]}]}}\n  - {name: fine}\n");
   const std::string error = "pin 0 (ball) selects no vertex of the coarsest level; widen its region";
-  const Ended ended = drape_with("sweep s.yaml --out out", folder.path);
-  CHECK(ended.exit_code == 1);
+  const Ended ended = drape_ends("sweep s.yaml --out out", folder, 1);
   CHECK_THAT(ended.out, Contains(error) && Contains("unheld") && Contains("failed"));
   CHECK_THAT(ended.err, Contains("; 1 failed") && Contains(error));
   Json runs = runs_of(folder / "out");
@@ -191,19 +186,16 @@ TEST_CASE("a failed run is listed with its error, does not stop the others, and 
   CHECK_THAT(runs[0]["error"].get<std::string>(), Contains(error));
   CHECK(runs[1]["status"] == "converged");
 
-  const Ended again = drape_with("sweep s.yaml --out out", folder.path);
-  CHECK(again.exit_code == 1);
-  CHECK_THAT(again.out, Contains(error));
+  CHECK_THAT(drape_ends("sweep s.yaml --out out", folder, 1).out, Contains(error));
   CHECK(runs_of(folder / "out")[0]["starts"] == 1);
-  const Ended retried = drape_with("sweep s.yaml --out out --retry-failed", folder.path);
-  CHECK(retried.exit_code == 1);
+  drape_ends("sweep s.yaml --out out --retry-failed", folder, 1);
   runs = runs_of(folder / "out");
   CHECK(runs[0]["starts"] == 2);
   CHECK(runs[1]["starts"] == 1);
   // Once its experiment is another, it is no longer the one that failed.
   folder.write("s.yaml",
                replaced(text_of(folder / "s.yaml"), "point: [5, 5, 5]", "point: [0, 0, 0], radius: 0.3"));
-  CHECK(drape_with("sweep s.yaml --out out", folder.path).exit_code == 0);
+  drape_ends("sweep s.yaml --out out", folder);
   CHECK(runs_of(folder / "out")[0]["starts"] == 3);
 }
 
@@ -222,8 +214,7 @@ TEST_CASE("a killed run has failed, with the name of the signal") {
         fs::read_symlink(entry.path() / "cwd", none) == fs::canonical(folder.path))
       kill(std::stoi(name), SIGKILL);
   }
-  const Ended ended = command.wait();
-  CHECK(ended.exit_code == 1);
+  CHECK(command.wait().exit_code == 1);
   const Json runs = runs_of(folder / "out");
   CHECK(runs[1]["status"] == "failed");
   CHECK(runs[1]["error"] == "ended by signal 9 (Killed)");
@@ -233,8 +224,7 @@ TEST_CASE("a killed run has failed, with the name of the signal") {
 TEST_CASE("a sweep that no longer fits its results is refused, and the results stay") {
   const Scratch folder(small_experiment());
   const std::string sweep =
-      "name: s\nbase: e.yaml\nset: {levels: 1}\nmethods: [newton]\nablation: [{name: a}, {name: b, set: "
-      "{refiner: midpoint}}]\n";
+      coarsest_by_newton + "ablation: [{name: a}, {name: b, set: {refiner: midpoint}}]\n";
   folder.write("s.yaml", sweep);
   drape_ends("sweep s.yaml --out out", folder);
   const std::string before = text_of(folder / "out/sweep.json");
@@ -260,14 +250,13 @@ TEST_CASE("a sweep that no longer fits its results is refused, and the results s
               ways + "out/runs/a/seed_1*\n");
   // What was added is run; what was there is not.
   folder.write("s.yaml", replaced(sweep, "{name: a}, ", "{name: a}, {name: c, levels: 2}, "));
-  CHECK(drape_with("sweep s.yaml --out out", folder.path).exit_code == 0);
+  drape_ends("sweep s.yaml --out out", folder);
   for (const Json& run : runs_of(folder / "out")) CHECK(run["starts"] == 1);
 }
 
 TEST_CASE("a foreign folder in the place of a run's stays") {
   const Scratch folder(small_experiment());
-  const std::string sweep =
-      "name: s\nbase: e.yaml\nset: {levels: 1}\nmethods: [newton]\nablation:\n  - {name: a}\n";
+  const std::string sweep = coarsest_by_newton + "ablation:\n  - {name: a}\n";
   folder.write("s.yaml", sweep);
   drape_ends("sweep s.yaml --out out", folder);
   fs::create_directories(folder / "out/runs/b/seed_1");
@@ -282,9 +271,8 @@ TEST_CASE("a foreign folder in the place of a run's stays") {
 TEST_CASE("runs that exceed the memory together run one after another, with a warning") {
   if (drape::core_count() < 2) return;
   const Scratch folder(small_experiment());
-  folder.write("s.yaml", "name: s\nbase: e.yaml\nset: {levels: 1}\nmethods: [newton]\nrepeats: 4\n");
-  const Ended ended = drape_with("sweep s.yaml --out out --workers 2 --memory-limit 0.001", folder.path);
-  CHECK(ended.exit_code == 0);
+  folder.write("s.yaml", coarsest_by_newton + "repeats: 4\n");
+  const Ended ended = drape_ends("sweep s.yaml --out out --workers 2 --memory-limit 0.001", folder);
   CHECK_THAT(ended.err, Contains("warning: base, seed 1 may need 0.1 GB where 0.0 GB are to be had; it runs "
                                  "alone\n"));
   double last_end = 0;
@@ -302,17 +290,14 @@ TEST_CASE("runs that exceed the memory together run one after another, with a wa
 TEST_CASE("a complete run without a final status keeps its results and is not repeated") {
   const Scratch folder(small_experiment());
   folder.write("s.yaml",
-               "name: s\nbase: e.yaml\nset: {levels: 1}\nmethods: [newton]\nablation:\n  - {name: a}\n"
-               "  - {name: b, set: {newton.max_steps: 2}}\n");
+               coarsest_by_newton + "ablation:\n  - {name: a}\n  - {name: b, set: {newton.max_steps: 2}}\n");
   drape_ends("sweep s.yaml --out out", folder, 1);
   for (const std::string name : {"a", "b"}) {
     const std::string status = "out/runs/" + name + "/seed_1.status.json";
     const std::string word = name == "a" ? "converged" : "not_converged";
     folder.write(status, replaced(text_of(folder / status), "\"" + word + "\"", "\"running\""));
   }
-  const Ended again = drape_with("sweep s.yaml --out out", folder.path);
-  CHECK(again.exit_code == 1);
-  CHECK(again.err == "");
+  CHECK(drape_ends("sweep s.yaml --out out", folder, 1).err == "");
   const Json runs = runs_of(folder / "out");
   CHECK(runs[0]["status"] == "converged");
   CHECK(runs[1]["status"] == "not_converged");
@@ -334,7 +319,7 @@ TEST_CASE("two tasks for one run, as after a daemon's death, run it once") {
   Command first(task, folder.path), second(task, folder.path);
   CHECK(first.wait().exit_code == 0);
   CHECK(second.wait().exit_code == 0);
-  CHECK(drape_with("sweep-job out", folder.path).exit_code == 0);  // collects
+  drape_ends("sweep-job out", folder);  // collects
   const Json runs = runs_of(folder / "out");
   CHECK(runs[0]["status"] == "converged");
   CHECK(runs[0]["starts"] == 1);

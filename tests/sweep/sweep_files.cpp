@@ -16,11 +16,9 @@ namespace {
 std::string said_of(const std::string& sweep, const std::string& arguments = "") {
   const Scratch folder(small_experiment());
   folder.write("s.yaml", "name: s\nbase: e.yaml\n" + sweep);
-  const Ended ended = drape_with("sweep s.yaml --out out " + arguments, folder.path);
-  CHECK(ended.exit_code == 2);
-  CHECK(ended.out == "");
+  const std::string said = refused_by("sweep s.yaml --out out " + arguments, folder.path);
   CHECK(!fs::exists(folder / "out"));
-  return ended.err;
+  return said;
 }
 
 }  // namespace
@@ -161,9 +159,8 @@ TEST_CASE("conflicting options, and a foreign folder") {
   folder.write("s.yaml", "name: s\nbase: e.yaml\nset: {levels: 1}\n");
   fs::create_directory(folder / "mine");
   folder.write("mine/notes", "mine");
-  const Ended mine = drape_with("sweep s.yaml --out mine", folder.path);
-  CHECK(mine.exit_code == 2);
-  CHECK(mine.err == "error: mine: holds notes, and no sweep; name another folder with --out\n");
+  CHECK(refused_by("sweep s.yaml --out mine", folder.path) ==
+        "error: mine: holds notes, and no sweep; name another folder with --out\n");
   CHECK(drape_with("sweep s.yaml --out s.yaml", folder.path).err ==
         "error: s.yaml: cannot make the sweep's folder (Not a directory); name another with --out\n");
   drape_ends("sweep s.yaml --out out", folder);
@@ -174,15 +171,13 @@ TEST_CASE("conflicting options, and a foreign folder") {
 
 TEST_CASE("--dry-run validates and lists without writing") {
   const Scratch folder;
-  const std::string sweep = folders::source() + "/tests/sweep/small_sweep.yaml";
-  const Ended ended = drape_with("sweep " + sweep + " --dry-run", folder.path);
-  CHECK(ended.exit_code == 0);
-  CHECK(ended.err == "");
-  CHECK_THAT(ended.out, Catch::Matchers::StartsWith(
-                            "sweep small_sweep: 24 runs in results/small_sweep, each with 1 thread\n"
-                            "pending    runs/refiner=loop,levels=1,step_growth=1.5/seed_1  levels 1, "
-                            "about 64 vertices, 0.1 GB  {\"refiner\":\"loop\",\"levels\":1,"
-                            "\"newton.step_growth\":1.5}\n"));
+  const std::string sweep = folders::source() / "tests/sweep/small_sweep.yaml";
+  CHECK_THAT(
+      shown_by("sweep " + sweep + " --dry-run", folder.path),
+      Catch::Matchers::StartsWith("sweep small_sweep: 24 runs in results/small_sweep, each with 1 thread\n"
+                                  "pending    runs/refiner=loop,levels=1,step_growth=1.5/seed_1  levels 1, "
+                                  "about 64 vertices, 0.1 GB  {\"refiner\":\"loop\",\"levels\":1,"
+                                  "\"newton.step_growth\":1.5}\n"));
   CHECK(fs::is_empty(folder.path));
 }
 
@@ -191,15 +186,13 @@ TEST_CASE("--most-levels limits the levels of experiments") {
   folder.write("s.yaml",
                "name: s\nbase: e.yaml\nablation: [{name: few, levels: 1}, {name: many, levels: 3}]\n");
   const auto plan = [&](const std::string& option) {
-    const Ended ended = drape_with("sweep s.yaml --dry-run" + option, folder.path);
-    CHECK(ended.err == "");
-    return ended.out;
+    return shown_by("sweep s.yaml --dry-run" + option, folder.path);
   };
   using Catch::Matchers::Contains;
   CHECK_THAT(plan(""), Contains("few/seed_1  levels 1,") && Contains("many/seed_1  levels 3,"));
   CHECK_THAT(plan(" --most-levels 2"),
              Contains("few/seed_1  levels 1,") && Contains("many/seed_1  levels 2,"));
-  CHECK(drape_with("sweep s.yaml --most-levels 2 --out out", folder.path).exit_code == 0);
+  drape_ends("sweep s.yaml --most-levels 2 --out out", folder);
   CHECK_THAT(text_of(folder / "out/runs/many/seed_1/config.yaml"), Contains("\nlevels: 2\n"));
 }
 
@@ -210,10 +203,9 @@ TEST_CASE("runs of chosen methods keep the reference unless it is of another met
                "  - name: its own\n    set: {reference: {method: cascadic, force_tolerance: 1e-4}}\n"
                "  - name: lowest\n    set: {reference: lowest}\n"
                "  - name: another\n    set: {reference: newton}\n");
-  CHECK(drape_with("sweep s.yaml --out out", folder.path).exit_code == 0);
+  drape_ends("sweep s.yaml --out out", folder);
   const auto reference = [&](const std::string& variation) {
-    const auto json =
-        nlohmann::json::parse(text_of(folder / ("out/runs/" + variation + "/seed_1/results.json")));
+    const auto json = json_in(folder / ("out/runs/" + variation + "/seed_1/results.json"));
     return json.contains("reference") ? json["reference"].value("method", "") : std::string("none");
   };
   CHECK(reference("its_own") == "cascadic");
@@ -223,8 +215,7 @@ TEST_CASE("runs of chosen methods keep the reference unless it is of another met
 
 TEST_CASE("a setting may be a whole map or list, and its files are relative to the sweep's own") {
   const Scratch folder(small_experiment());
-  fs::create_directory(folder / "sweeps");
-  fs::create_directory(folder / "sweeps/meshes");
+  fs::create_directories(folder / "sweeps/meshes");
   folder.write("sweeps/meshes/sheet.off", "OFF\n4 2 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n3 0 1 2\n3 0 2 3\n");
   folder.write("sweeps/s.yaml",
                "name: s\nbase: ../e.yaml\nset: {levels: 2}\nmethods: [newton]\nablation:\n"
@@ -232,14 +223,13 @@ TEST_CASE("a setting may be a whole map or list, and its files are relative to t
                "0, -5]}]\n"
                "      methods: {newton: {newton: {step_size: 0.25}}}\n      reference: newton\n"
                "  - name: mesh\n    set: {cloth: {shape: file, file: meshes/sheet.off}}\n");
-  const Ended ended = drape_with("sweep sweeps/s.yaml --out out", folder.path);
-  CHECK(ended.exit_code == 0);
+  drape_ends("sweep sweeps/s.yaml --out out", folder);
   const std::string other = text_of(folder / "out/runs/other_energies/seed_1/config.yaml");
   for (const char* line : {"- type: stvk\n", "acceleration: [0, 0, -5]\n", "step_size: 0.25\n"})
     CHECK_THAT(other, Catch::Matchers::Contains(line));
   CHECK(other.find("hinge") == std::string::npos);
   CHECK(fs::exists(folder / "out/runs/mesh/seed_1/levels/newton_l1.ply"));
-  const auto json = nlohmann::json::parse(text_of(folder / "out/sweep.json"));
+  const auto json = json_in(folder / "out/sweep.json");
   CHECK(json["complete"] == true);
   CHECK(json["runs"][0]["settings"]["energies"][1]["acceleration"][2] == -5);
   CHECK(json["runs"][1]["folder"] == "runs/mesh/seed_1");

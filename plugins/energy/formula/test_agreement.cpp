@@ -202,7 +202,7 @@ TEST_CASE("every law converges under pcs, cascadic and newton") {
   auto laws = more_conformance_parameters(*entry);
   laws.emplace_back("conformance", conformance_parameters(*entry));
   REQUIRE(laws.size() == 6);
-  std::ifstream file(std::filesystem::path(folders::source()) / "plugins/energy/formula/README.md");
+  std::ifstream file(folders::source() / "plugins/energy/formula/README.md");
   const std::string page = without_spaces_and_comments({std::istreambuf_iterator<char>(file), {}});
   for (const auto& [name, parameters] : laws) {
     INFO(name);

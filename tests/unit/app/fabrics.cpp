@@ -210,11 +210,9 @@ TEST_CASE("fabrics: numbers that hide each other, or that no cloth has, are refu
 
 TEST_CASE("drape fabric prints what a laboratory measures, and lists the table") {
   const Scratch folder;
-  const Ended list = drape_with("fabric", folder.path);
-  CHECK(list.exit_code == 0);
+  const Ended list = drape_ends("fabric", folder);
   CHECK(list.out.find("11oz-black-denim      Wang et al. 2011") != std::string::npos);
-  const Ended sheet = drape_with("fabric gray-interlock", folder.path);
-  CHECK(sheet.exit_code == 0);
+  const Ended sheet = drape_ends("fabric gray-interlock", folder);
   CHECK(sheet.out.find("187 g/m²") != std::string::npos);
   // c = (23.19e-6 / (0.187 · 9.81))^⅓, in mm
   CHECK(sheet.out.find("bending length c             23.3") != std::string::npos);
@@ -233,7 +231,6 @@ TEST_CASE("drape fabric prints what a laboratory measures, and lists the table")
   has(cotton, "thickness             0.497 mm\n");
   has(cotton, "weft and bias not measured: as of an isotropic cloth\n");
   has(drape_with("fabric wool-lycra", folder.path), "N/m\n");
-  const Ended wrong = drape_with("fabric denim", folder.path);
-  CHECK(wrong.exit_code == 2);
+  const Ended wrong = drape_ends("fabric denim", folder, 2);
   CHECK(wrong.err.find("unknown fabric \"denim\"") != std::string::npos);
 }

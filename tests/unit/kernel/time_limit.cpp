@@ -13,13 +13,12 @@ using Catch::Matchers::Contains, Catch::Matchers::EndsWith, Catch::Matchers::Sta
 
 namespace {
 
-const std::string burn = "while :; do :; done";
+const std::string burn = "while :; do :; done", drape_limited = (folders::tests() / "drape_limited").string();
 
 /// How a command ends as a test of ctest's, in limits of processor time and of idleness.
 Ended limited(const std::string& command, const std::string& cpu, const std::string& idle) {
   const Scratch folder;
-  return Command("exec env -u DRAPE_TEST_SLOWDOWN " + folders::tests() + "/drape_limited " + cpu + " " +
-                     idle + " " + command,
+  return Command("exec env -u DRAPE_TEST_SLOWDOWN " + drape_limited + " " + cpu + " " + idle + " " + command,
                  folder.path)
       .wait();
 }
@@ -54,8 +53,7 @@ TEST_CASE("a command that hangs is found") {
 TEST_CASE("what a test leaves running is ended, and makes it fail") {
   const Scratch folder;
   const auto end_of = [&](const std::string& command) {
-    return Command("exec " + folders::tests() + "/drape_limited 60 60 sh -c '" + command + "'", folder.path)
-        .wait();
+    return Command("exec " + drape_limited + " 60 60 sh -c '" + command + "'", folder.path).wait();
   };
   for (const std::string daemon : {"sleep 1000 &", "setsid sleep 1000 &", "(setsid sleep 1000 &) &"}) {
     INFO(daemon);
@@ -78,8 +76,9 @@ TEST_CASE("a command within its limit ends as without") {
 }
 
 TEST_CASE("a wait in Python has the limits of the time that its test takes") {
-  const Ended ended = limited("python3 -c 'import sys; sys.path.insert(0, \"" + folders::source() +
-                                  "/tests/support\"); import waiting; "
+  const Ended ended = limited("python3 -c 'import sys; sys.path.insert(0, \"" +
+                                  (folders::source() / "tests/support").string() +
+                                  "\"); import waiting; "
                                   "waiting.wait_until(\"the thaw\", lambda: False, idle=0.5)'",
                               "60", "60");
   CHECK(ended.exit_code == 1);

@@ -37,7 +37,7 @@ TEST_CASE("a name stands for one type in the library and the plugins together") 
   // all.
   std::map<std::string, std::vector<std::string>> files_of;
   for (const char* folder : {"core", "plugins"})
-    for (const auto& entry : fs::recursive_directory_iterator(fs::path(folders::source()) / folder))
+    for (const auto& entry : fs::recursive_directory_iterator(folders::source() / folder))
       if (entry.path().extension() == ".cpp" || entry.path().extension() == ".h")
         add_types(entry.path(), files_of);
   CHECK(files_of.count("drape::TriangleMesh") == 1);

@@ -19,7 +19,7 @@ namespace {
 std::string sources() {
   std::string all;
   for (const char* folder : {"core", "plugins"})
-    for (const auto& entry : fs::recursive_directory_iterator(fs::path(folders::source()) / folder))
+    for (const auto& entry : fs::recursive_directory_iterator(folders::source() / folder))
       if (entry.path().extension() == ".cpp" || entry.path().extension() == ".h")
         all += pages::text_of(entry.path());
   return std::regex_replace(all, std::regex("\"\\s*\n\\s*\""), "");
@@ -59,7 +59,7 @@ std::set<std::string> fragments_of(const fs::path& page) {
 }  // namespace
 
 TEST_CASE("docs/guide/troubleshooting.md speaks of messages that there are") {
-  const std::string page = pages::text_of(fs::path(folders::source()) / "docs/guide/troubleshooting.md");
+  const std::string page = pages::text_of(folders::source() / "docs/guide/troubleshooting.md");
   const std::string code = sources();
   const std::regex row("\n\\| `([^`]+)` \\|");
   int rows = 0;
@@ -71,7 +71,7 @@ TEST_CASE("docs/guide/troubleshooting.md speaks of messages that there are") {
 }
 
 TEST_CASE("docs/reference/exit-codes.md has every code as `drape --help` does") {
-  const std::string page = pages::text_of(fs::path(folders::source()) / "docs/reference/exit-codes.md");
+  const std::string page = pages::text_of(folders::source() / "docs/reference/exit-codes.md");
   for (const drape::ExitCode& code : drape::exit_codes) {
     INFO(code.code);
     CHECK(page.find("\n| `" + std::to_string(code.code) + "` | " + code.description + " |\n") !=
@@ -125,7 +125,7 @@ TEST_CASE("pages that sources and scripts name are there, with the sections that
 }
 
 TEST_CASE("docs/README.md is the map of every page, and a page shows every picture") {
-  const fs::path docs = fs::path(folders::source()) / "docs";
+  const fs::path docs = folders::source() / "docs";
   const std::string map = pages::text_of(docs / "README.md");
   std::string all;
   for (const fs::path& page : pages::documents()) all += pages::text_of(page);

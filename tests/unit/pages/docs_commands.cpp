@@ -52,7 +52,7 @@ std::vector<std::string> words_of(const std::string& line) {
 /// The sources of the `drape` command.
 std::string cli_sources() {
   std::string all;
-  for (const auto& entry : fs::directory_iterator(fs::path(folders::source()) / "core/app/cli"))
+  for (const auto& entry : fs::directory_iterator(folders::source() / "core/app/cli"))
     all += pages::text_of(entry.path());
   return all;
 }
@@ -98,7 +98,7 @@ TEST_CASE("commands in the pages name commands, options and files that there are
 }
 
 TEST_CASE("docs/reference/command.md lists every command") {
-  const std::string page = pages::text_of(fs::path(folders::source()) / "docs/reference/command.md");
+  const std::string page = pages::text_of(folders::source() / "docs/reference/command.md");
   const std::string cli = cli_sources();
   const std::regex command("commands\\s*\\.add(?:_with_plugins)?\\(\\s*\"([a-z0-9-]+)\"");
   int commands = 0;

@@ -27,7 +27,7 @@ std::vector<std::string> folders_of_core() {
   std::vector<std::string> order;
   std::string library;
   std::smatch match;
-  for (const std::string& line : lines_of(fs::path(folders::source()) / "core/README.md")) {
+  for (const std::string& line : lines_of(folders::source() / "core/README.md")) {
     if (std::regex_match(line, match, heading)) library = match[1];
     if (std::regex_match(line, match, row)) order.push_back("core/" + library + "/" + match[1].str());
   }
@@ -36,7 +36,7 @@ std::vector<std::string> folders_of_core() {
 
 std::vector<fs::path> sources_in(const std::string& folder) {
   std::vector<fs::path> files;
-  for (const auto& entry : fs::recursive_directory_iterator(fs::path(folders::source()) / folder))
+  for (const auto& entry : fs::recursive_directory_iterator(folders::source() / folder))
     if (entry.path().extension() == ".h" || entry.path().extension() == ".cpp")
       files.push_back(entry.path().lexically_relative(folders::source()));
   return files;
@@ -47,7 +47,7 @@ std::vector<std::string> includes_of(const fs::path& file) {
   static const std::regex include("#include \"([^\"]+)\"");
   std::vector<std::string> included;
   std::smatch match;
-  for (const std::string& line : lines_of(fs::path(folders::source()) / file))
+  for (const std::string& line : lines_of(folders::source() / file))
     if (std::regex_match(line, match, include)) included.push_back(match[1]);
   return included;
 }
@@ -64,7 +64,7 @@ TEST_CASE("the tables of core/README.md name every folder of the core") {
   CHECK(order.size() >= 14);
   for (const std::string& folder : order) {
     CAPTURE(folder);
-    CHECK(fs::is_directory(fs::path(folders::source()) / folder));
+    CHECK(fs::is_directory(folders::source() / folder));
   }
   for (const char* library : {"core/kernel", "core/numerics", "core/app"})
     for (const fs::path& file : sources_in(library)) {
@@ -104,7 +104,7 @@ TEST_CASE(
   for (const char* part : {"core/kernel", "core/numerics"})
     for (const fs::path& file : sources_in(part)) {
       if (file.extension() != ".h" || file.filename() == "cholmod_context.h") continue;
-      for (const std::string& line : lines_of(fs::path(folders::source()) / file))
+      for (const std::string& line : lines_of(folders::source() / file))
         if (std::regex_match(line, match, outside)) {
           CAPTURE(file, line);
           CHECK((match[1] == "Eigen/" || match[1] == "immintrin.h>"));
@@ -115,7 +115,7 @@ TEST_CASE(
 TEST_CASE("the kernel stays small, and no folder of the core has more files than a reader takes in") {
   int lines = 0;
   for (const fs::path& file : sources_in("core/kernel"))
-    lines += static_cast<int>(lines_of(fs::path(folders::source()) / file).size());
+    lines += static_cast<int>(lines_of(folders::source() / file).size());
   CHECK(lines <= 4200);
   for (const std::string& folder : folders_of_core()) {
     if (folder.rfind("core/app/", 0) == 0) continue;

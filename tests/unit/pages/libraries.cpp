@@ -58,9 +58,7 @@ std::vector<std::string> own_symbols_of(const fs::path& library) {
   return names;
 }
 
-fs::path library(const std::string& name) {
-  return fs::path(folders::commands()).parent_path() / "lib" / name;
-}
+fs::path library(const std::string& name) { return folders::commands().parent_path() / "lib" / name; }
 
 }  // namespace
 

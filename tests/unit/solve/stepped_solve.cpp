@@ -13,8 +13,7 @@ namespace {
 
 ConfigNode small_config() {
   ConfigErrors errors;
-  ConfigNode source =
-      read_yaml(std::filesystem::path(folders::source()) / "tests/configs/data/small.yaml", errors);
+  ConfigNode source = read_yaml(folders::source() / "tests/configs/data/small.yaml", errors);
   throw_errors(errors);
   return source;
 }
