@@ -3,7 +3,7 @@
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 
-#include "core/kernel/files/string_utils.h"
+#include "core/app/files/csv.h"
 #include "core/kernel/interfaces/level.h"
 #include "core/numerics/mesh_files/io.h"
 #include "core/numerics/patterns/generate.h"
@@ -25,14 +25,6 @@ std::string said_of_contact(const std::string& experiment, const std::string& ar
   CHECK(!fs::exists(folder / "out"));
   CHECK(refused_by("check e.yaml " + arguments, folder.path) == said);
   return said;
-}
-
-std::vector<std::vector<std::string>> csv_rows_of(const fs::path& csv) {
-  std::vector<std::vector<std::string>> rows;
-  std::istringstream lines(text_of(csv));
-  for (std::string line; std::getline(lines, line);) rows.push_back(drape::split(line, ','));
-  rows.erase(rows.begin());
-  return rows;
 }
 
 const std::string quiet = " --quiet --no-report --threads 1 ";
@@ -109,14 +101,13 @@ TEST_CASE("a run with contact has contacts, gaps and intersections in its result
     CHECK((method["levels"][1]["seconds_by_phase"].contains("refinement")) == (name != "newton"));
   }
   int near = 0, far = 0;
-  for (const auto& row : csv_rows_of(folder / "out/iterations.csv")) {
-    REQUIRE(row.size() == 16);
-    CHECK(row[13] == "0");
-    REQUIRE(!row[11].empty());
-    const bool any = std::stoi(row[11]) > 0;
+  const drape::Csv rows(folder / "out/iterations.csv");
+  for (std::size_t k = 0; k < rows.size(); ++k) {
+    CHECK(rows.text(k, "intersections") == "0");
+    const bool any = rows.number(k, "contacts").value() > 0;
     (any ? near : far) += 1;
-    CHECK(row[12].empty() == !any);
-    if (any) CHECK(std::stod(row[12]) < 1e-3);
+    CHECK(rows.text(k, "smallest_gap").empty() == !any);
+    if (any) CHECK(rows.number(k, "smallest_gap").value() < 1e-3);
   }
   CHECK(near > 10);
   CHECK(far > 0);  // the first steps, in the air
@@ -149,7 +140,9 @@ TEST_CASE("intersections are counted at the end of each level, or after every st
   const Scratch folder(contact_experiment());
   const std::string run = "run e.yaml --out out --method newton --levels 1" + quiet;
   drape_ends(run, folder);
-  for (const auto& row : csv_rows_of(folder / "out/iterations.csv")) CHECK(row[13] == "");
+  const drape::Csv rows(folder / "out/iterations.csv");
+  REQUIRE(rows.size() > 0);
+  for (std::size_t k = 0; k < rows.size(); ++k) CHECK(rows.text(k, "intersections") == "");
   CHECK(json_in(folder / "out/results.json")["methods"]["newton"]["levels"][0]["intersections"] == 0);
 }
 
@@ -225,7 +218,8 @@ TEST_CASE("a result with intersections is infeasible, and the run did not succee
     }
   }
   std::string counts;
-  for (const auto& row : csv_rows_of(folder / "out/iterations.csv")) counts += row[13];
+  const drape::Csv rows(folder / "out/iterations.csv");
+  for (std::size_t k = 0; k < rows.size(); ++k) counts += rows.text(k, "intersections");
   CHECK_THAT(counts, Catch::StartsWith("0") && Contains("01"));
   CHECK_THAT(text_of(folder / "out/log.jsonl"),
              Contains("\"event\":\"intersection\"") && Contains(" and floor: plane at ("));

@@ -4,8 +4,8 @@
 
 #include <catch2/catch.hpp>
 
+#include "core/app/files/csv.h"
 #include "core/app/files/snapshot_file.h"
-#include "core/kernel/files/string_utils.h"
 #include "core/numerics/mesh_files/io.h"
 #include "tests/support/command.h"
 #include "tests/support/page_data.h"
@@ -16,25 +16,6 @@ namespace fs = std::filesystem;
 using Json = nlohmann::json;
 
 namespace {
-
-using Row = std::map<std::string, std::string>;
-
-std::vector<Row> rows_of(const fs::path& csv) {
-  std::istringstream lines(text_of(csv));
-  std::vector<std::string> names;
-  std::vector<Row> rows;
-  for (std::string line; std::getline(lines, line);) {
-    const std::vector<std::string> cells = split(line, ',');
-    if (names.empty()) {
-      names = cells;
-      continue;
-    }
-    REQUIRE(cells.size() == names.size());
-    for (std::size_t k = 0; k < cells.size(); ++k)
-      (k == 0 ? rows.emplace_back() : rows.back())[names[k]] = cells[k];
-  }
-  return rows;
-}
 
 struct Loaded {
   Scratch folder;
@@ -84,38 +65,6 @@ TEST_CASE("a state has no error against itself; a moved one has the shift over t
   CHECK(error["energy_gap"].value() == Approx(lifted / Loaded::released).epsilon(1e-6));
 }
 
-TEST_CASE("errors do not depend on where the scene stands or which way it faces") {
-  const Scratch folder(small_experiment());
-  const auto errors_of = [&](const std::string& name, const std::string& start) {
-    drape_ends("run e.yaml --out " + name +
-                   " --method pcs,newton --threads 1 --quiet --no-report"
-                   " --set newton.force_tolerance=1e-8 --set reference=newton --set 'start=" +
-                   start + "'",
-               folder);
-    return rows_of(folder.path / name / "errors.csv");
-  };
-  // Both methods' last states; those on the way depend on round-off.
-  const auto last_of = [](const std::vector<Row>& rows, const std::string& method, const std::string& level) {
-    Row last;
-    for (const Row& r : rows)
-      if (r.at("method") == method && r.at("level") == level) last = r;
-    REQUIRE(!last.empty());
-    return last;
-  };
-  const std::vector<Row> here = errors_of("here", "{scale: [0.9, 0.9, 1], perturbation: 1e-3}");
-  const std::vector<Row> there = errors_of(
-      "there", "{scale: [0.9, 0.9, 1], perturbation: 1e-3, rotate: [0, 0, 90], translate: [3, -2, 10]}");
-  for (const char* method : {"pcs", "newton"})
-    for (const char* level : {"0", "1"})
-      for (const char* target : {"own_", "reference_"})
-        for (const char* measure : {"rms", "hausdorff", "energy_gap"}) {
-          INFO(method << " level " << level << " " << target << measure);
-          const double a = std::stod(last_of(here, method, level).at(std::string(target) + measure));
-          const double b = std::stod(last_of(there, method, level).at(std::string(target) + measure));
-          CHECK(b == Approx(a).epsilon(1e-3).margin(1e-6));
-        }
-}
-
 TEST_CASE("a run writes snapshots and errors, against its own end and a tighter reference") {
   const Scratch folder(small_experiment());
   const std::string reference = " --set reference.force_tolerance=1e-7";
@@ -123,7 +72,7 @@ TEST_CASE("a run writes snapshots and errors, against its own end and a tighter 
   const Json all = json_in(folder / "out/results.json");
   CHECK(all["reference"]["status"] == "converged");
   CHECK(all["reference"]["force_residual"].get<double>() <= 1e-7);
-  const std::vector<Row> rows = rows_of(folder / "out/errors.csv");
+  const Csv rows(folder / "out/errors.csv");
   std::size_t row = 0;
   for (const std::string method : {"pcs", "cascadic", "newton"}) {
     double flops = 0;
@@ -147,30 +96,30 @@ TEST_CASE("a run writes snapshots and errors, against its own end and a tighter 
       double seconds = 0;
       for (std::size_t k = 0; k < count; ++k, ++row) {
         REQUIRE(row < rows.size());
-        const Row& r = rows[row];
-        CHECK(r.at("method") == method);
-        CHECK(r.at("level") == std::to_string(l));
-        CHECK(r.at("iteration") == snapshots["iterations"][k].dump());
-        CHECK(r.at("vertices") == std::to_string(vertices));
-        CHECK(std::stod(r.at("seconds")) >= seconds);
-        seconds = std::stod(r.at("seconds"));
+        const auto number = [&](const char* column) { return rows.number(row, column).value(); };
+        CHECK(rows.text(row, "method") == method);
+        CHECK(number("level") == l);
+        CHECK(number("iteration") == snapshots["iterations"][k]);
+        CHECK(number("vertices") == vertices);
+        CHECK(number("seconds") >= seconds);
+        seconds = number("seconds");
         for (const char* column :
              {"own_rms", "own_hausdorff", "own_d_H_fit", "own_silhouette_mismatch", "own_energy_gap",
               "reference_rms", "reference_hausdorff", "reference_d_H_fit"})
-          CHECK(std::stod(r.at(column)) >= 0);
+          CHECK(number(column) >= 0);
         if (k + 1 < count) continue;
-        CHECK(std::stod(r.at("flops")) == Approx(flops));
-        CHECK(r.at("iterations") == std::to_string(iterations));
+        CHECK(number("flops") == Approx(flops));
+        CHECK(number("iterations") == iterations);
         const bool end = l == 1;
-        CHECK((std::stod(r.at("own_rms")) == 0) == end);
-        CHECK((std::stod(r.at("own_energy_gap")) == 0) == end);
-        CHECK(std::stod(r.at("reference_rms")) > 0);
+        CHECK((number("own_rms") == 0) == end);
+        CHECK((number("own_energy_gap") == 0) == end);
+        CHECK(number("reference_rms") > 0);
       }
     }
   }
   CHECK(row == rows.size());
   // The last state of the reference's method is on the way to the reference.
-  CHECK(std::stod(rows.back().at("reference_rms")) < 1e-2);
+  CHECK(rows.number(row - 1, "reference_rms").value() < 1e-2);
 
   SECTION("and another run takes the reference from its folder") {
     drape_ends(
@@ -178,10 +127,10 @@ TEST_CASE("a run writes snapshots and errors, against its own end and a tighter 
         "reference='{file: out}'",
         folder);
     CHECK(text_of(folder / "next/reference.ply") == text_of(folder / "out/reference.ply"));
-    const std::vector<Row> again = rows_of(folder / "next/errors.csv");
+    const Csv again(folder / "next/errors.csv");
     REQUIRE(again.size() == rows.size());
     for (std::size_t k = 0; k < rows.size(); ++k)
-      CHECK(again[k].at("reference_rms") == rows[k].at("reference_rms"));
+      CHECK(again.text(k, "reference_rms") == rows.text(k, "reference_rms"));
     // Its saved config names the copy in its own folder.
     drape_ends("check next/config.yaml", folder);
   }
@@ -199,7 +148,7 @@ TEST_CASE("every method's own interpolation prolongs its states") {
   for (const Override& o : changed) command += " --set '" + o.key + "=" + o.value + "'";
   drape_ends(command, folder);
   const Json all = json_in(folder / "out/results.json")["methods"];
-  const std::vector<Row> rows = rows_of(folder / "out/errors.csv");
+  const Csv rows(folder / "out/errors.csv");
   const auto value_of = [&](const Positions& x, const Positions& target, const std::string& name) {
     for (const auto& [metric_name, metric] : small.experiment->metrics)
       if (metric->scope() == MetricScope::pair)
@@ -233,9 +182,10 @@ TEST_CASE("every method's own interpolation prolongs its states") {
               Approx(value_of(small.scene->starts[2], end, name)).epsilon(1e-6));
       }
     }
-    for (const Row& row : rows)
-      if (row.at("method") == method && row.at("level") == "0")
-        CHECK(std::stod(row.at("own_rms")) == Approx(value_of(prolonged, end, "distance_rms")).epsilon(1e-5));
+    for (std::size_t k = 0; k < rows.size(); ++k)
+      if (rows.text(k, "method") == method && rows.text(k, "level") == "0")
+        CHECK(rows.number(k, "own_rms").value() ==
+              Approx(value_of(prolonged, end, "distance_rms")).epsilon(1e-5));
   }
 }
 
@@ -287,10 +237,12 @@ TEST_CASE("a method that does not converge has errors against the reference alon
   drape_ends("run e.yaml --out out --method all --quiet --no-report --set methods.pcs.newton.max_steps=3",
              folder, 1);
   int pcs = 0;
-  for (const Row& row : rows_of(folder / "out/errors.csv")) {
-    CHECK(row.at("own_rms").empty() == (row.at("method") == "pcs"));
-    CHECK(!row.at("reference_rms").empty());
-    pcs += row.at("method") == "pcs";
+  const Csv rows(folder / "out/errors.csv");
+  for (std::size_t k = 0; k < rows.size(); ++k) {
+    const bool is_pcs = rows.text(k, "method") == "pcs";
+    CHECK(rows.number(k, "own_rms").has_value() == !is_pcs);
+    CHECK(rows.number(k, "reference_rms").has_value());
+    pcs += is_pcs;
   }
   CHECK(pcs > 0);
 }
