@@ -12,8 +12,8 @@
 #include "tests/support/command.h"
 #include "tests/support/drum.h"
 #include "tests/support/folders.h"
-#include "tests/support/registry.h"
 #include "tests/support/sheets.h"
+#include "tests/support/solve.h"
 
 using namespace drape;
 namespace fs = std::filesystem;
@@ -85,20 +85,6 @@ void check_equal(const fs::path& folder, const fs::path& expected) {
     else
       CHECK((a.at(name) == bytes));  // not shown
   }
-}
-
-Experiment experiment_in(const fs::path& file, const Overrides& overrides = {}) {
-  ConfigErrors errors;
-  auto experiment = read_experiment(file, overrides, test_registry(), errors);
-  throw_errors(errors);
-  return std::move(*experiment);
-}
-
-std::unique_ptr<Scene> scene_of(const Experiment& experiment) {
-  ConfigErrors errors;
-  auto scene = build_scene(experiment, errors);
-  throw_errors(errors);
-  return scene;
 }
 
 RunOptions silent(const fs::path& out) {

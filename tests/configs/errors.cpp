@@ -9,7 +9,7 @@
 #include "core/numerics/mesh_files/io.h"
 #include "tests/support/command.h"
 #include "tests/support/page_data.h"
-#include "tests/support/registry.h"
+#include "tests/support/solve.h"
 
 using namespace drape;
 namespace fs = std::filesystem;
@@ -17,24 +17,14 @@ using Json = nlohmann::json;
 
 namespace {
 
-struct Loaded {
-  Scratch folder;
-  std::optional<Experiment> experiment;
-  std::unique_ptr<Scene> scene;
-
-  explicit Loaded(const Overrides& overrides = {}) {
-    folder.write("e.yaml", small_experiment());
-    ConfigErrors errors;
-    experiment = read_experiment(folder / "e.yaml", overrides, test_registry(), errors);
-    if (errors.empty()) scene = build_scene(*experiment, errors);
-    throw_errors(errors);
-  }
+struct Loaded : Solved {
+  explicit Loaded(const Overrides& overrides = {}) : Solved(scene_from(small_experiment(), overrides)) {}
   static constexpr double released = 2;  ///< from the start to the target [J]
   /// By measure.
   std::map<std::string, std::optional<double>> error(const Positions& x, const Positions& target) const {
-    const std::vector<ErrorMeasure> measures = error_measures(declared_metrics(experiment->metrics));
+    const std::vector<ErrorMeasure> measures = error_measures(declared_metrics(experiment.metrics));
     const StateError values =
-        state_error(measures, *experiment, *scene, x, energy(x), {target, energy(target), released},
+        state_error(measures, experiment, *scene, x, energy(x), {target, energy(target), released},
                     [](const std::string& f) { FAIL(f); });
     REQUIRE(values.size() == measures.size());
     std::map<std::string, std::optional<double>> error;
@@ -150,7 +140,7 @@ TEST_CASE("every method's own interpolation prolongs its states") {
   const Json all = json_in(folder / "out/results.json")["methods"];
   const Csv rows(folder / "out/errors.csv");
   const auto value_of = [&](const Positions& x, const Positions& target, const std::string& name) {
-    for (const auto& [metric_name, metric] : small.experiment->metrics)
+    for (const auto& [metric_name, metric] : small.experiment.metrics)
       if (metric->scope() == MetricScope::pair)
         for (const MetricValue& v :
              metric->evaluate({hierarchy.levels[2], *small.scene->models[2], target, &x}).values)

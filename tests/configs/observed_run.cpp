@@ -7,12 +7,10 @@
 #include "core/app/run/runner.h"
 #include "core/app/view/live_view.h"
 #include "tests/support/command.h"
-#include "tests/support/folders.h"
 #include "tests/support/live_client.h"
-#include "tests/support/registry.h"
+#include "tests/support/solve.h"
 
 using namespace drape;
-namespace fs = std::filesystem;
 
 namespace {
 
@@ -37,21 +35,16 @@ struct Observed {
 /// Runs an experiment, which `watch` sees.
 Observed observed(Watch& watch, const Overrides& overrides = {}) {
   const Scratch folder;
-  ConfigErrors errors;
-  const auto experiment = read_experiment(folders::source() / "tests/configs/data/small.yaml", overrides,
-                                          test_registry(), errors);
-  throw_errors(errors);
-  const auto scene = build_scene(*experiment, errors);
-  throw_errors(errors);
+  const Solved small = scene_from(small_experiment(), overrides);
   RunOptions options;
   options.out = folder / "run";
   options.methods = {"pcs"};
   options.verbosity = Verbosity::quiet;
   options.report = false;
   options.observer = &watch;
-  LiveView view(*experiment, *scene, options.methods, 0);
+  LiveView view(small.experiment, *small.scene, options.methods, 0);
   options.view = &view;
-  run_experiment(*experiment, *scene, options);
+  run_experiment(small.experiment, *small.scene, options);
   const LiveAddress address(view.url());
   const LiveClient client(address.port);
   REQUIRE(
@@ -61,24 +54,23 @@ Observed observed(Watch& watch, const Overrides& overrides = {}) {
           nlohmann::json::parse(answer.substr(answer.find("\r\n\r\n") + 4))["outcome"]};
 }
 
-/// The record of that run.
-RunData run_with(Watch& watch) { return observed(watch).data; }
-
 }  // namespace
 
-TEST_CASE("an observer sees every iteration and level of a run") {
+TEST_CASE(
+    "an observer sees every iteration and level of a run, which ends with its outcome on the live view") {
   Watch watch;
-  const RunData run = run_with(watch);
-  CHECK(run.complete);
-  CHECK(run.iterations.size() > 4);
-  CHECK(static_cast<std::size_t>(watch.iterations) == run.iterations.size());
+  const Observed run = observed(watch);
+  CHECK(run.data.complete);
+  CHECK(run.data.iterations.size() > 4);
+  CHECK(static_cast<std::size_t>(watch.iterations) == run.data.iterations.size());
   CHECK(watch.levels == 2);
+  CHECK(run.shown.starts_with("everything converged; the results are in "));
 }
 
 TEST_CASE("an observer stops a run") {
   Watch watch;
   watch.most = 2;
-  const RunData run = run_with(watch);
+  const RunData run = observed(watch).data;
   CHECK_FALSE(run.complete);
   CHECK(watch.iterations == 2);
   CHECK(run.methods.at(0).levels.at(0).status == "cancelled");
@@ -91,11 +83,4 @@ TEST_CASE("a request to stop is heeded while the reference is solved and errors 
   CHECK(run.data.methods.at(0).status == "converged");
   CHECK_FALSE(run.data.complete);
   CHECK(run.shown.starts_with("stopped on request; the results are in "));
-}
-
-TEST_CASE("a run that nothing stops ends with its outcome on the live view") {
-  Watch watch;
-  const Observed run = observed(watch);
-  CHECK(run.data.complete);
-  CHECK(run.shown.starts_with("everything converged; the results are in "));
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <filesystem>
 #include <memory>
 #include <stdexcept>
 #include <string>
@@ -21,19 +22,29 @@ struct Solved {
   const drape::Positions& x() const { return levels.back().x; }
 };
 
-inline drape::Experiment experiment_from(const std::string& text) {
-  const Scratch folder(text);
+inline drape::Experiment experiment_in(const std::filesystem::path& file,
+                                       const drape::Overrides& overrides = {}) {
   drape::ConfigErrors errors;
-  auto experiment = drape::read_experiment(folder / "e.yaml", {}, test_registry(), errors);
+  auto experiment = drape::read_experiment(file, overrides, test_registry(), errors);
   throw_errors(errors);
   return std::move(*experiment);
 }
 
-inline Solved scene_from(const std::string& text) {
-  Solved s{experiment_from(text), nullptr, {}};
+inline drape::Experiment experiment_from(const std::string& text, const drape::Overrides& overrides = {}) {
+  const Scratch folder(text);
+  return experiment_in(folder / "e.yaml", overrides);
+}
+
+inline std::unique_ptr<drape::Scene> scene_of(const drape::Experiment& experiment) {
   drape::ConfigErrors errors;
-  s.scene = drape::build_scene(s.experiment, errors);
+  auto scene = drape::build_scene(experiment, errors);
   throw_errors(errors);
+  return scene;
+}
+
+inline Solved scene_from(const std::string& text, const drape::Overrides& overrides = {}) {
+  Solved s{experiment_from(text, overrides), nullptr, {}};
+  s.scene = scene_of(s.experiment);
   return s;
 }
 

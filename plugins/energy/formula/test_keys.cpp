@@ -4,9 +4,9 @@
 
 #include "core/app/experiment/describe.h"
 #include "core/app/files/yaml_file.h"
-#include "core/app/scene/scene.h"
 #include "tests/support/command.h"
 #include "tests/support/registry.h"
+#include "tests/support/solve.h"
 
 using namespace drape;
 
@@ -34,28 +34,18 @@ ConfigErrors errors_of(const std::string& text) {
   return errors;
 }
 
-Experiment experiment_of(const std::string& text, const Overrides& overrides = {}) {
-  const Scratch folder(text);
-  ConfigErrors errors;
-  auto experiment = read_experiment(folder / "e.yaml", overrides, test_registry(), errors);
-  throw_errors(errors);
-  return std::move(*experiment);
-}
-
-double stretched_energy(const Experiment& e, int energy = 0) {
-  ConfigErrors errors;
-  const auto scene = build_scene(e, errors);
-  throw_errors(errors);
-  const Positions x = 1.1 * scene->hierarchy.levels[0].rest.vertices;
-  return scene->models[0]->energy_parts(x)[static_cast<std::size_t>(energy)].second;
+/// The formula's, under the first load.
+double stretched_energy(const Experiment& e) {
+  const auto scene = scene_of(e);
+  return scene->model(0)->energy_parts(1.1 * scene->hierarchy.levels[0].rest.vertices)[0].second;
 }
 
 }  // namespace
 
 TEST_CASE("a constant is a key of its energy, with and without a unit") {
-  const double own = stretched_energy(experiment_of(experiment_text));
+  const double own = stretched_energy(experiment_from(experiment_text));
   const auto with = [](const std::string& key, const std::string& value) {
-    return stretched_energy(experiment_of(experiment_text, {{key, value}}));
+    return stretched_energy(experiment_from(experiment_text, {{key, value}}));
   };
   CHECK(with("energies.orthotropic.warp", "400") == Approx(2 * own));
   CHECK(with("energies.0.warp", "400") == Approx(2 * own));
@@ -70,27 +60,22 @@ TEST_CASE("a constant is a key of its energy, with and without a unit") {
 }
 
 TEST_CASE("results name a formula by its name") {
-  const Experiment e = experiment_of(experiment_text);
+  const Experiment e = experiment_from(experiment_text);
   CHECK(e.energies[0].name == "orthotropic");
   CHECK(e.energies[1].name == "hinge");
 }
 
 TEST_CASE("a schedule changes a constant") {
-  const Experiment e = experiment_of(experiment_text + R"(schedule:
+  const Experiment e = experiment_from(experiment_text + R"(schedule:
   steps: 2
   keys: [{parameter: energies.orthotropic.warp, times: [0, 1], values: [100, 300]}]
 )");
-  ConfigErrors errors;
-  const auto scene = build_scene(e, errors);
-  throw_errors(errors);
-  const Positions x = 1.1 * scene->hierarchy.levels[0].rest.vertices;
-  const double first = scene->model(0)->energy_parts(x)[0].second;
-  CHECK(first == Approx(0.5 * stretched_energy(experiment_of(experiment_text))));
+  CHECK(stretched_energy(e) == Approx(0.5 * stretched_energy(experiment_from(experiment_text))));
 }
 
 TEST_CASE("the saved config reads back as the same energy") {
-  const Experiment e = experiment_of(experiment_text);
-  const Experiment again = experiment_of(to_yaml(e.resolved));
+  const Experiment e = experiment_from(experiment_text);
+  const Experiment again = experiment_from(to_yaml(e.resolved));
   CHECK(stretched_energy(again) == stretched_energy(e));
   CHECK(again.resolved.one_line() == e.resolved.one_line());
 }
@@ -98,9 +83,9 @@ TEST_CASE("the saved config reads back as the same energy") {
 TEST_CASE("a constant comes before the material's symbol of its name") {
   std::string own = replaced(experiment_text, "nu12: 0.2", "nu: 0.2");
   own = replaced(own, "nu12*sum", "nu*sum");
-  CHECK(stretched_energy(experiment_of(own)) == stretched_energy(experiment_of(experiment_text)));
+  CHECK(stretched_energy(experiment_from(own)) == stretched_energy(experiment_from(experiment_text)));
   const std::string material = replaced(replaced(experiment_text, ", nu12: 0.2", ""), "nu12*sum", "nu*sum");
-  CHECK(stretched_energy(experiment_of(material)) != stretched_energy(experiment_of(own)));
+  CHECK(stretched_energy(experiment_from(material)) != stretched_energy(experiment_from(own)));
 }
 
 TEST_CASE("an error has the line and column inside the formula, also of a broken one") {

@@ -1,46 +1,21 @@
 #include "core/numerics/solve/stepped_solve.h"
 
 #include <catch2/catch.hpp>
-#include <optional>
 
-#include "core/app/files/yaml_file.h"
-#include "core/app/scene/scene.h"
-#include "tests/support/registry.h"
+#include "tests/support/solve.h"
 
 using namespace drape;
 
 namespace {
 
-ConfigNode small_config() {
-  ConfigErrors errors;
-  ConfigNode source = read_yaml(folders::source() / "tests/configs/data/small.yaml", errors);
-  throw_errors(errors);
-  return source;
-}
-
 /// A method of the small experiment, advanced step by step.
-struct Stepped {
+struct Stepped : Solved {
   explicit Stepped(const std::string& method, MethodState from = {})
-      : experiment(valid_experiment()), scene(build_scene(experiment, errors)) {
-    throw_errors(errors);
-    solve.emplace(experiment.solver_of(method), *scene, std::move(from));
-  }
-  static Experiment valid_experiment() {
-    ConfigErrors errors;
-    auto experiment = read_experiment(small_config(), test_registry(), errors);
-    throw_errors(errors);
-    return std::move(*experiment);
-  }
+      : Solved(scene_from(small_experiment())),
+        solve(experiment.solver_of(method), *scene, std::move(from)) {}
 
-  ConfigErrors errors;
-  Experiment experiment;
-  std::unique_ptr<Scene> scene;
-  std::optional<SteppedSolve> solve;
+  SteppedSolve solve;
 };
-
-std::unique_ptr<Stepped> begin(const std::string& method, MethodState from = {}) {
-  return std::make_unique<Stepped>(method, std::move(from));
-}
 
 struct Quiet : Observer {
   std::vector<double> residuals;
@@ -51,8 +26,8 @@ struct Quiet : Observer {
 
 /// What Solver::solve gives.
 std::vector<LevelResult> solved(const std::string& method, Quiet& observer) {
-  const auto fresh = begin(method);
-  return fresh->experiment.solver_of(method).solve(*fresh->scene, observer);
+  const Solved fresh = scene_from(small_experiment());
+  return fresh.experiment.solver_of(method).solve(*fresh.scene, observer);
 }
 
 void advance_to_end(SteppedSolve& solve) {
@@ -75,12 +50,12 @@ TEST_CASE("a stepped solve shows every iteration and ends with the bits of a pla
   for (const char* method : {"pcs", "newton"}) {
     Quiet plain;
     const std::vector<LevelResult> expected = solved(method, plain);
-    const auto stepped = begin(method);
-    SteppedSolve& solve = *stepped->solve;
+    Stepped stepped(method);
+    SteppedSolve& solve = stepped.solve;
     std::vector<double> residuals;
     while (solve.advance()) {
       residuals.push_back(solve.row().force_residual);
-      CHECK(solve.x().rows() == stepped->scene->hierarchy.levels[solve.row().level].vertex_count());
+      CHECK(solve.x().rows() == stepped.scene->hierarchy.levels[solve.row().level].vertex_count());
     }
     CHECK(solve.ended());
     CHECK_FALSE(solve.advance());
@@ -97,41 +72,41 @@ TEST_CASE("a checkpoint of a stepped solve is resumed to the same bits") {
   Quiet plain;
   const std::vector<LevelResult> expected = solved("pcs", plain);
   for (const int steps : {1, 3, static_cast<int>(plain.residuals.size()) - 1}) {
-    const auto first = begin("pcs");
-    for (int k = 0; k < steps; ++k) REQUIRE(first->solve->advance());
-    const MethodState checkpoint = first->solve->checkpoint();
-    const auto resumed = begin("pcs", checkpoint);
-    advance_to_end(*resumed->solve);
-    REQUIRE(resumed->solve->finished().size() == expected.size());
-    CHECK(resumed->solve->finished().back().x == expected.back().x);
+    Stepped first("pcs");
+    for (int k = 0; k < steps; ++k) REQUIRE(first.solve.advance());
+    const MethodState checkpoint = first.solve.checkpoint();
+    Stepped resumed("pcs", checkpoint);
+    advance_to_end(resumed.solve);
+    REQUIRE(resumed.solve.finished().size() == expected.size());
+    CHECK(resumed.solve.finished().back().x == expected.back().x);
   }
 }
 
 TEST_CASE("a stepped solve is stopped, refined or left at any iteration") {
-  const auto stopped = begin("newton");
-  REQUIRE(stopped->solve->advance());
-  stopped->solve->stop();
-  CHECK_FALSE(stopped->solve->advance());
-  REQUIRE(stopped->solve->finished().size() == 1);
-  CHECK(stopped->solve->finished()[0].outcome == Outcome::cancelled);
+  Stepped stopped("newton");
+  REQUIRE(stopped.solve.advance());
+  stopped.solve.stop();
+  CHECK_FALSE(stopped.solve.advance());
+  REQUIRE(stopped.solve.finished().size() == 1);
+  CHECK(stopped.solve.finished()[0].outcome == Outcome::cancelled);
 
-  const auto refined = begin("pcs");
-  REQUIRE(refined->solve->advance());
-  refined->solve->refine();
-  REQUIRE(refined->solve->advance());
-  CHECK(refined->solve->row().level == 1);
-  CHECK(refined->solve->finished()[0].outcome == Outcome::refined_early_on_request);
+  Stepped refined("pcs");
+  REQUIRE(refined.solve.advance());
+  refined.solve.refine();
+  REQUIRE(refined.solve.advance());
+  CHECK(refined.solve.row().level == 1);
+  CHECK(refined.solve.finished()[0].outcome == Outcome::refined_early_on_request);
   // Both destructors are called here, that of the second in the middle of its solve.
 }
 
 TEST_CASE("what a solver throws is thrown to the caller, and only what resumes takes a state") {
-  const auto any = begin("pcs");
+  const Solved any = scene_from(small_experiment());
   const Failing failing;
-  SteppedSolve solve(failing, *any->scene);
+  SteppedSolve solve(failing, *any.scene);
   REQUIRE(solve.advance());
   CHECK_THROWS_WITH(solve.advance(), "out of luck");
   CHECK_FALSE(solve.advance());
   MethodState state;
   state.level = 1;
-  CHECK_THROWS_WITH(SteppedSolve(failing, *any->scene, state), Catch::Contains("cannot go on from a state"));
+  CHECK_THROWS_WITH(SteppedSolve(failing, *any.scene, state), Catch::Contains("cannot go on from a state"));
 }
