@@ -1,4 +1,4 @@
-// A run's observer sees what is recorded, and may stop the run or refine a level.
+// A run's observer sees what is recorded, and may stop the run.
 
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
@@ -15,15 +15,10 @@ using namespace drape;
 namespace {
 
 struct Watch : Observer {
-  int iterations = 0, levels = 0, most = 1 << 20, most_levels = 1 << 20, refine_after = 1 << 20;
-  Positions last;
-  void iteration(const IterationRow&, const Positions& x) override {
-    ++iterations;
-    last = x;
-  }
+  int iterations = 0, levels = 0, most = 1 << 20, most_levels = 1 << 20;
+  void iteration(const IterationRow&, const Positions&) override { ++iterations; }
   void level_finished(const LevelResult&) override { ++levels; }
   bool stop_requested() override { return iterations >= most || levels >= most_levels; }
-  bool refine_requested() override { return levels == 0 && iterations >= refine_after; }
 };
 
 /// How a run ended, by its record and by its live view.

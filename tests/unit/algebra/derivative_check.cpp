@@ -1,55 +1,34 @@
 #include "core/numerics/model/derivative_check.h"
 
 #include <catch2/catch.hpp>
-#include <cmath>
 #include <limits>
+
+#include "tests/support/test_energies.h"
 
 using namespace drape;
 
 namespace {
 
 /// ¼ Σ |x_i|⁴, with an error in the gradient at one coordinate, or in the Hessian.
-struct Quartic : BoundEnergy {
-  int vertices = 3;
+struct Quartic : Wells {
+  Quartic() : Wells(Positions::Zero(3, 3), 1, 0) {}
   double gradient_error = 0, hessian_error = 0, limit = std::numeric_limits<double>::infinity();
 
   double value(const Positions& x) const override {
-    if (x(0, 0) > limit) return std::numeric_limits<double>::infinity();
-    return 0.25 * x.rowwise().squaredNorm().cwiseAbs2().sum();
+    return x(0, 0) > limit ? std::numeric_limits<double>::infinity() : Wells::value(x);
   }
   double add_gradient(const Positions& x, Positions& g) const override {
-    for (int i = 0; i < vertices; ++i) g.row(i) += x.row(i).squaredNorm() * x.row(i);
     g(1, 2) += gradient_error;
-    return value(x);
+    return Wells::add_gradient(x, g);
   }
-  Stencils stencils() const override { return Eigen::VectorXi::LinSpaced(vertices, 0, vertices - 1); }
-  void add_hessian(const Positions& x, Projection, BlockSink& sink) const override {
-    for (int i = 0; i < vertices; ++i) {
-      const Eigen::RowVector3d r = x.row(i);
-      Eigen::Matrix<double, 3, 3, Eigen::RowMajor> h =
-          r.squaredNorm() * Eigen::Matrix3d::Identity() + 2 * r.transpose() * r;
-      if (i == 2) h(0, 1) += hessian_error;
-      sink.add(i, 0, 0, h.data());
-    }
+  void add_hessian(const Positions& x, Projection projection, BlockSink& sink) const override {
+    Wells::add_hessian(x, projection, sink);
+    const double error[9] = {0, hessian_error};
+    sink.add(2, 0, 0, error);
   }
 };
 
-const Positions state = [] {
-  Positions x(3, 3);
-  x << 0.3, -0.2, 0.5, 0.1, 0.4, -0.6, -0.3, 0.2, 0.7;
-  return x;
-}();
-
-/// A weight of 1 N a vertex, far below the origin.
-struct Weight : BoundEnergy {
-  double value(const Positions& x) const override { return x.col(2).sum(); }
-  double add_gradient(const Positions& x, Positions& g) const override {
-    g.col(2).array() += 1;
-    return value(x);
-  }
-  Stencils stencils() const override { return Stencils(0, 1); }
-  void add_hessian(const Positions&, Projection, BlockSink&) const override {}
-};
+const Positions state{{0.3, -0.2, 0.5}, {0.1, 0.4, -0.6}, {-0.3, 0.2, 0.7}};
 
 /// A quartic whose add_gradient forgets what is in g, or returns another number.
 struct Careless : Quartic {

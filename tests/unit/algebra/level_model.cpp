@@ -8,70 +8,35 @@
 #include "core/numerics/patterns/generate.h"
 #include "tests/support/refusal.h"
 #include "tests/support/registry.h"
+#include "tests/support/test_energies.h"
 
 using namespace drape;
 
 namespace {
 
 /// Forces that vary over the vertices, with energy `at_origin` at x = 0.
-class Slope : public Energy {
- public:
-  Slope(double size, double at_origin) : size_(size), at_origin_(at_origin) {}
+std::shared_ptr<Energy> slope(const Level& level, double size, double at_origin = 0) {
+  return energy_of(LinearEnergy(size * level.rest.vertices.array().cos(), at_origin), EnergyRole::external);
+}
 
-  EnergyRole role() const override { return EnergyRole::external; }
-  std::unique_ptr<BoundEnergy> bind(const Level& level, const Material&) const override {
-    return std::make_unique<Bound>(size_ * level.rest.vertices.array().cos(), at_origin_);
-  }
-
- private:
-  class Bound : public BoundEnergy {
-   public:
-    Bound(const Positions& forces, double at_origin) : forces_(forces), at_origin_(at_origin) {}
-    double value(const Positions& x) const override { return at_origin_ + forces_.value(x); }
-    double add_gradient(const Positions& x, Positions& g) const override {
-      return at_origin_ + forces_.add_gradient(x, g);
-    }
-    Stencils stencils() const override { return Stencils(0, 1); }
-    void add_hessian(const Positions&, Projection, BlockSink&) const override {}
-
-   private:
-    LinearEnergy forces_;
-    double at_origin_;
-  };
-
-  double size_, at_origin_;
-};
-
-/// ½ Σ |x_i|², as an energy or a limit.
-class OriginSprings : public Energy, public BoundEnergy {
- public:
-  OriginSprings(EnergyRole role, int count) : role_(role), count_(count) {}
-
-  EnergyRole role() const override { return role_; }
-  std::unique_ptr<BoundEnergy> bind(const Level& level, const Material&) const override {
-    return std::make_unique<OriginSprings>(role_, level.vertex_count());
-  }
+/// ½ Σ |x_i|², of elements, or of none although it is not linear.
+struct OriginSprings : NoEnergy {
+  explicit OriginSprings(Stencils elements) : elements(std::move(elements)) {}
   double value(const Positions& x) const override { return 0.5 * x.squaredNorm(); }
   double add_gradient(const Positions& x, Positions& g) const override {
     g += x;
     return value(x);
   }
-  Stencils stencils() const override { return Eigen::VectorXi::LinSpaced(count_, 0, count_ - 1); }
-  void add_hessian(const Positions&, Projection, BlockSink& sink) const override {
-    const Eigen::Matrix3d one = Eigen::Matrix3d::Identity();
-    for (int i = 0; i < count_; ++i) sink.add(i, 0, 0, one.data());
-  }
-
- private:
-  EnergyRole role_;
-  int count_;
+  Stencils stencils() const override { return elements; }
+  Stencils elements;
 };
 
 /// A bending energy with the stiffness of a plate, or a membrane that keeps the bound it buckles at.
-struct Shell : OriginSprings {
+struct Shell : CopyingEnergy<OriginSprings> {
   double stiffness;
   mutable double bound = -1;
-  Shell(EnergyRole role, double stiffness) : OriginSprings(role, 1), stiffness(stiffness) {}
+  Shell(EnergyRole role, double stiffness)
+      : CopyingEnergy(OriginSprings(each_vertex(1)), role), stiffness(stiffness) {}
   double plate_stiffness(const Material&) const override { return stiffness; }
   std::unique_ptr<BoundEnergy> bind_buckling(const Level& level, const Material& material,
                                              double s) const override {
@@ -88,42 +53,34 @@ struct Binding : Energy {
   std::unique_ptr<BoundEnergy> bind(const Level&, const Material&) const override { return make(); }
 };
 
-/// ½ Σ z², which is not linear, without elements.
-struct NotLinear : BoundEnergy {
-  double value(const Positions& x) const override { return 0.5 * x.col(2).squaredNorm(); }
-  double add_gradient(const Positions& x, Positions& g) const override {
-    g.col(2) += x.col(2);
-    return value(x);
-  }
-  Stencils stencils() const override { return Stencils(0, 1); }
-  void add_hessian(const Positions&, Projection, BlockSink&) const override {}
-};
-
 }  // namespace
 
 TEST_CASE("an energy that cannot be bound, or is not what it says, is refused by name", "[level_model]") {
   const Level level = Level::of(0, grid({2, 1}, 4, 3, Diagonals::one_way));
   const auto refusal = [&](std::unique_ptr<BoundEnergy> (*make)()) {
     return refusal_of([&] {
-      LevelModel(level, Material(),
-                 {{"slope", std::make_shared<Slope>(2, 0)}, {"wind", std::make_shared<Binding>(make)}}, {});
+      LevelModel(level, Material(), {{"slope", slope(level, 2)}, {"wind", std::make_shared<Binding>(make)}},
+                 {});
     });
   };
   CHECK(refusal([]() -> std::unique_ptr<BoundEnergy> { return nullptr; }) ==
         "energy wind: bind returned null; return an object, which may have no elements");
   CHECK(refusal([]() -> std::unique_ptr<BoundEnergy> { throw std::runtime_error("cannot bind"); }) ==
         "energy wind: cannot bind");
-  CHECK_THAT(refusal([]() -> std::unique_ptr<BoundEnergy> { return std::make_unique<NotLinear>(); }),
+  CHECK_THAT(refusal([]() -> std::unique_ptr<BoundEnergy> {
+               return std::make_unique<OriginSprings>(Stencils(0, 1));
+             }),
              Catch::Matchers::StartsWith("energy wind has no elements, so it counts as linear, but"));
 }
 
 TEST_CASE("linear energies are evaluated together, and limits apart", "[level_model]") {
   const Level level = Level::of(0, grid({2, 1}, 150, 100, Diagonals::one_way));
-  const auto slope = [](double size, double at_origin) { return std::make_shared<Slope>(size, at_origin); };
-  const auto springs = std::make_shared<OriginSprings>(EnergyRole::membrane, 0);
-  const auto limit = std::make_shared<OriginSprings>(EnergyRole::limit, 0);
+  const OriginSprings springs(each_vertex(level.vertex_count()));
   const LevelModel model(level, Material(),
-                         {{"a", slope(2, 0)}, {"springs", springs}, {"limit", limit}, {"b", slope(-0.5, 3)}},
+                         {{"a", slope(level, 2)},
+                          {"springs", energy_of(springs)},
+                          {"limit", energy_of(springs, EnergyRole::limit)},
+                          {"b", slope(level, -0.5, 3)}},
                          {});
   const Positions x = level.rest.vertices.array() + 0.7;
 
@@ -140,9 +97,10 @@ TEST_CASE("linear energies are evaluated together, and limits apart", "[level_mo
 
 TEST_CASE("the parts of the energy have names of their own and sum to it", "[level_model]") {
   const Level level = Level::of(0, grid({2, 1}, 4, 3, Diagonals::one_way));
-  const auto slope = [](double size) { return std::make_shared<Slope>(size, 0); };
-  const std::vector<NamedEnergy> energies = {
-      {"load", slope(2)}, {"load 2", slope(5)}, {"load", slope(-0.5)}, {"other", slope(1)}};
+  const std::vector<NamedEnergy> energies = {{"load", slope(level, 2)},
+                                             {"load 2", slope(level, 5)},
+                                             {"load", slope(level, -0.5)},
+                                             {"other", slope(level, 1)}};
   const LevelModel model(level, Material(), energies, {});
   const LevelModel later(level, Material(), energies, {}, {}, &model);
   const Positions x = level.rest.vertices.array() + 0.7;
@@ -156,21 +114,12 @@ TEST_CASE("the parts of the energy have names of their own and sum to it", "[lev
 }
 
 TEST_CASE("A model refuses an energy whose stencils differ from those of the model before", "[level_model]") {
-  using Make = std::unique_ptr<BoundEnergy> (*)();
-  struct Stenciled : OriginSprings {
-    explicit Stenciled(Stencils own) : OriginSprings(EnergyRole::membrane, 0), own(std::move(own)) {}
-    Stencils stencils() const override { return own; }
-    Stencils own;
-  };
-  const Make two = [] { return std::unique_ptr<BoundEnergy>(new Stenciled(Stencils{{0}, {1}})); };
-  const Make four = [] { return std::unique_ptr<BoundEnergy>(new Stenciled(Stencils{{0}, {1}, {2}, {3}})); };
-  const Make pairs = [] { return std::unique_ptr<BoundEnergy>(new Stenciled(Stencils{{0, 1}, {2, 3}})); };
-  const Make other = [] { return std::unique_ptr<BoundEnergy>(new Stenciled(Stencils{{0}, {2}})); };
   const Level level = Level::of(0, grid({2, 1}, 4, 3, Diagonals::one_way));
-  const auto model = [&](Make make, const LevelModel* before) {
-    return LevelModel(level, Material(), {{"springs", std::make_shared<Binding>(make)}}, {}, {}, before);
+  const auto model = [&](const Stencils& stencils, const LevelModel* before) {
+    return LevelModel(level, Material(), {{"springs", energy_of(OriginSprings(stencils))}}, {}, {}, before);
   };
-  const std::vector<Make> kinds = {two, four, pairs, other};
+  const Stencils two{{0}, {1}}, four{{0}, {1}, {2}, {3}}, pairs{{0, 1}, {2, 3}}, others{{0}, {2}};
+  const std::vector<Stencils> kinds = {two, four, pairs, others};
   for (std::size_t i = 0; i < kinds.size(); ++i)
     for (std::size_t j = 0; j < kinds.size(); ++j) {
       CAPTURE(i, j);

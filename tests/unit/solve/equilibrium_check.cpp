@@ -4,14 +4,14 @@
 #include <cmath>
 
 #include "tests/support/newton_problem.h"
-#include "tests/support/wells.h"
+#include "tests/support/test_energies.h"
 
 using namespace drape;
 
 namespace {
 
 /// At the minimum of a bowl.
-NewtonProblem at_minimum() { return NewtonProblem({std::make_shared<Wells>(NewtonProblem::rest(), 10, 0)}); }
+NewtonProblem at_minimum() { return NewtonProblem({energy_of(Wells(NewtonProblem::rest(), 10, 0))}); }
 
 }  // namespace
 

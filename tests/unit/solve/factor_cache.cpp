@@ -6,7 +6,7 @@
 #include "core/numerics/step/equilibrium_check.h"
 #include "tests/support/newton_problem.h"
 #include "tests/support/registry.h"
-#include "tests/support/wells.h"
+#include "tests/support/test_energies.h"
 
 using namespace drape;
 
@@ -16,7 +16,7 @@ constexpr double mass_shift = 100;
 
 /// The cache of a problem with one fixed vertex, and how often it has factorised.
 struct CacheCase {
-  NewtonProblem problem{{std::make_shared<Wells>(NewtonProblem::rest().array() + 0.3, 10, 0.1)},
+  NewtonProblem problem{{energy_of(Wells(NewtonProblem::rest().array() + 0.3, 10, 0.1))},
                         {{0, NewtonProblem::rest().row(0), 0}}};
   FactorCache cache;
 
@@ -37,12 +37,8 @@ struct CacheCase {
 
 /// Vertices 2i and 2i + 1 are joined by springs of length zero, so stiff that in single precision their
 /// masses make no difference: the matrix is positive definite, but not to a float.
-class StiffPairs : public Energy, public BoundEnergy {
+class StiffPairs : public NoEnergy {
  public:
-  EnergyRole role() const override { return EnergyRole::membrane; }
-  std::unique_ptr<BoundEnergy> bind(const Level&, const Material&) const override {
-    return std::make_unique<StiffPairs>(*this);
-  }
   double value(const Positions& x) const override {
     double sum = 0;
     for (int i = 0; i < 16; i += 2) sum += 0.5 * stiffness(i) * (x.row(i) - x.row(i + 1)).squaredNorm();
@@ -101,7 +97,7 @@ struct CacheSolve {
 }  // namespace
 
 TEST_CASE("A factor in single precision solves as well as one in double precision") {
-  const auto wells = std::make_shared<Wells>(NewtonProblem::rest().array() + 0.3, 10, 0.1);
+  const auto wells = energy_of(Wells(NewtonProblem::rest().array() + 0.3, 10, 0.1));
   CacheSolve c(wells, {});
   CHECK(c.factorisations() == 1);
   CHECK(c.residual() < 1e-5);
@@ -114,7 +110,7 @@ TEST_CASE("A factor in single precision solves as well as one in double precisio
 }
 
 TEST_CASE("Where single precision does not suffice, factors are in double precision for a while") {
-  CacheSolve c(std::make_shared<StiffPairs>(), {});
+  CacheSolve c(energy_of(StiffPairs()), {});
   for (int round = 0; round < 2; ++round) {
     CHECK(c.factorisations() == 2);
     CHECK(c.cache.state().fallback_updates == 10);
@@ -134,7 +130,7 @@ TEST_CASE("Where single precision does not suffice, factors are in double precis
 }
 
 TEST_CASE("A lower blend whose factor does not serve in single precision is refused as indefinite") {
-  CacheSolve c(std::make_shared<StiffPairs>(), {});
+  CacheSolve c(energy_of(StiffPairs()), {});
   FactorCache::State state = c.cache.state();
   state.modification.blend = 0;
   c.cache.restore(state);
@@ -143,7 +139,7 @@ TEST_CASE("A lower blend whose factor does not serve in single precision is refu
 }
 
 TEST_CASE("The static form has factors in double precision, and so have matrices of moved pins") {
-  const auto wells = std::make_shared<Wells>(NewtonProblem::rest().array() + 0.3, 10, 0.1);
+  const auto wells = energy_of(Wells(NewtonProblem::rest().array() + 0.3, 10, 0.1));
   NewtonParameters p;
   p.form = NewtonForm::statics;
   CacheSolve c(wells, p);

@@ -3,13 +3,13 @@
 #include <catch2/catch.hpp>
 
 #include "tests/support/newton_problem.h"
-#include "tests/support/wells.h"
+#include "tests/support/test_energies.h"
 
 using namespace drape;
 
 TEST_CASE("The gradient of an implicit step is that of its energy, without fixed vertices") {
   const Positions rest = Level::of(0, grid({1, 1}, 4, 4, Diagonals::one_way)).rest.vertices;
-  NewtonProblem problem({std::make_shared<Wells>(rest.array() + 0.3, 10, 0.1)}, {{0, rest.row(0), 0}});
+  NewtonProblem problem({energy_of(Wells(rest.array() + 0.3, 10, 0.1))}, {{0, rest.row(0), 0}});
   ImplicitStep step;
   step.begin(rest, 4);
   CHECK(step.max_iterations() == 4);

@@ -6,6 +6,7 @@
 #include "core/numerics/model/objective.h"
 #include "core/numerics/solve/newton.h"
 #include "core/numerics/solve/newton_state.h"
+#include "tests/support/keeping_observer.h"
 #include "tests/support/solve.h"
 
 using namespace drape;
@@ -20,15 +21,6 @@ struct Standstills : Observer {
     count += last.rows() == x.rows() && last == x;
     last = x;
   }
-};
-
-/// Keeps every checkpoint and row.
-struct Keeping : Observer {
-  std::vector<NewtonState> states;
-  std::vector<IterationRow> rows;
-  bool checkpoint_due() override { return true; }
-  void checkpoint(const NewtonState& state) override { states.push_back(state); }
-  void iteration(const IterationRow& row, const Positions&) override { rows.push_back(row); }
 };
 
 /// A strip that hangs steeply from its upper end and is taut, since the floor drags its lower end away: the
@@ -156,7 +148,8 @@ TEST_CASE("Friction whose normal forces answer it more than they change it comes
 
 TEST_CASE("A level whose friction was damped is resumed bit for bit") {
   Solved s = scene_from(dragged_strip("step_growth: 1.5"));
-  Keeping whole;
+  KeepingObserver whole;
+  whole.keeps_states = true;
   const Solver& solver = *s.experiment.methods[0].second;
   const LevelResult expected = solver.solve(*s.scene, whole)[0];
   REQUIRE(expected.outcome == Outcome::converged);
@@ -180,7 +173,7 @@ TEST_CASE("A message's force residual is that of the last iteration's row") {
   int checked = 0;
   for (int max_steps = 10; max_steps < 40; ++max_steps) {
     Solved s = scene_from(dragged_strip("max_steps: " + std::to_string(max_steps)));
-    Keeping kept;
+    KeepingObserver kept;
     const LevelResult r = s.experiment.methods[0].second->solve(*s.scene, kept)[0];
     INFO(r.message);
     CHECK(kept.rows.back().force_residual == r.force_residual);

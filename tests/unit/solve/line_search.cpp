@@ -2,35 +2,22 @@
 
 #include <catch2/catch.hpp>
 
-#include "tests/support/limiter.h"
 #include "tests/support/newton_problem.h"
-#include "tests/support/wells.h"
+#include "tests/support/test_energies.h"
 
 using namespace drape;
 
 namespace {
 
 /// Wells on top of a large constant, against which changes of the energy are round-off.
-class HighWells : public Wells {
- public:
+struct HighWells : Wells {
   using Wells::Wells;
-  std::unique_ptr<BoundEnergy> bind(const Level&, const Material&) const override {
-    return std::make_unique<HighWells>(*this);
-  }
   double value(const Positions& x) const override { return 1e6 + Wells::value(x); }
-  double add_gradient(const Positions& x, Positions& g) const override {
-    Wells::add_gradient(x, g);
-    return value(x);
-  }
 };
 
 /// Forces that push uphill.
-class WrongForces : public Wells {
- public:
+struct WrongForces : Wells {
   using Wells::Wells;
-  std::unique_ptr<BoundEnergy> bind(const Level&, const Material&) const override {
-    return std::make_unique<WrongForces>(*this);
-  }
   double add_gradient(const Positions& x, Positions& g) const override {
     Positions own = Positions::Zero(g.rows(), 3);
     const double energy = Wells::add_gradient(x, own);
@@ -62,7 +49,7 @@ struct Search {
 }  // namespace
 
 TEST_CASE("A full step that decreases the energy is taken, with the energy and forces at its end") {
-  Search s({std::make_shared<Wells>(centres(), 10, 0)});
+  Search s({energy_of(Wells(centres(), 10, 0))});
   const Positions x = s.problem.iterate.x(), direction = 0.5 * s.to_centres();
   REQUIRE(s.along(direction));
   CHECK(s.line_search.step_length() == 1);
@@ -75,7 +62,7 @@ TEST_CASE("A full step that decreases the energy is taken, with the energy and f
 }
 
 TEST_CASE("A step that overshoots is halved until the decrease is sufficient") {
-  const std::vector<std::shared_ptr<Energy>> wells = {std::make_shared<Wells>(centres(), 10, 0)};
+  const std::vector<std::shared_ptr<Energy>> wells = {energy_of(Wells(centres(), 10, 0))};
   Search far(wells);
   REQUIRE(far.along(3.9 * far.to_centres()));
   CHECK(far.line_search.step_length() == 0.5);
@@ -87,7 +74,7 @@ TEST_CASE("A step that overshoots is halved until the decrease is sufficient") {
 }
 
 TEST_CASE("Inertia counts: with mass, the same step overshoots") {
-  const std::vector<std::shared_ptr<Energy>> wells = {std::make_shared<Wells>(centres(), 10, 0)};
+  const std::vector<std::shared_ptr<Energy>> wells = {energy_of(Wells(centres(), 10, 0))};
   Search light(wells), heavy(wells);
   REQUIRE(light.along(0.5 * light.to_centres()));
   CHECK(light.line_search.step_length() == 1);
@@ -96,7 +83,7 @@ TEST_CASE("Inertia counts: with mass, the same step overshoots") {
 }
 
 TEST_CASE("No step is taken uphill, or where no step length decreases the energy") {
-  Search uphill({std::make_shared<Wells>(centres(), 10, 0)});
+  Search uphill({energy_of(Wells(centres(), 10, 0))});
   const Positions x = uphill.problem.iterate.x();
   const double energy = uphill.problem.iterate.energy();
   REQUIRE(!uphill.along(-uphill.to_centres()));
@@ -104,7 +91,7 @@ TEST_CASE("No step is taken uphill, or where no step length decreases the energy
   CHECK(uphill.line_search.step_length() == 1);
   CHECK(uphill.problem.iterate.x() == x);
 
-  Search wrong({std::make_shared<WrongForces>(centres(), 10, 0)});
+  Search wrong({energy_of(WrongForces(centres(), 10, 0))});
   REQUIRE(!wrong.along(-0.1 * wrong.problem.iterate.gradient()));
   CHECK(wrong.line_search.slope() < 0);
   CHECK(wrong.line_search.step_length() < LineSearch::min_step_length);
@@ -115,7 +102,7 @@ TEST_CASE("No step is taken uphill, or where no step length decreases the energy
 }
 
 TEST_CASE("The search starts from the largest step that a limit allows, and names the limit") {
-  Search s({std::make_shared<Wells>(centres(), 10, 0), std::make_shared<Limiter>(0.3)});
+  Search s({energy_of(Wells(centres(), 10, 0)), energy_of(Limiter(0.3), EnergyRole::limit)});
   const Positions x = s.problem.iterate.x(), direction = s.to_centres();
   REQUIRE(s.along(direction));
   CHECK(s.line_search.step_length() == 0.3);
@@ -130,7 +117,7 @@ TEST_CASE("Where the energy changes by round-off only, the gradient's norm decid
   Positions towards = Positions::Zero(x.rows(), 3);
   towards.col(2).setConstant(-off);
   for (const double overshoot : {1.0, 3.0}) {
-    Search s({std::make_shared<HighWells>(centres(), 1, width)});
+    Search s({energy_of(HighWells(centres(), 1, width))});
     s.problem.move_to(x);
     const double energy = s.problem.iterate.energy(), norm = s.problem.iterate.gradient().norm();
     REQUIRE(norm > 0);

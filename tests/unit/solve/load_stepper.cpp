@@ -3,7 +3,7 @@
 #include <catch2/catch.hpp>
 
 #include "tests/support/newton_problem.h"
-#include "tests/support/wells.h"
+#include "tests/support/test_energies.h"
 
 using namespace drape;
 
@@ -57,7 +57,7 @@ struct IncrementRecorder : Observer {
 };
 
 struct StepperCase {
-  NewtonProblem problem{{std::make_shared<Wells>(NewtonProblem::rest().array() + 0.3, 10, 0)}};
+  NewtonProblem problem{{energy_of(Wells(NewtonProblem::rest().array() + 0.3, 10, 0))}};
   FakeLoads loads;
   IncrementRecorder observer;
   Stopwatch clock;

@@ -6,21 +6,16 @@
 #include "core/kernel/files/message_text.h"
 #include "core/numerics/patterns/generate.h"
 #include "core/numerics/solve/newton_state.h"
-#include "tests/support/limiter.h"
-#include "tests/support/weight.h"
-#include "tests/support/wells.h"
+#include "tests/support/keeping_observer.h"
+#include "tests/support/test_energies.h"
 
 using namespace drape;
 
 namespace {
 
 /// A finite energy with NaN forces: no equilibrium, although comparisons with NaN are false.
-class NoForces : public Wells {
- public:
+struct NoForces : Wells {
   using Wells::Wells;
-  std::unique_ptr<BoundEnergy> bind(const Level&, const Material&) const override {
-    return std::make_unique<NoForces>(*this);
-  }
   double add_gradient(const Positions& x, Positions& g) const override {
     g.setConstant(std::nan(""));
     return value(x);
@@ -28,39 +23,32 @@ class NoForces : public Wells {
 };
 
 /// An energy with a NaN in its Hessian at one vertex.
-class BrokenHessian : public Wells {
- public:
-  BrokenHessian(const Positions& centres, int vertex) : Wells(centres, 10, 0.4), vertex_(vertex) {}
-  std::unique_ptr<BoundEnergy> bind(const Level&, const Material&) const override {
-    return std::make_unique<BrokenHessian>(*this);
-  }
+struct BrokenHessian : Wells {
+  BrokenHessian(const Positions& centres, int vertex) : Wells(centres, 10, 0.4), broken(vertex) {}
   void add_hessian(const Positions& x, Projection projection, BlockSink& sink) const override {
     Wells::add_hessian(x, projection, sink);
     double block[9] = {};
     block[4] = std::nan("");
-    sink.add(vertex_, 0, 0, block);
+    sink.add(broken, 0, 0, block);
   }
-
- private:
-  int vertex_;
+  int broken;
 };
 
-class Silent : public Observer {
- public:
-  int stop_after = 1 << 30, seen = 0;
-  std::vector<IterationRow> rows;
-  void iteration(const IterationRow& row, const Positions&) override { rows.push_back(row), ++seen; }
-  bool stop_requested() override { return seen >= stop_after; }
-};
+const std::vector<NamedEnergy> only_weight = {{"weight", energy_of(Weight(), EnergyRole::external)}};
 
+/// Minimisations that begin at the rest shape of a sheet of 4×4 vertices.
 struct NewtonCase {
   Level level = Level::of(0, grid({1, 1}, 4, 4, Diagonals::one_way));
   Positions centres = level.rest.vertices.array() + 0.3;
-  Silent observer;
+  KeepingObserver observer;
 
+  /// One with its first vertex held.
   LevelResult solve(const NewtonParameters& p, double width = 0, double k = 10) {
-    const LevelModel model(level, Material(), {{"wells", std::make_shared<Wells>(centres, k, width)}},
-                           {{0, level.rest.vertices.row(0), 0}});
+    return solve(p, {{"wells", energy_of(Wells(centres, k, width))}}, {{0, level.rest.vertices.row(0), 0}});
+  }
+  LevelResult solve(const NewtonParameters& p, const std::vector<NamedEnergy>& energies,
+                    const std::vector<DirichletVertex>& dirichlet = {}) {
+    const LevelModel model(level, Material(), energies, dirichlet);
     PlainObjective objective(model);
     return minimise(objective, level.rest.vertices, p, {Stopwatch(), observer});
   }
@@ -167,10 +155,7 @@ TEST_CASE("The step size stays the same within an implicit step, and altogether 
 
 TEST_CASE("NaN forces are no equilibrium") {
   NewtonCase c;
-  const LevelModel model(c.level, Material(), {{"broken", std::make_shared<NoForces>(c.centres, 1, 0.4)}},
-                         {});
-  PlainObjective objective(model);
-  const LevelResult r = minimise(objective, c.level.rest.vertices, tight(), {Stopwatch(), c.observer});
+  const LevelResult r = c.solve(tight(), {{"broken", energy_of(NoForces(c.centres, 1, 0.4))}});
   REQUIRE(r.outcome == Outcome::infeasible);
   REQUIRE(r.message.find("not finite") != std::string::npos);
 }
@@ -186,10 +171,8 @@ TEST_CASE(
         p.form = form;
         p.psd_blend = blend;
         const Eigen::Vector3d target = c.level.rest.vertices.row(0).transpose() + Eigen::Vector3d(0, 0, lift);
-        const LevelModel model(c.level, Material(),
-                               {{"broken", std::make_shared<BrokenHessian>(c.centres, 5)}}, {{0, target, 0}});
-        PlainObjective objective(model);
-        const LevelResult r = minimise(objective, c.level.rest.vertices, p, {Stopwatch(), c.observer});
+        const LevelResult r =
+            c.solve(p, {{"broken", energy_of(BrokenHessian(c.centres, 5))}}, {{0, target, 0}});
         CAPTURE(int(form), int(blend), lift);
         CHECK(r.outcome == Outcome::stalled);
         CHECK(r.message ==
@@ -203,10 +186,8 @@ TEST_CASE(
 
 TEST_CASE("NaN in the Hessian at a fixed vertex is not part of the Newton matrix", "[newton]") {
   NewtonCase c;
-  const LevelModel model(c.level, Material(), {{"broken", std::make_shared<BrokenHessian>(c.centres, 0)}},
-                         {{0, c.level.rest.vertices.row(0), 0}});
-  PlainObjective objective(model);
-  const LevelResult r = minimise(objective, c.level.rest.vertices, tight(), {Stopwatch(), c.observer});
+  const LevelResult r = c.solve(tight(), {{"broken", energy_of(BrokenHessian(c.centres, 0))}},
+                                {{0, c.level.rest.vertices.row(0), 0}});
   INFO(r.message);
   CHECK(r.outcome == Outcome::converged);
 }
@@ -222,11 +203,8 @@ TEST_CASE("A stop, and a cloth that nothing holds, end an implicit step between 
   CHECK(r.steps <= 1);
 
   NewtonCase falling;
-  const LevelModel model(falling.level, Material(), {{"weight", std::make_shared<Weight>(16)}}, {});
-  PlainObjective objective(model);
   p.form = NewtonForm::statics;
-  const LevelResult fallen =
-      minimise(objective, falling.level.rest.vertices, p, {Stopwatch(), falling.observer});
+  const LevelResult fallen = falling.solve(p, only_weight);
   CHECK(fallen.outcome == Outcome::infeasible);
   CHECK(fallen.iterations < 100);
 }
@@ -249,13 +227,10 @@ TEST_CASE("An implicit step ends when it is solved, however many iterations it m
 TEST_CASE("A level that ends without descent names what limits the step", "[newton]") {
   for (const NewtonForm form : {NewtonForm::quasistatic, NewtonForm::statics}) {
     NewtonCase c;
-    const LevelModel model(
-        c.level, Material(),
-        {{"wells", std::make_shared<Wells>(c.centres, 10, 0)}, {"limit", std::make_shared<Limiter>(0)}}, {});
-    PlainObjective objective(model);
     NewtonParameters p = tight();
     p.form = form;
-    const LevelResult r = minimise(objective, c.level.rest.vertices, p, {Stopwatch(), c.observer});
+    const LevelResult r = c.solve(p, {{"wells", energy_of(Wells(c.centres, 10, 0))},
+                                      {"limit", energy_of(Limiter(0), EnergyRole::limit)}});
     CHECK(r.outcome == Outcome::stalled);
     CHECK_THAT(r.message, Catch::StartsWith("the line search found no descent") &&
                               Catch::EndsWith("; the step is limited by the limiter"));
@@ -266,11 +241,9 @@ TEST_CASE("A cloth that nothing holds is detected, in both forms", "[newton]") {
   // Constant forces on a cloth without pins: it falls without end.
   for (NewtonForm form : {NewtonForm::quasistatic, NewtonForm::statics}) {
     NewtonCase c;
-    const LevelModel model(c.level, Material(), {{"weight", std::make_shared<Weight>(16)}}, {});
-    PlainObjective objective(model);
     NewtonParameters p;
     p.form = form;
-    const LevelResult r = minimise(objective, c.level.rest.vertices, p, {Stopwatch(), c.observer});
+    const LevelResult r = c.solve(p, only_weight);
     CAPTURE(int(form), r.steps);
     CHECK(r.outcome == Outcome::infeasible);
     const double drift = (r.x - c.level.rest.vertices).colwise().mean().norm();
@@ -287,8 +260,7 @@ TEST_CASE("A cloth without any force is at equilibrium: the residual scale has a
   c.centres = c.level.rest.vertices;  // the Dirichlet vertex is at its target
   c.centres.bottomRows(15).array() += 0.01;
   c.centres(0, 2) += 1e-12;  // but for round-off
-  const LevelModel model(c.level, Material(), {{"bowl", std::make_shared<Wells>(c.centres, 10, 0)}},
-                         dirichlet);
+  const LevelModel model(c.level, Material(), {{"bowl", energy_of(Wells(c.centres, 10, 0))}}, dirichlet);
   PlainObjective objective(model);
   NewtonParameters p;
   p.max_steps = 300;
@@ -300,12 +272,6 @@ TEST_CASE("A cloth without any force is at equilibrium: the residual scale has a
 }
 
 TEST_CASE("A minimisation resumed at any step continues bit for bit", "[newton]") {
-  /// Stores every checkpoint.
-  struct Storing : Silent {
-    std::vector<NewtonState> states;
-    bool checkpoint_due() override { return true; }
-    void checkpoint(const NewtonState& state) override { states.push_back(state); }
-  };
   const LinearSolver solver = GENERATE(LinearSolver::mixed, LinearSolver::supernodal, LinearSolver::cholmod);
   for (const int interval : {1, 3})
     for (const int iterations : {1, 2})
@@ -318,9 +284,10 @@ TEST_CASE("A minimisation resumed at any step continues bit for bit", "[newton]"
         p.form = form;
         p.decrement_tolerance = 1e-7;
         const Positions centres = c.level.rest.vertices.array() + 0.05;
-        const LevelModel model(c.level, Material(), {{"wells", std::make_shared<Wells>(centres, 10, 0.4)}},
+        const LevelModel model(c.level, Material(), {{"wells", energy_of(Wells(centres, 10, 0.4))}},
                                {{0, c.level.rest.vertices.row(0), 0}});
-        Storing whole;
+        KeepingObserver whole;
+        whole.keeps_states = true;
         PlainObjective first(model);
         const LevelResult expected =
             minimise(first, c.level.rest.vertices, p, {Stopwatch(), whole, false, {{"before", 2}}});
@@ -331,7 +298,7 @@ TEST_CASE("A minimisation resumed at any step continues bit for bit", "[newton]"
         for (const NewtonState& state : whole.states) {
           stored_factors += !state.step.factor.values.empty();
           PlainObjective again(model);
-          Silent rest;
+          KeepingObserver rest;
           const LevelResult r = minimise(again, {}, p, {Stopwatch(), rest, false, {}, &state});
           REQUIRE(r.x == expected.x);
           REQUIRE(r.force_residual == expected.force_residual);

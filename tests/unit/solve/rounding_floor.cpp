@@ -6,6 +6,8 @@
 #include "core/numerics/patterns/generate.h"
 #include "core/numerics/solve/newton.h"
 #include "core/numerics/solve/newton_state.h"
+#include "tests/support/keeping_observer.h"
+#include "tests/support/test_energies.h"
 
 using namespace drape;
 
@@ -20,28 +22,24 @@ struct Fault {
 
 /// EdgeSprings ½ k (|x_a − x_b| − L)² along all edges and a constant force on every vertex: a stiff, narrow,
 /// hanging strip.
-class EdgeSprings : public Energy, public BoundEnergy {
+class EdgeSprings : public NoEnergy {
  public:
-  EdgeSprings(const TriangleMesh& rest, double k, Vector3 load) : rest_(rest.vertices), k_(k), load_(load) {
+  EdgeSprings(const TriangleMesh& rest, double k, Vector3 load, Fault fault)
+      : rest_(rest.vertices), k_(k), load_(load), fault_(fault) {
     const Topology topology = Topology::of(rest.triangles, static_cast<int>(rest.vertices.rows()));
     for (int i = 0; i < rest_.rows(); ++i)
       for (const int* j = topology.vertex_vertices.begin(i); j != topology.vertex_vertices.end(i); ++j)
         if (i < *j) edges_.push_back({i, *j});
   }
-  Fault fault;
 
-  EnergyRole role() const override { return EnergyRole::membrane; }
-  std::unique_ptr<BoundEnergy> bind(const Level&, const Material&) const override {
-    return std::make_unique<EdgeSprings>(*this);
-  }
   double value(const Positions& x) const override {
     double sum = -(x * load_).sum();
     for (const auto& [a, b] : edges_) sum += 0.5 * k_ * std::pow(stretch<double>(x, a, b), 2);
     return sum;
   }
   double add_gradient(const Positions& x, Positions& g) const override {
-    g += fault.all * gradient<double>(x);
-    g.rowwise() -= (fault.load - 1) * load_.transpose();
+    g += fault_.all * gradient<double>(x);
+    g.rowwise() -= (fault_.load - 1) * load_.transpose();
     return value(x);
   }
   /// In any arithmetic, at positions in doubles.
@@ -86,19 +84,20 @@ class EdgeSprings : public Energy, public BoundEnergy {
   Positions rest_;
   double k_;
   Vector3 load_;
+  Fault fault_;
   std::vector<std::array<int, 2>> edges_;
 };
 
 /// A strip of 1 m by 5 mm that hangs along x from its first column.
 struct HangingStrip {
   Level level = Level::of(0, grid({1, 0.005}, 41, 2, Diagonals::one_way));
-  std::shared_ptr<EdgeSprings> springs;
+  EdgeSprings springs;
   LevelModel model;
   PlainObjective objective;
 
   explicit HangingStrip(double k, Fault fault = {})
-      : springs(std::make_shared<EdgeSprings>(level.rest, k, Vector3(1e-3, 0, 0))),
-        model(level, Material(), {{"springs", (springs->fault = fault, springs)}}, dirichlet(level)),
+      : springs(level.rest, k, Vector3(1e-3, 0, 0), fault),
+        model(level, Material(), {{"springs", energy_of(springs)}}, dirichlet(level)),
         objective(model) {}
 
   static std::vector<DirichletVertex> dirichlet(const Level& level) {
@@ -181,7 +180,7 @@ TEST_CASE("A strip at equilibrium up to round-off has converged to rounding") {
                      Catch::Contains("above force_tolerance = 1e-13: round-off alone accounts for up to "));
       // Exact for the given positions.
       const Eigen::VectorXd bounds = rounding_bounds(strip.objective.matrix(r.x, Projection::none), r.x);
-      const auto exact = strip.springs->gradient<long double>(r.x);
+      const auto exact = strip.springs.gradient<long double>(r.x);
       for (int i = 0; i < r.x.rows(); ++i)
         if (!strip.model.fixed()[i]) CHECK(exact.row(i).norm() <= 2 * bounds[i]);
       // And the strip is where it hangs: k is that of the whole width's springs.
@@ -190,12 +189,8 @@ TEST_CASE("A strip at equilibrium up to round-off has converged to rounding") {
 }
 
 TEST_CASE("A run that ends at the rounding floor can be resumed bit for bit from any state") {
-  struct Keeping : Observer {
-    std::vector<NewtonState> states;
-    bool checkpoint_due() override { return true; }
-    void checkpoint(const NewtonState& state) override { states.push_back(state); }
-  };
-  Keeping whole;
+  KeepingObserver whole;
+  whole.keeps_states = true;
   HangingStrip strip(1e6);
   const NewtonParameters p = far_too_tight(NewtonForm::quasistatic);
   const LevelResult expected = strip.solve(p, whole);

@@ -8,6 +8,7 @@
 #include "core/numerics/elements/linear_energy.h"
 #include "core/numerics/patterns/generate.h"
 #include "core/numerics/solve/newton.h"
+#include "tests/support/test_energies.h"
 
 using namespace drape;
 
@@ -15,46 +16,23 @@ namespace {
 
 constexpr double inf = std::numeric_limits<double>::infinity();
 
+const TriangleMesh sheet = grid({1, 1}, 3, 3, Diagonals::one_way);
+
 /// An energy of triangles with a constant value and constant forces.
-class Given final : public Energy {
- public:
-  Given(double value, double force) : value_(value), force_(force) {}
-  EnergyRole role() const override { return EnergyRole::membrane; }
-  std::unique_ptr<BoundEnergy> bind(const Level& level, const Material&) const override {
-    return std::make_unique<Bound>(value_, force_, level.rest.triangles);
+struct Given : NoEnergy {
+  Given(double value, double force) : energy(value), force(force) {}
+  double value(const Positions&) const override { return energy; }
+  double add_gradient(const Positions&, Positions& g) const override {
+    g.array() += force;
+    return energy;
   }
-
- private:
-  struct Bound final : BoundEnergy {
-    Bound(double v, double f, Stencils s) : energy(v), force(f), triangles(std::move(s)) {}
-    double value(const Positions&) const override { return energy; }
-    double add_gradient(const Positions&, Positions& g) const override {
-      g.array() += force;
-      return energy;
-    }
-    Stencils stencils() const override { return triangles; }
-    void add_hessian(const Positions&, Projection, BlockSink&) const override {}
-    double energy, force;
-    Stencils triangles;
-  };
-  double value_, force_;
-};
-
-class Load final : public Energy {
- public:
-  explicit Load(double force) : force_(force) {}
-  EnergyRole role() const override { return EnergyRole::external; }
-  std::unique_ptr<BoundEnergy> bind(const Level& level, const Material&) const override {
-    return std::make_unique<LinearEnergy>(Positions::Constant(level.vertex_count(), 3, force_));
-  }
-
- private:
-  double force_;
+  Stencils stencils() const override { return sheet.triangles; }
+  double energy, force;
 };
 
 /// The message of a minimisation that cannot start, after its first words.
 std::string fault(const std::vector<NamedEnergy>& energies, const Positions& start) {
-  static const Level level = Level::of(0, grid({1, 1}, 3, 3, Diagonals::one_way));
+  const Level level = Level::of(0, sheet);
   const LevelModel model(level, Material(), energies, {});
   PlainObjective objective(model);
   Observer observer;
@@ -66,22 +44,21 @@ std::string fault(const std::vector<NamedEnergy>& energies, const Positions& sta
   return r.message.substr(first.size());
 }
 
-std::shared_ptr<const Energy> given(double value, double force) {
-  return std::make_shared<Given>(value, force);
-}
+std::shared_ptr<const Energy> given(double value, double force) { return energy_of(Given(value, force)); }
 
 }  // namespace
 
 TEST_CASE("what is not finite at the start is named: the energy, the triangle, the load or the forces") {
-  const Positions rest = grid({1, 1}, 3, 3, Diagonals::one_way).vertices;
+  const Positions& rest = sheet.vertices;
   const std::string units = "; are the moduli, the density and the loads in SI units?";
   CHECK(fault({{"soft", given(1, 1)}, {"stiff", given(inf, 1)}}, rest) ==
         "energy stiff is not, though no triangle is degenerate" + units);
   CHECK(fault({{"stiff", given(1e200, 1e200)}}, rest) ==
         "the forces are too large to be computed with" + units);
   CHECK(fault({{"stiff", given(1, inf)}}, rest) == "the forces at vertex 0 are not" + units);
-  CHECK(fault({{"soft", given(1, 1)}, {"wind", std::make_shared<Load>(1e200)}}, rest) ==
-        "the load is too large to be computed with" + units);
+  CHECK(fault({{"soft", given(1, 1)},
+               {"wind", energy_of(LinearEnergy(Positions::Constant(9, 3, 1e200)), EnergyRole::external)}},
+              rest) == "the load is too large to be computed with" + units);
 
   Positions start = rest;
   start.row(4) = start.row(3);
