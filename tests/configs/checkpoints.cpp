@@ -12,6 +12,7 @@
 #include "tests/support/command.h"
 #include "tests/support/drum.h"
 #include "tests/support/folders.h"
+#include "tests/support/meshes.h"
 #include "tests/support/sheets.h"
 #include "tests/support/solve.h"
 
@@ -296,19 +297,12 @@ TEST_CASE("So does one under load stepping with a level that begins at the scene
   // A big fan of needles over a row of tiny triangles: Loop's rest shape of the fan is centimetres away from
   // the coarse one, and the state of the coarse level does not get into it within the strain limit.
   constexpr int columns = 80;
-  TriangleMesh fan;
-  fan.vertices.resize(2 * columns + 3, 3);
-  fan.vertices.row(0) << 0.5, 1, 0;
-  fan.triangles.resize(3 * columns, 3);
-  for (int i = 0; i <= columns; ++i) {
-    fan.vertices.row(1 + i) << static_cast<double>(i) / columns, 0, 0;
-    fan.vertices.row(columns + 2 + i) = fan.vertices.row(1 + i) - Eigen::RowVector3d(0, 0.002, 0);
-  }
+  TriangleMesh fan = mesh_of({{0.5, 1, 0}}, {});
+  for (const double y : {0., -0.002})
+    for (int i = 0; i <= columns; ++i) append(fan, {{static_cast<double>(i) / columns, y, 0}}, {});
   for (int i = 0; i < columns; ++i) {
     const int a = 1 + i, c = columns + 2 + i;
-    fan.triangles.row(3 * i) << 0, a, a + 1;
-    fan.triangles.row(3 * i + 1) << a, c, a + 1;
-    fan.triangles.row(3 * i + 2) << a + 1, c, c + 1;
+    append(fan, {}, {{0, a, a + 1}, {a, c, a + 1}, {a + 1, c, c + 1}});
   }
   const Scratch folder;
   write_mesh(folder / "fan.obj", fan);

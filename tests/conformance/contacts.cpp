@@ -12,6 +12,7 @@
 #include "tests/support/conformance.h"
 #include "tests/support/decompositions.h"
 #include "tests/support/evaluate.h"
+#include "tests/support/meshes.h"
 #include "tests/support/time_limit.h"
 
 using namespace drape;
@@ -27,15 +28,7 @@ const std::vector<std::pair<std::string, std::string>> common = {
 Level two_sheets(int vertices) {
   const TriangleMesh one = random_triangulation({0.5, 0.4}, vertices, 1),
                      other = random_triangulation({0.5, 0.4}, vertices, 2);
-  const Eigen::Index n = one.vertices.rows(), m = one.triangles.rows();
-  TriangleMesh both;
-  both.vertices.resize(n + other.vertices.rows(), 3);
-  both.vertices.topRows(n) = one.vertices;
-  both.vertices.bottomRows(other.vertices.rows()) = other.vertices.rowwise() + Eigen::RowVector3d(1, 0, 0);
-  both.triangles.resize(m + other.triangles.rows(), 3);
-  both.triangles.topRows(m) = one.triangles;
-  both.triangles.bottomRows(other.triangles.rows()) = other.triangles.array() + static_cast<int>(n);
-  return Level::of(0, both);
+  return Level::of(0, both_of(one, other, {1, 0, 0}));
 }
 
 /// One sheet above the other, the lower one at z = 0; neither is quite flat.

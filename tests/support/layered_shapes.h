@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/kernel/interfaces/triangle_mesh.h"
+#include "tests/support/meshes.h"
 
 // Rest shapes whose layers lie on each other, and starts in which the layers are apart. Lengths in metres.
 
@@ -36,22 +37,19 @@ inline LayeredShape folded(const std::vector<Leaf>& leaves, double width, double
   }
   const int columns = static_cast<int>(rest.size()),
             rows = static_cast<int>(std::lround(width / spacing)) + 1;
-  LayeredShape shape;
-  shape.rest.vertices.resize(columns * rows, 3);
-  shape.start.resize(columns * rows, 3);
-  shape.rest.triangles.resize(2 * (columns - 1) * (rows - 1), 3);
-  Eigen::Index t = 0;
+  std::vector<Eigen::Vector3d> at_rest, at_start;
+  std::vector<Eigen::Vector3i> triangles;
   for (int j = 0; j < rows; ++j)
     for (int i = 0; i < columns; ++i) {
       const int v = i + columns * j;
       const double y = width * j / (rows - 1);
-      shape.rest.vertices.row(v) << rest[i].x(), y, rest[i].y();
-      shape.start.row(v) << start[i].x(), y, start[i].y();
+      at_rest.emplace_back(rest[i].x(), y, rest[i].y());
+      at_start.emplace_back(start[i].x(), y, start[i].y());
       if (i + 1 == columns || j + 1 == rows) continue;
-      shape.rest.triangles.row(t++) << v, v + 1, v + 1 + columns;
-      shape.rest.triangles.row(t++) << v, v + 1 + columns, v + columns;
+      triangles.emplace_back(v, v + 1, v + 1 + columns);
+      triangles.emplace_back(v, v + 1 + columns, v + columns);
     }
-  return shape;
+  return {mesh_of(at_rest, triangles), mesh_of(at_start, {}).vertices};
 }
 
 /// Layers of the cells of one square grid in the x-y plane, sewn to each other at common vertices.
@@ -101,19 +99,7 @@ class Sewing {
     if (is_first) first_ = own;
   }
 
-  LayeredShape shape() const {
-    LayeredShape result;
-    result.rest.vertices.resize(static_cast<Eigen::Index>(rest_.size()), 3);
-    result.start.resize(result.rest.vertices.rows(), 3);
-    result.rest.triangles.resize(static_cast<Eigen::Index>(triangles_.size()), 3);
-    for (std::size_t v = 0; v < rest_.size(); ++v) {
-      result.rest.vertices.row(static_cast<Eigen::Index>(v)) = rest_[v];
-      result.start.row(static_cast<Eigen::Index>(v)) = start_[v];
-    }
-    for (std::size_t t = 0; t < triangles_.size(); ++t)
-      result.rest.triangles.row(static_cast<Eigen::Index>(t)) = triangles_[t];
-    return result;
-  }
+  LayeredShape shape() const { return {mesh_of(rest_, triangles_), mesh_of(start_, {}).vertices}; }
 
  private:
   double spacing_;

@@ -10,6 +10,7 @@
 #include "core/numerics/formulas/membrane_formula.h"
 #include "core/numerics/patterns/generate.h"
 #include "tests/support/kernel_check.h"
+#include "tests/support/meshes.h"
 
 /// Edge vectors of a triangle at rest, and a state of it as KernelCheck takes it.
 inline const Eigen::Vector3d rest1(0.9, 0.2, 0.1), rest2(0.1, 1.1, -0.3);
@@ -46,12 +47,7 @@ void check_membrane(const std::function<long double(double, double, long double,
   const MembraneFormula<Law> energy({});
   Check::kernel() = {Law({}, material)};
   const auto rest_of = [&](const Eigen::Vector3d& e1, const Eigen::Vector3d& e2) -> typename Kernel::Rest {
-    TriangleMesh mesh;
-    mesh.vertices.setZero(3, 3);
-    mesh.vertices.row(1) = e1, mesh.vertices.row(2) = e2;
-    mesh.triangles.resize(1, 3);
-    mesh.triangles << 0, 1, 2;
-    return material_triangles(Level::of(0, mesh))[0].template head<5>();
+    return material_triangles(Level::of(0, mesh_of({{0, 0, 0}, e1, e2}, {{0, 1, 2}})))[0].template head<5>();
   };
   const typename Kernel::Rest rest = rest_of(rest1, rest2);
 

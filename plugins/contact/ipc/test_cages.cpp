@@ -6,6 +6,7 @@
 #include "core/numerics/patterns/primitives.h"
 #include "plugins/contact/ipc/bound_ipc.h"
 #include "tests/support/command.h"
+#include "tests/support/meshes.h"
 
 using namespace drape;
 using namespace drape::ipc;
@@ -20,13 +21,9 @@ TriangleMesh horned() {
   for (int v = 0; v < mesh.vertices.rows(); ++v)
     mesh.vertices.row(v) *=
         0.1 * (1 + 0.4 * std::sin(5 * mesh.vertices(v, 0)) * std::sin(4 * mesh.vertices(v, 1)));
-  const TriangleMesh second = unit_box();
-  const int n = static_cast<int>(mesh.vertices.rows()), m = static_cast<int>(mesh.triangles.rows());
-  mesh.vertices.conservativeResize(n + 8, 3);
-  mesh.vertices.bottomRows(8) = (0.05 * second.vertices).rowwise() + Eigen::RowVector3d(0.3, 0, 0);
-  mesh.triangles.conservativeResize(m + 12, 3);
-  mesh.triangles.bottomRows(12) = second.triangles.array() + n;
-  return mesh;
+  TriangleMesh box = unit_box();
+  box.vertices *= 0.05;
+  return both_of(mesh, box, {0.3, 0, 0});
 }
 
 ObstacleParameters with_cages(const std::string& file, int count) {

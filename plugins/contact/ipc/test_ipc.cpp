@@ -11,6 +11,7 @@
 #include "core/numerics/patterns/generate.h"
 #include "plugins/contact/ipc/bound_ipc.h"
 #include "tests/support/evaluate.h"
+#include "tests/support/meshes.h"
 #include "tests/support/registry.h"
 
 using namespace drape;
@@ -168,18 +169,8 @@ TEST_CASE("ipc: obstacles are valid and placed correctly, and named if they are 
   p.scale = 0.5;
   const Obstacle box = obstacle_of(p);
   CHECK((box.mesh.vertices.colwise().maxCoeff() - Eigen::RowVector3d(1, 0.5, 1.25)).norm() < 1e-14);
-  double volume = 0;  // positive: triangles face outwards
-  for (const auto& t : box.mesh.triangles.rowwise())
-    volume += Vector(box.mesh.vertices.row(t[0]))
-                  .dot(Vector(box.mesh.vertices.row(t[1])).cross(Vector(box.mesh.vertices.row(t[2])))) /
-              6;
-  CHECK(volume == Approx(1));
-  volume = 0;
-  for (const auto& t : ball.mesh.triangles.rowwise())
-    volume += Vector(ball.mesh.vertices.row(t[0]))
-                  .dot(Vector(ball.mesh.vertices.row(t[1])).cross(Vector(ball.mesh.vertices.row(t[2])))) /
-              6;
-  CHECK(volume == Approx(4 * M_PI / 3 * 0.027).epsilon(0.02));
+  CHECK(volume_of(box.mesh) == Approx(1));
+  CHECK(volume_of(ball.mesh) == Approx(4 * M_PI / 3 * 0.027).epsilon(0.02));
 
   ObstacleParameters missing;
   missing.name = "bunny";

@@ -14,6 +14,7 @@
 #include "plugins/contact/ipc/ipc.h"
 #include "tests/support/command.h"
 #include "tests/support/evaluate.h"
+#include "tests/support/meshes.h"
 
 using namespace drape;
 using namespace drape::ipc;
@@ -23,18 +24,6 @@ using Catch::Contains;
 namespace {
 
 constexpr double dhat = 0.01;
-
-void append(TriangleMesh& mesh, const std::vector<Vector>& vertices,
-            const std::vector<std::array<int, 3>>& triangles) {
-  for (const Vector& x : vertices) {
-    mesh.vertices.conservativeResize(mesh.vertices.rows() + 1, 3);
-    mesh.vertices.bottomRows(1) = x.transpose();
-  }
-  for (const auto& t : triangles) {
-    mesh.triangles.conservativeResize(mesh.triangles.rows() + 1, 3);
-    mesh.triangles.bottomRows(1) << t[0], t[1], t[2];
-  }
-}
 
 /// A flat sheet of 10 cm with 5 × 5 vertices, 12 the one in its middle.
 TriangleMesh sheet() {

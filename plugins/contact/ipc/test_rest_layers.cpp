@@ -4,6 +4,7 @@
 #include "core/numerics/patterns/generate.h"
 #include "plugins/contact/ipc/ipc.h"
 #include "tests/support/evaluate.h"
+#include "tests/support/meshes.h"
 
 using namespace drape;
 using namespace drape::ipc;
@@ -25,14 +26,8 @@ std::unique_ptr<Collisions> collisions(const BoundContact& contact, const Positi
 
 /// Two sheets of side 0.1, one `gap` above the other, that nothing connects.
 Level two_sheets(double gap, int columns) {
-  TriangleMesh lower = grid({0.1, 0.1}, columns, columns, Diagonals::one_way), both = lower;
-  const int n = static_cast<int>(lower.vertices.rows()), m = static_cast<int>(lower.triangles.rows());
-  both.vertices.conservativeResize(2 * n, 3);
-  both.vertices.bottomRows(n) = lower.vertices;
-  both.vertices.bottomRows(n).col(2).array() += gap;
-  both.triangles.conservativeResize(2 * m, 3);
-  both.triangles.bottomRows(m) = lower.triangles.array() + n;
-  return Level::of(0, both);
+  const TriangleMesh sheet = grid({0.1, 0.1}, columns, columns, Diagonals::one_way);
+  return Level::of(0, both_of(sheet, sheet, {0, 0, gap}));
 }
 
 /// The upper sheet moved to `gap` above the lower one.
@@ -119,12 +114,9 @@ TEST_CASE("ipc: neighbours along the cloth have no barrier, and the model's rema
   CHECK(collisions(*contact, fine.rest.vertices)->contact_count() == 0);
   CHECK_THAT(contact->remark(), Catch::Contains("have no barrier") && Catch::Contains("0.001 m"));
   // Slivers whose long edges are far above d̂.
-  TriangleMesh slivers;
-  slivers.vertices.resize(5, 3);
-  slivers.vertices << 0, 0, 0, 0.1, 0, 0, 0.05, 3e-4, 0, 0.05, 0.1, 0, 0.05, -3e-4, 0;
-  slivers.triangles.resize(4, 3);
-  slivers.triangles << 0, 1, 2, 0, 2, 3, 2, 1, 3, 1, 0, 4;
-  const Level level = Level::of(0, slivers);
+  const Level level =
+      Level::of(0, mesh_of({{0, 0, 0}, {0.1, 0, 0}, {0.05, 3e-4, 0}, {0.05, 0.1, 0}, {0.05, -3e-4, 0}},
+                           {{0, 1, 2}, {0, 2, 3}, {2, 1, 3}, {1, 0, 4}}));
   CHECK(collisions(*bound(level), level.rest.vertices)->contact_count() == 0);
   CHECK(bound(Level::of(0, grid({0.1, 0.1}, 21, 21, Diagonals::one_way)))->remark().empty());
 }

@@ -12,6 +12,7 @@
 #include "plugins/contact/shapes/shapes.h"
 #include "tests/support/evaluate.h"
 #include "tests/support/kernel_check.h"
+#include "tests/support/meshes.h"
 
 using namespace drape;
 using namespace drape::shapes;
@@ -237,13 +238,7 @@ TEST_CASE("shapes: a solid's support function and its mesh") {
     INFO(to_string(kind));
     const Solid s = solid_of(some(kind));
     const TriangleMesh mesh = tessellate(s, 1);
-    double volume = 0;
-    for (Eigen::Index i = 0; i < mesh.triangles.rows(); ++i) {
-      const Vector3d a = mesh.vertices.row(mesh.triangles(i, 0)), b = mesh.vertices.row(mesh.triangles(i, 1)),
-                     c = mesh.vertices.row(mesh.triangles(i, 2));
-      volume += a.dot(b.cross(c)) / 6;
-    }
-    CHECK(volume == Approx(volumes[static_cast<int>(kind)]).epsilon(0.01));
+    CHECK(volume_of(mesh) == Approx(volumes[static_cast<int>(kind)]).epsilon(0.01));
     const Topology topology = Topology::of(mesh.triangles, static_cast<int>(mesh.vertices.rows()));
     CHECK(topology.edge_triangles.col(1).minCoeff() >= 0);  // closed
     for (Eigen::Index i = 0; i < mesh.vertices.rows(); ++i)

@@ -3,6 +3,7 @@
 
 #include "core/numerics/patterns/generate.h"
 #include "tests/support/kernel_check.h"
+#include "tests/support/meshes.h"
 #include "tests/support/unregistered.h"
 // After it:
 #include "plugins/energy/hinge/hinge.cpp"
@@ -35,11 +36,8 @@ Check::State folded(double angle, double foot_u = 0.4, double height_u = 0.8, do
 }
 
 Kernel::Rest rest_of(const Check::State& x) {
-  TriangleMesh mesh;
-  mesh.vertices.setZero(4, 3);
-  for (int i = 0; i < 3; ++i) mesh.vertices.row(i + 1) = x.segment<3>(3 * i);
-  mesh.triangles.resize(2, 3);
-  mesh.triangles << 0, 1, 2, 1, 0, 3;
+  const TriangleMesh mesh =
+      mesh_of({{0, 0, 0}, x.segment<3>(0), x.segment<3>(3), x.segment<3>(6)}, {{0, 1, 2}, {1, 0, 3}});
   return rest_hinges(Level::of(0, mesh))[0].head<5>();
 }
 
@@ -119,10 +117,7 @@ TEST_CASE("hinge: a fold in closed form") {
 }
 
 TEST_CASE("hinge: a single triangle has no hinge") {
-  TriangleMesh mesh;
-  mesh.vertices = Eigen::Matrix3d::Identity();
-  mesh.triangles.resize(1, 3);
-  mesh.triangles << 0, 1, 2;
+  const TriangleMesh mesh = mesh_of({{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {{0, 1, 2}});
   const auto bound = Hinge({}).bind(Level::of(0, mesh), Material());
   CHECK(bound->value(mesh.vertices) == 0);
   CHECK(bound->stencils().rows() == 0);

@@ -8,6 +8,7 @@
 #include "core/numerics/patterns/generate.h"
 #include "plugins/energy/midedge_bending/shape_operators.h"
 #include "tests/support/kernel_check.h"
+#include "tests/support/meshes.h"
 #include "tests/support/unregistered.h"
 // After it:
 #include "plugins/energy/midedge_bending/midedge_bending.cpp"
@@ -298,12 +299,7 @@ TEST_CASE("midedge_bending: lattices have narrow stencils") {
 }
 
 TEST_CASE("midedge_bending: derivatives where neighbours across different edges are the same vertex") {
-  // A tetrahedron: every triangle has the same neighbour across all three edges.
-  TriangleMesh mesh;
-  mesh.vertices.resize(4, 3);
-  mesh.vertices << 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1;
-  mesh.triangles.resize(4, 3);
-  mesh.triangles << 0, 2, 1, 0, 1, 3, 0, 3, 2, 1, 2, 3;
+  const TriangleMesh mesh = tetrahedron();  // a triangle's neighbours have the same vertex across all edges
   const auto bound = bind(Level::of(0, mesh));
   CHECK(bound->stencils().maxCoeff() == 3);
   const Eigen::VectorXd noise = 0.1 * normal_numbers(12, 3);
@@ -318,10 +314,7 @@ TEST_CASE("midedge_bending: derivatives where neighbours across different edges 
 }
 
 TEST_CASE("midedge_bending: a single triangle does not bend") {
-  TriangleMesh mesh;
-  mesh.vertices = Eigen::Matrix3d::Identity();
-  mesh.triangles.resize(1, 3);
-  mesh.triangles << 0, 1, 2;
+  const TriangleMesh mesh = mesh_of({{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {{0, 1, 2}});
   const auto bound = bind(Level::of(0, mesh));
   Positions g = Positions::Zero(3, 3);
   CHECK(bound->value(mesh.vertices) == 0);

@@ -4,6 +4,7 @@
 
 #include "core/numerics/hierarchy/hierarchy.h"
 #include "core/numerics/patterns/generate.h"
+#include "tests/support/meshes.h"
 #include "tests/support/unregistered.h"
 // After it:
 #include "plugins/refiner/loop/loop.cpp"
@@ -20,19 +21,6 @@ Row row(const ProlongationMatrix& weights, int i) {
   for (ProlongationMatrix::InnerIterator it(weights, i); it; ++it)
     entries[static_cast<int>(it.col())] = it.value();
   return entries;
-}
-
-/// A regular polygon's corners around a centre, vertex 0.
-TriangleMesh wheel(int spokes) {
-  TriangleMesh mesh;
-  mesh.vertices.setZero(spokes + 1, 3);
-  mesh.triangles.resize(spokes, 3);
-  for (int i = 0; i < spokes; ++i) {
-    const double angle = 2 * std::numbers::pi * i / spokes;
-    mesh.vertices.row(i + 1) << std::cos(angle), std::sin(angle), 0;
-    mesh.triangles.row(i) << 0, 1 + i, 1 + (i + 1) % spokes;
-  }
-  return mesh;
 }
 
 int edge_between(const Level& level, int a, int b) {

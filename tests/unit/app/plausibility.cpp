@@ -6,6 +6,7 @@
 #include "core/numerics/patterns/generate.h"
 #include "core/numerics/patterns/primitives.h"
 #include "tests/support/command.h"
+#include "tests/support/meshes.h"
 #include "tests/support/solve.h"
 
 using namespace drape;
@@ -184,19 +185,15 @@ TEST_CASE("What no fabric has gets a warning that says what is usual, before a r
 TEST_CASE("Border vertices at one place are named, as long as they are not welded") {
   const Scratch folder;
   // Two sheets side by side; the second one begins where the first one ends.
-  TriangleMesh sheet = grid({0.3, 0.3}, 4, 4, Diagonals::one_way), both;
-  const int n = static_cast<int>(sheet.vertices.rows());
-  both.vertices.resize(2 * n, 3);
-  both.vertices << sheet.vertices, sheet.vertices.rowwise() + Eigen::RowVector3d(0.3, 1e-8, 0);
-  both.triangles.resize(2 * sheet.triangles.rows(), 3);
-  both.triangles << sheet.triangles, (sheet.triangles.array() + n).matrix();
+  const TriangleMesh sheet = grid({0.3, 0.3}, 4, 4, Diagonals::one_way);
+  TriangleMesh both = both_of(sheet, sheet, {0.3, 1e-8, 0});
   write_mesh(folder / "both.obj", both);
   const std::string cloth = "{shape: file, file: " + (folder / "both.obj").string() + "}";
   CHECK_THAT(warnings_of(scene_yaml(cloth, "", 3.18e-4, "[]")),
              Contains("2: 4 border vertices lie on another one, as ") &&
                  Contains("(counted from 0) at (0.3, 0, 0): the cloth is not joined there; if it should be, "
                           "weld them in the file"));
-  both.vertices.bottomRows(n).col(0).array() += 1e-3;
+  both.vertices.bottomRows(16).col(0).array() += 1e-3;
   write_mesh(folder / "both.obj", both);
   CHECK(warnings_of(scene_yaml(cloth, "", 3.18e-4, "[]")) == "");
 }

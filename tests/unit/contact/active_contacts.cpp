@@ -8,6 +8,7 @@
 #include "core/numerics/contact_forces/contact_stiffness.h"
 #include "core/numerics/patterns/generate.h"
 #include "tests/support/evaluate.h"
+#include "tests/support/meshes.h"
 #include "tests/support/solve.h"
 
 using namespace drape;
@@ -138,15 +139,12 @@ TEST_CASE("Tangential displacements persist between steps, limited to the smooth
 TEST_CASE("Ten layers that stick to each other do not creep") {
   constexpr int layers = 10, columns = 4, n = columns * columns;
   TriangleMesh rest;
-  rest.vertices.resize(layers * n, 3);
   const TriangleMesh one = grid({0.1, 0.1}, columns, columns, Diagonals::one_way);
-  rest.triangles.resize(layers * one.triangles.rows(), 3);
   Positions x0(layers * n, 3), x1(layers * n, 3);
   for (int i = 0; i < layers; ++i) {
     const Eigen::RowVector3d apart(i, 0, 0), above(1e-3 * i, 2e-3 * i, 0.3 * dhat * i),
         slid(0.4 * epsilon * i, 0.1 * epsilon * (i % 3), 0);
-    rest.vertices.middleRows(i * n, n) = one.vertices.rowwise() + apart;
-    rest.triangles.middleRows(i * one.triangles.rows(), one.triangles.rows()) = one.triangles.array() + i * n;
+    rest = both_of(rest, one, apart);
     x0.middleRows(i * n, n) = one.vertices.rowwise() + above;
     x1.middleRows(i * n, n) = x0.middleRows(i * n, n).rowwise() + slid;
   }

@@ -9,6 +9,7 @@
 #include <random>
 
 #include "core/numerics/patterns/generate.h"
+#include "tests/support/meshes.h"
 
 using namespace drape;
 
@@ -16,25 +17,15 @@ namespace {
 
 using Vector = Eigen::Vector3d;
 
-TriangleMesh mesh_of(const std::vector<Vector>& points, const std::vector<Eigen::Vector3i>& triangles) {
-  TriangleMesh mesh;
-  mesh.vertices.resize(static_cast<int>(points.size()), 3);
-  mesh.triangles.resize(static_cast<int>(triangles.size()), 3);
-  for (std::size_t i = 0; i < points.size(); ++i) mesh.vertices.row(i) = points[i].transpose();
-  for (std::size_t t = 0; t < triangles.size(); ++t) mesh.triangles.row(t) = triangles[t].transpose();
-  return mesh;
-}
-
 std::size_t count(const TriangleMesh& mesh) { return self_intersections(mesh).size(); }
 
 /// Two triangles without a common vertex: (0,0,0) (1,0,0) (0,1,0), and this one.
 std::size_t count_against_unit(const Vector& a, const Vector& b, const Vector& c) {
   const TriangleMesh unit = mesh_of({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}});
   const TriangleMesh other = mesh_of({a, b, c}, {{0, 1, 2}});
-  TriangleMesh both = mesh_of({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, a, b, c}, {{0, 1, 2}, {3, 4, 5}});
   const std::size_t between = intersections(unit, other).size();
   CHECK(intersections(other, unit).size() == between);
-  CHECK(count(both) == between);
+  CHECK(count(both_of(unit, other, {0, 0, 0})) == between);
   return between;
 }
 

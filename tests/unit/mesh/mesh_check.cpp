@@ -5,6 +5,7 @@
 
 #include "core/numerics/mesh/check.h"
 #include "core/numerics/patterns/generate.h"
+#include "tests/support/meshes.h"
 
 using namespace drape;
 using Faults = std::vector<std::string>;
@@ -12,24 +13,7 @@ using Faults = std::vector<std::string>;
 namespace {
 
 /// A strip of two triangles above z = 0, so that only the checks of any mesh apply.
-TriangleMesh strip() {
-  TriangleMesh mesh;
-  mesh.vertices.resize(4, 3);
-  mesh.vertices << 0, 0, 1, 1, 0, 1, 0, 1, 1, 1, 1, 1;
-  mesh.triangles.resize(2, 3);
-  mesh.triangles << 0, 1, 2, 2, 1, 3;
-  return mesh;
-}
-
-void append_triangle(TriangleMesh& mesh, int a, int b, int c) {
-  mesh.triangles.conservativeResize(mesh.triangles.rows() + 1, 3);
-  mesh.triangles.bottomRows(1) << a, b, c;
-}
-
-void append_vertex(TriangleMesh& mesh, double x, double y, double z) {
-  mesh.vertices.conservativeResize(mesh.vertices.rows() + 1, 3);
-  mesh.vertices.bottomRows(1) << x, y, z;
-}
+TriangleMesh strip() { return mesh_of({{0, 0, 1}, {1, 0, 1}, {0, 1, 1}, {1, 1, 1}}, {{0, 1, 2}, {2, 1, 3}}); }
 
 }  // namespace
 
@@ -47,7 +31,7 @@ TEST_CASE("every fault is one line that names the element", "[check]") {
 
   SECTION("index out of range") {
     mesh.triangles(1, 2) = 4;
-    append_triangle(mesh, -1, 1, 3);
+    append(mesh, {}, {{-1, 1, 3}});
     CHECK(check_mesh(mesh) == Faults{"2 triangles name a vertex that is not there: 1 (2, 1, 4), 2 (-1, 1, 3) "
                                      "(counted from 0); vertices go from 0 to 3"});
   }
@@ -78,11 +62,11 @@ TEST_CASE("every fault is one line that names the element", "[check]") {
                                      "rounding moves vertices by 2.22e-13 m; move it nearer"});
   }
   SECTION("vertex without triangle") {
-    append_vertex(mesh, 5, 5, 5);
+    append(mesh, {{5, 5, 5}}, {});
     CHECK(check_mesh(mesh) == Faults{"1 vertex belongs to no triangle: 4 (counted from 0); remove them"});
   }
   SECTION("repeated index") {
-    append_triangle(mesh, 1, 3, 1);
+    append(mesh, {}, {{1, 3, 1}});
     CHECK(check_mesh(mesh) ==
           Faults{"1 triangle repeats a vertex: 2 (1, 3, 1) (counted from 0); remove them"});
   }
@@ -97,8 +81,7 @@ TEST_CASE("every fault is one line that names the element", "[check]") {
     CHECK(check_mesh(mesh).empty());
   }
   SECTION("edge with three triangles") {
-    append_vertex(mesh, 0, 0, 2);
-    append_triangle(mesh, 1, 2, 4);
+    append(mesh, {{0, 0, 2}}, {{1, 2, 4}});
     CHECK(check_mesh(mesh) ==
           Faults{"1 edge has more than two triangles: (1, 2) in triangles 0, 1, 2 (counted "
                  "from 0); a sheet has one or two at each edge: remove those between its "
@@ -112,22 +95,20 @@ TEST_CASE("every fault is one line that names the element", "[check]") {
                  "the same front side"});
   }
   SECTION("bow-tie") {
-    append_vertex(mesh, 2, 1, 1);
-    append_vertex(mesh, 2, 2, 1);
-    append_triangle(mesh, 3, 4, 5);
+    append(mesh, {{2, 1, 1}, {2, 2, 1}}, {{3, 4, 5}});
     CHECK(check_mesh(mesh) ==
           Faults{"1 vertex joins separate fans of triangles: 3 of 2 fans (counted from 0); "
                  "give every fan a vertex of its own, or join the fans along an edge"});
   }
   SECTION("duplicate triangle") {
-    append_triangle(mesh, 1, 3, 2);
+    append(mesh, {}, {{1, 3, 2}});
     CHECK(check_mesh(mesh) ==
           Faults{"1 triangle has the same vertices as another: 2 (1, 3, 2) as 1 (counted from 0); remove one "
                  "of each two"});
   }
   SECTION("the same kind often: its number and a few examples") {
-    for (int k = 0; k < 100; ++k) append_vertex(mesh, k, 5, 5);
-    append_triangle(mesh, 1, 3, 1);
+    for (int k = 0; k < 100; ++k) append(mesh, {{1.0 * k, 5, 5}}, {});
+    append(mesh, {}, {{1, 3, 1}});
     CHECK(check_mesh(mesh) ==
           Faults{"100 vertices belong to no triangle: 4, 5, 6, 7, 8, … (counted from 0); remove them",
                  "1 triangle repeats a vertex: 2 (1, 3, 1) (counted from 0); remove them"});
@@ -148,10 +129,10 @@ TriangleMesh flat_cover(const TriangleMesh& sheet, const std::vector<int>& joine
   for (int v = 0; v < sheet.vertices.rows(); ++v)
     if (number[v] < 0) {
       number[v] = static_cast<int>(mesh.vertices.rows());
-      append_vertex(mesh, sheet.vertices(v, 0), sheet.vertices(v, 1), 0);
+      append(mesh, {{sheet.vertices(v, 0), sheet.vertices(v, 1), 0}}, {});
     }
   for (const auto& t : sheet.triangles.rowwise())
-    append_triangle(mesh, number[t[0]], number[t[2]], number[t[1]]);
+    append(mesh, {}, {{number[t[0]], number[t[2]], number[t[1]]}});
   return mesh;
 }
 
@@ -161,18 +142,13 @@ TEST_CASE("shapes that are flat at rest are valid: a cushion, a folded sheet, a 
           "[check]") {
   const TriangleMesh sheet = flat_sheet();
   CHECK(check_mesh(flat_cover(sheet, {0, 5, 10, 15, 20})).empty());
-  TriangleMesh hexagon;
-  append_vertex(hexagon, 0, 0, 0);
-  for (int k = 0; k < 6; ++k) append_vertex(hexagon, std::cos(k * M_PI / 3), std::sin(k * M_PI / 3), 0);
-  for (int k = 0; k < 6; ++k) append_triangle(hexagon, 0, 1 + k, 1 + (k + 1) % 6);
-  CHECK(check_mesh(flat_cover(hexagon, {1, 2, 3, 4, 5, 6})).empty());
+  CHECK(check_mesh(flat_cover(wheel(6), {1, 2, 3, 4, 5, 6})).empty());
   TriangleMesh down = sheet;
   down.triangles.col(1).swap(down.triangles.col(2));
   CHECK(check_mesh(down).empty());
   TriangleMesh strip_over = strip();
   strip_over.vertices.col(2).setZero();
-  append_vertex(strip_over, 0.2, 0.2, 0);
-  append_triangle(strip_over, 3, 1, 4);
+  append(strip_over, {{0.2, 0.2, 0}}, {{3, 1, 4}});
   CHECK(check_mesh(strip_over).empty());
 }
 
@@ -201,10 +177,9 @@ TEST_CASE("a cloth whose triangles are not joined is to be welded", "[check]") {
         if (soup.vertices.row(old) == sheet.vertices.row(sheet.triangles(t, k))) v[k] = old;
       if (v[k] >= 0) continue;
       v[k] = static_cast<int>(soup.vertices.rows());
-      const auto p = sheet.vertices.row(sheet.triangles(t, k));
-      append_vertex(soup, p[0], p[1], p[2]);
+      append(soup, {sheet.vertices.row(sheet.triangles(t, k))}, {});
     }
-    append_triangle(soup, v[0], v[1], v[2]);
+    append(soup, {}, {{v[0], v[1], v[2]}});
   }
   CHECK(check_mesh(soup) ==
         Faults{"32 triangles share no vertices, but lie edge to edge (a triangle soup); weld "
@@ -214,11 +189,9 @@ TEST_CASE("a cloth whose triangles are not joined is to be welded", "[check]") {
 }
 
 TEST_CASE("a vertex within an edge of the triangle beside it is a T-junction", "[check]") {
-  TriangleMesh mesh;  // a square whose lower half has a vertex in the middle of the diagonal
-  mesh.vertices.resize(5, 3);
-  mesh.vertices << 0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0, 0.5, 0.5, 0;
-  mesh.triangles.resize(3, 3);
-  mesh.triangles << 0, 1, 4, 1, 2, 4, 0, 2, 3;
+  // A square whose lower half has a vertex in the middle of the diagonal.
+  TriangleMesh mesh =
+      mesh_of({{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0.5, 0.5, 0}}, {{0, 1, 4}, {1, 2, 4}, {0, 2, 3}});
   const double angle = GENERATE(0, 0.4);
   for (auto x : mesh.vertices.rowwise()) x = Eigen::RowVector3d(x[0] * cos(angle), x[1], x[0] * sin(angle));
   const Faults faults = check_mesh(mesh);
@@ -230,18 +203,12 @@ TEST_CASE("a vertex within an edge of the triangle beside it is a T-junction", "
         "cloth would open there: split the edge's triangle at the vertex");
   // In another part of the cloth the vertex is that of another sheet.
   mesh.triangles.row(2) << 5, 6, 3;
-  append_vertex(mesh, 0, 0, 0);
-  append_vertex(mesh, cos(angle), 1, sin(angle));
+  append(mesh, {{0, 0, 0}, {cos(angle), 1, sin(angle)}}, {});
   CHECK(check_mesh(mesh).empty());
 }
 
 TEST_CASE("the inner edge of a fan closed around a vertex makes no bow-tie", "[check]") {
-  TriangleMesh mesh;  // a tetrahedron, closed
-  mesh.vertices.resize(4, 3);
-  mesh.vertices << 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1;
-  mesh.triangles.resize(4, 3);
-  mesh.triangles << 0, 2, 1, 0, 1, 3, 1, 2, 3, 2, 0, 3;
-  CHECK(check_mesh(mesh).empty());
+  CHECK(check_mesh(tetrahedron()).empty());
 }
 
 TEST_CASE("the smallest angle is in degrees", "[check]") {

@@ -45,10 +45,8 @@ TriangleMesh awkward_mesh() {
 
 /// The mesh of most reading tests: a square of two triangles.
 void check_square(const TriangleMesh& mesh) {
-  Positions vertices(4, 3);
-  vertices << 0, 0, 0, 1, 0, 0, 1, 1.5, 0, 0, 1, -0.25;
-  Triangles triangles(2, 3);
-  triangles << 0, 1, 2, 0, 2, 3;
+  const Positions vertices{{0, 0, 0}, {1, 0, 0}, {1, 1.5, 0}, {0, 1, -0.25}};
+  const Triangles triangles{{0, 1, 2}, {0, 2, 3}};
   REQUIRE(mesh.vertices.rows() == 4);
   REQUIRE(mesh.triangles.rows() == 2);
   CHECK(mesh.vertices == vertices);

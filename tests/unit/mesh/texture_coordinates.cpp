@@ -10,6 +10,7 @@
 #include "core/numerics/mesh_files/io.h"
 #include "core/numerics/patterns/generate.h"
 #include "tests/support/command.h"
+#include "tests/support/meshes.h"
 
 using namespace drape;
 
@@ -21,7 +22,7 @@ constexpr const char* two_squares =
     "vt 0 0.5\nvt 0.5 0.5\nvt 0.5 1\nvt 0 1\nvt 0.125 0\nvt 0.875 0.125 0\nvt 0.875 0.25\nvt 0.125 0.375\n"
     "f 1/1 2/2 5/3 4/4\nf 2/-4/1 3/6 6/7/1\nf 2/5 6/7 5/8\n";
 
-TriangleMesh mesh_of(const std::string& text, const std::string& extension = ".obj") {
+TriangleMesh mesh_in(const std::string& text, const std::string& extension = ".obj") {
   const Scratch folder;
   folder.write("m" + extension, text);
   return read_mesh(folder / ("m" + extension));
@@ -74,17 +75,17 @@ double difference(const TriangleMesh& mesh, const std::function<Eigen::RowVector
 }  // namespace
 
 TEST_CASE("a vt of an OBJ belongs to a corner, so a vertex at a seam has two") {
-  const TriangleMesh mesh = mesh_of(two_squares);
+  const TriangleMesh mesh = mesh_in(two_squares);
   REQUIRE(mesh.triangles.rows() == 4);
   REQUIRE(mesh.uv.rows() == 4);
   for (Eigen::Index t = 0; t < 4; ++t)
     for (int k = 0; k < 3; ++k)
       CHECK(uv_at(mesh, t, k) == expected_uv(t < 2, mesh.vertices.row(mesh.triangles(t, k))));
-  CHECK(mesh_of("v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 1 1\nf 1 2 3\n").uv.rows() == 0);
+  CHECK(mesh_in("v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 1 1\nf 1 2 3\n").uv.rows() == 0);
 }
 
 TEST_CASE("a face without vt has (0, 0) beside faces that have some") {
-  const TriangleMesh mesh = mesh_of(
+  const TriangleMesh mesh = mesh_in(
       "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\nv 2 1 0\nvt 0.25\nvt 1 1\nvt 0 1\nf 1 2 3\nf 2/1 4/2 3/3\nf 2 5 "
       "4\n");
   CornerUv uv(3, 6);
@@ -93,7 +94,7 @@ TEST_CASE("a face without vt has (0, 0) beside faces that have some") {
 }
 
 TEST_CASE("uv are refined linearly in each triangle, and a seam keeps both of its sides") {
-  const Hierarchy hierarchy = Hierarchy::of(mesh_of(two_squares), MidpointSplit(), 3);
+  const Hierarchy hierarchy = Hierarchy::of(mesh_in(two_squares), MidpointSplit(), 3);
   const TriangleMesh& finest = hierarchy.levels[2].rest;
   REQUIRE(finest.uv.rows() == 64);
   int at_seam = 0;
@@ -124,7 +125,7 @@ TEST_CASE("a PLY has uv at the corners of its faces or at its vertices") {
   const std::string head = "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\n";
   CornerUv uv(2, 6);
   uv << 0, 0, 1, 0, 1, 0.5, 0, 0, 1, 0.5, 0, 1;
-  CHECK(mesh_of(head + "property float z\nelement face 1\nproperty list uchar float texcoord\n"
+  CHECK(mesh_in(head + "property float z\nelement face 1\nproperty list uchar float texcoord\n"
                        "property list uchar int vertex_indices\nend_header\n"
                        "0 0 0\n1 0 0\n1 1 0\n0 1 0\n8 0 0 1 0 1 0.5 0 1 4 0 1 2 3\n",
                 ".ply")
@@ -132,7 +133,7 @@ TEST_CASE("a PLY has uv at the corners of its faces or at its vertices") {
   for (const std::string names : {"s t", "u v", "texture_u texture_v"}) {
     INFO(names);
     const std::size_t blank = names.find(' ');
-    CHECK(mesh_of(head + "property float z\nproperty float " + names.substr(0, blank) + "\nproperty float " +
+    CHECK(mesh_in(head + "property float z\nproperty float " + names.substr(0, blank) + "\nproperty float " +
                       names.substr(blank + 1) +
                       "\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n"
                       "0 0 0 0 0\n1 0 0 1 0\n1 1 0 1 0.5\n0 1 0 0 1\n4 0 1 2 3\n",
@@ -163,13 +164,9 @@ TEST_CASE("a flat mesh has uv in its own plane, from 0 to 1 along the longer sid
   CHECK(difference(placed(banner, turn(180, Vector3d::UnitY())),
                    [](double x, double y) { return Eigen::RowVector2d(x / 2, y / 2); }) < 1e-14);
 
-  TriangleMesh bag = banner;  // two layers that face away from each other
-  bag.vertices.conservativeResize(30, 3);
-  bag.vertices.bottomRows(15) = banner.vertices;
-  bag.triangles.conservativeResize(32, 3);
-  for (int t = 0; t < 16; ++t)
-    bag.triangles.row(16 + t) << 15 + banner.triangles(t, 0), 15 + banner.triangles(t, 2),
-        15 + banner.triangles(t, 1);
+  TriangleMesh back = banner;
+  back.triangles.col(1).swap(back.triangles.col(2));
+  const TriangleMesh bag = both_of(banner, back, {0, 0, 0});
   REQUIRE(PlanarUv::of(bag));
   const CornerUv of_bag = PlanarUv::of(bag)->at(bag);
   CHECK(of_bag.minCoeff() == 0);

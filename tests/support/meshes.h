@@ -1,0 +1,62 @@
+#pragma once
+
+#include <Eigen/Geometry>
+#include <cmath>
+#include <vector>
+
+#include "core/kernel/interfaces/triangle_mesh.h"
+
+/// Adds vertices [m] and triangles to a mesh.
+inline void append(drape::TriangleMesh& mesh, const std::vector<Eigen::Vector3d>& vertices,
+                   const std::vector<Eigen::Vector3i>& triangles) {
+  Eigen::Index v = mesh.vertices.rows(), t = mesh.triangles.rows();
+  mesh.vertices.conservativeResize(v + static_cast<Eigen::Index>(vertices.size()), 3);
+  mesh.triangles.conservativeResize(t + static_cast<Eigen::Index>(triangles.size()), 3);
+  for (const Eigen::Vector3d& x : vertices) mesh.vertices.row(v++) = x;
+  for (const Eigen::Vector3i& corners : triangles) mesh.triangles.row(t++) = corners;
+}
+
+inline drape::TriangleMesh mesh_of(const std::vector<Eigen::Vector3d>& vertices,
+                                   const std::vector<Eigen::Vector3i>& triangles) {
+  drape::TriangleMesh mesh;
+  append(mesh, vertices, triangles);
+  return mesh;
+}
+
+/// Both in one mesh, which nothing connects; the second one's vertices follow, moved.
+inline drape::TriangleMesh both_of(const drape::TriangleMesh& first, const drape::TriangleMesh& second,
+                                   const Eigen::RowVector3d& move) {
+  const Eigen::Index n = first.vertices.rows();
+  drape::TriangleMesh both{drape::Positions(n + second.vertices.rows(), 3),
+                           drape::Triangles(first.triangles.rows() + second.triangles.rows(), 3)};
+  both.vertices << first.vertices, second.vertices.rowwise() + move;
+  both.triangles << first.triangles, (second.triangles.array() + static_cast<int>(n)).matrix();
+  return both;
+}
+
+/// A regular polygon around the origin, vertex 0, with a triangle for each corner.
+inline drape::TriangleMesh wheel(int spokes) {
+  drape::TriangleMesh mesh{drape::Positions::Zero(spokes + 1, 3), drape::Triangles(spokes, 3)};
+  for (int i = 0; i < spokes; ++i) {
+    const double angle = 2 * M_PI * i / spokes;
+    mesh.vertices.row(i + 1) << std::cos(angle), std::sin(angle), 0;
+    mesh.triangles.row(i) << 0, 1 + i, 1 + (i + 1) % spokes;
+  }
+  return mesh;
+}
+
+/// Closed, with four vertices.
+inline drape::TriangleMesh tetrahedron() {
+  return mesh_of({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}});
+}
+
+/// Within a closed mesh; positive if its triangles face outwards.
+inline double volume_of(const drape::TriangleMesh& mesh) {
+  double volume = 0;
+  for (const auto& t : mesh.triangles.rowwise()) {
+    const Eigen::Vector3d a = mesh.vertices.row(t[0]), b = mesh.vertices.row(t[1]),
+                          c = mesh.vertices.row(t[2]);
+    volume += a.dot(b.cross(c)) / 6;
+  }
+  return volume;
+}
