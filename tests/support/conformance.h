@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <catch2/catch.hpp>
 #include <filesystem>
 #include <fstream>
 #include <random>
@@ -9,7 +10,9 @@
 #include <utility>
 #include <vector>
 
-#include "core/kernel/interfaces/triangle_mesh.h"
+#include "core/kernel/interfaces/energy.h"
+#include "tests/support/decompositions.h"
+#include "tests/support/evaluate.h"
 #include "tests/support/folders.h"
 #include "tests/support/registry.h"
 
@@ -51,6 +54,21 @@ inline std::string conformance_config(const drape::RegistryEntry& entry, const s
   if (own.empty()) return text + "}";
   // Indented, as YAML asks of what belongs to a key.
   return text + ",\n  " + std::regex_replace(own, std::regex("\n"), "\n  ") + "}";
+}
+
+/// Clamped and absolute Hessians are positive semidefinite, the first above the exact one and the second
+/// above the first. Returns whether the exact one is indefinite.
+inline bool check_projections(const drape::BoundEnergy& energy, const drape::Positions& x) {
+  using drape::Projection;
+  const Eigen::MatrixXd exact = dense(hessian_of(energy, x, Projection::none));
+  const Eigen::MatrixXd clamped = dense(hessian_of(energy, x, Projection::clamp));
+  const Eigen::MatrixXd absolute = dense(hessian_of(energy, x, Projection::absolute));
+  const double rounding = 1e-12 * absolute.norm();
+  CHECK(eigenvalues_of(clamped).minCoeff() >= -rounding);
+  CHECK(eigenvalues_of(absolute).minCoeff() >= -rounding);
+  CHECK(eigenvalues_of(clamped - exact).minCoeff() >= -rounding);
+  CHECK(eigenvalues_of(absolute - clamped).minCoeff() >= -rounding);
+  return eigenvalues_of(exact).minCoeff() < -1e-6 * exact.norm();
 }
 
 /// Coordinates within `size` of 0, the same on every machine.

@@ -54,6 +54,16 @@ Eigen::MatrixXd differences(const Function& f, drape::Positions x, double h) {
   return result;
 }
 
+/// The energy's gradient and Hessian by such differences.
+inline Eigen::VectorXd gradient_by_differences(const drape::BoundEnergy& energy, const drape::Positions& x,
+                                               double h) {
+  return differences([&](const drape::Positions& y) { return energy.value(y); }, x, h).transpose();
+}
+inline Eigen::MatrixXd hessian_by_differences(const drape::BoundEnergy& energy, const drape::Positions& x,
+                                              double h) {
+  return differences([&](const drape::Positions& y) { return gradient_of(energy, y); }, x, h);
+}
+
 /// n×3 as one column of 3n.
 inline Eigen::VectorXd flat(const drape::Positions& x) {
   return Eigen::Map<const Eigen::VectorXd>(x.data(), x.size());

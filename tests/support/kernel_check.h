@@ -95,13 +95,8 @@ struct KernelCheck {
       Hessian projected;
       for (int j = 0; j < n; ++j)
         for (int i = 0; i < n; ++i) projected(i, j) = first_lane(a(i, j));
-      Eigen::VectorXd values = eigen.values;
-      const double blend = projection.blend;
-      if (projection.kind == Projection::clamp) values = (1 - blend) * values + blend * values.cwiseMax(0);
-      if (projection.kind == Projection::absolute) values = (1 - blend) * values + blend * values.cwiseAbs();
-      const Eigen::MatrixXd expected = eigen.vectors * values.asDiagonal() * eigen.vectors.transpose();
-      CHECK((matrix_of(projected) - expected).norm() <= 1e-10 * full.norm());
-      if (projection.kind == Projection::none || blend < 1) continue;
+      CHECK((matrix_of(projected) - recomposed(eigen, projection)).norm() <= 1e-10 * full.norm());
+      if (projection.kind == Projection::none || projection.blend < 1) continue;
       const double smallest = eigenvalues_of(matrix_of(projected))[0];
       CHECK(smallest >= -1e-12 * full.norm());
     }

@@ -207,12 +207,9 @@ TEST_CASE("midedge_bending: friction adds its moment to a bent strip's, and deri
       CHECK(own->value(x) == Approx(expected));
       CHECK(own->value(x) > bind(level)->value(x));
       const Positions g = gradient_of(*own, x);
-      const double step = 1e-5;
-      const auto value = [&](const Positions& y) { return own->value(y); };
-      CHECK((differences(value, x, step).transpose() - flat(g)).norm() <= 1e-6 * g.norm());
+      CHECK((gradient_by_differences(*own, x, 1e-5) - flat(g)).norm() <= 1e-6 * g.norm());
       const Eigen::MatrixXd h = dense(hessian_of(*own, x, Projection::none));
-      const auto gradient = [&](const Positions& y) { return gradient_of(*own, y); };
-      CHECK((differences(gradient, x, step) - h).norm() <= 1e-5 * h.norm());
+      CHECK((hessian_by_differences(*own, x, 1e-5) - h).norm() <= 1e-5 * h.norm());
       const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(
           dense(hessian_of(*own, x, Projection::clamp)));
       CHECK(eigen.eigenvalues().minCoeff() > -1e-10 * eigen.eigenvalues().maxCoeff());
@@ -306,11 +303,9 @@ TEST_CASE("midedge_bending: derivatives where neighbours across different edges 
   const Positions x = mesh.vertices + Eigen::Map<const Positions>(noise.data(), 4, 3);
   const Positions g = gradient_of(*bound, x);
   REQUIRE(g.norm() > 0);
-  const auto value = [&](const Positions& y) { return bound->value(y); };
-  CHECK((differences(value, x, 1e-4).transpose() - flat(g)).norm() <= 1e-7 * g.norm());
+  CHECK((gradient_by_differences(*bound, x, 1e-4) - flat(g)).norm() <= 1e-7 * g.norm());
   const Eigen::MatrixXd h = dense(hessian_of(*bound, x, Projection::none));
-  const auto gradient = [&](const Positions& y) { return gradient_of(*bound, y); };
-  CHECK((differences(gradient, x, 1e-4) - h).norm() <= 1e-7 * h.norm());
+  CHECK((hessian_by_differences(*bound, x, 1e-4) - h).norm() <= 1e-7 * h.norm());
 }
 
 TEST_CASE("midedge_bending: a single triangle does not bend") {
