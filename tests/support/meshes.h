@@ -4,7 +4,8 @@
 #include <cmath>
 #include <vector>
 
-#include "core/kernel/interfaces/triangle_mesh.h"
+#include "core/kernel/interfaces/level.h"
+#include "core/numerics/patterns/generate.h"
 
 /// Adds vertices [m] and triangles to a mesh.
 inline void append(drape::TriangleMesh& mesh, const std::vector<Eigen::Vector3d>& vertices,
@@ -32,6 +33,13 @@ inline drape::TriangleMesh both_of(const drape::TriangleMesh& first, const drape
   both.vertices << first.vertices, second.vertices.rowwise() + move;
   both.triangles << first.triangles, (second.triangles.array() + static_cast<int>(n)).matrix();
   return both;
+}
+
+/// A square sheet of n × n vertices around the origin.
+inline drape::Level square_sheet(int n, double side) {
+  drape::TriangleMesh mesh = drape::grid({side, side}, n, n, drape::Diagonals::criss_cross);
+  mesh.vertices.rowwise() -= Eigen::RowVector3d(side / 2, side / 2, 0);
+  return drape::Level::of(0, mesh);
 }
 
 /// A regular polygon around the origin, vertex 0, with a triangle for each corner.

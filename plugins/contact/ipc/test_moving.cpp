@@ -1,5 +1,4 @@
 #include <catch2/catch.hpp>
-#include <random>
 
 #include "core/kernel/threads/parallel.h"
 #include "core/numerics/collision_detection/intersections.h"
@@ -9,6 +8,8 @@
 #include "core/numerics/patterns/generate.h"
 #include "plugins/contact/ipc/bound_ipc.h"
 #include "tests/support/command.h"
+#include "tests/support/meshes.h"
+#include "tests/support/random.h"
 
 using namespace drape;
 using namespace drape::ipc;
@@ -18,11 +19,7 @@ namespace {
 
 Obstacle obstacle_of(const ObstacleParameters& p) { return Obstacle::of(p, 0, ObstacleMeshes::of(p, 0)); }
 
-std::mt19937 generator(11);
-double uniform(double low, double high) {
-  return std::uniform_real_distribution<double>(low, high)(generator);
-}
-Vector any(double size) { return {uniform(-size, size), uniform(-size, size), uniform(-size, size)}; }
+RandomNumbers uniform(11);
 
 ObstacleParameters box(const Vector& size, const Vector& translate = Vector::Zero()) {
   ObstacleParameters p;
@@ -31,12 +28,6 @@ ObstacleParameters box(const Vector& size, const Vector& translate = Vector::Zer
   p.size = size;
   p.translate = translate;
   return p;
-}
-
-Level square(int side, double size) {
-  TriangleMesh mesh = grid({size, size}, side, side, Diagonals::criss_cross);
-  mesh.vertices.rowwise() -= Eigen::RowVector3d(size / 2, size / 2, 0);
-  return Level::of(0, mesh);
 }
 
 Positions wavy(const Level& level, double height) {
@@ -54,10 +45,6 @@ std::unique_ptr<BoundContact> bound(const Bodies& bodies, const Level& level, do
   p.obstacles = bodies;
   p.friction = friction;
   return Ipc(p).bind(level, Material());
-}
-
-StepLimit max_step(const BoundContact& before, const BoundContact& after, const Positions& x) {
-  return after.max_step(before, x);
 }
 
 /// Interpolates as load stepping does after a shortened obstacle step.
@@ -96,36 +83,36 @@ int crossings(const Bodies& from, const Bodies& to, double part, const Level& le
 }  // namespace
 
 TEST_CASE("ipc: an obstacle leaves a tenth of dhat, or most of a smaller gap") {
-  const Level level = square(9, 0.4);
+  const Level level = square_sheet(9, 0.4);
   const Positions& x = level.rest.vertices;
   const Bodies low = {box({0.2, 0.2, 0.1}, {0, 0, -0.06})}, high = {box({0.2, 0.2, 0.1}, {0, 0, 0.04})};
-  StepLimit limit = max_step(*bound(low, level), *bound(high, level), x);
+  StepLimit limit = bound(high, level)->max_step(*bound(low, level), x);
   CHECK(limit.fraction == Approx((0.01 - 1e-4) / 0.1).epsilon(1e-3));
   CHECK_THAT(limit.by, Catch::Contains("cloth") && Catch::Contains("block"));
   const Bodies near = {box({0.2, 0.2, 0.1}, {0, 0, -0.05 - 2e-5})};
-  limit = max_step(*bound(near, level), *bound(high, level), x);
+  limit = bound(high, level)->max_step(*bound(near, level), x);
   CHECK(limit.fraction == Approx(0.2 * 2e-5 / (0.09 + 2e-5)).epsilon(0.1));
-  limit = max_step(*bound(low, level), *bound({box({0.2, 0.2, 0.1}, {0, 0, -0.0503})}, level), x);
+  limit = bound({box({0.2, 0.2, 0.1}, {0, 0, -0.0503})}, level)->max_step(*bound(low, level), x);
   CHECK(limit.fraction == 1);
   CHECK(limit.by.empty());
-  CHECK(max_step(*bound(high, level), *bound(high, level), x).fraction == 1);  // static
-  CHECK(max_step(*bound(low, level), *bound(low, level), x).fraction == 1);
+  CHECK(bound(high, level)->max_step(*bound(high, level), x).fraction == 1);  // static
+  CHECK(bound(low, level)->max_step(*bound(low, level), x).fraction == 1);
   // Growth is a motion too.
-  limit = max_step(*bound({box({0.1, 0.1, 0.1}, {0, 0, -0.06})}, level),
-                   *bound({box({0.1, 0.1, 0.2}, {0, 0, -0.06})}, level), x);
+  limit = bound({box({0.1, 0.1, 0.2}, {0, 0, -0.06})}, level)
+              ->max_step(*bound({box({0.1, 0.1, 0.1}, {0, 0, -0.06})}, level), x);
   CHECK(limit.fraction == Approx((0.01 - 1e-4) / 0.05).epsilon(1e-3));
 }
 
 TEST_CASE("ipc: a plate that slides and rotates a tenth of a millimetre below the cloth is not limited") {
-  const Level level = square(9, 0.4);
+  const Level level = square_sheet(9, 0.4);
   Bodies from = {box({1, 1, 0.01}, {0, 0, -0.0051})}, to = from;
   to[0].translate.x() += 0.2;
   to[0].rotate.z() = 200;
-  CHECK(max_step(*bound(from, level), *bound(to, level), level.rest.vertices).fraction == 1);
+  CHECK(bound(to, level)->max_step(*bound(from, level), level.rest.vertices).fraction == 1);
 }
 
 TEST_CASE("ipc: no obstacle motion passes through the cloth; a shortened step is not shortened again") {
-  const Level level = square(7, 0.3);
+  const Level level = square_sheet(7, 0.3);
   const Vector sizes[] = {{0.002, 0.002, 0.4}, {0.3, 0.2, 0.003}, {0.06, 0.08, 0.05}, {0.4, 0.004, 0.02}};
   int shortened = 0, full = 0, would_cross = 0, barely = 0;
   for (int i = 0; i < 160; ++i) {
@@ -133,20 +120,20 @@ TEST_CASE("ipc: no obstacle motion passes through the cloth; a shortened step is
     const TriangleMesh cloth{x, level.rest.triangles};
     Bodies from = {box(sizes[i % 4])}, to;
     do {
-      from[0].translate = any(0.25);
-      from[0].rotate = any(180);
+      from[0].translate = uniform.vector(0.25);
+      from[0].rotate = uniform.vector(180);
       from[0].scale = uniform(0.5, 1.5);
       if (i % 3 == 0)  // near already
         from[0].translate.z() = 0.5 * from[0].size.z() * from[0].scale + uniform(0.02, 0.03),
         from[0].rotate.head<2>().setZero();
     } while (!intersections(cloth, obstacle_of(from[0]).mesh).empty());
     to = from;
-    to[0].translate += i % 5 == 0 ? any(0.02) : any(0.5);
-    to[0].rotate += i % 2 ? any(60) : any(720);
+    to[0].translate += i % 5 == 0 ? uniform.vector(0.02) : uniform.vector(0.5);
+    to[0].rotate += i % 2 ? uniform.vector(60) : uniform.vector(720);
     if (i % 4 == 0) to[0].scale = uniform(0.5, 2);
     if (i % 7 == 0) to[0].translate.z() = -from[0].translate.z() - 5;  // at a high speed
     const auto before = bound(from, level);
-    const StepLimit limit = max_step(*before, *bound(to, level), x);
+    const StepLimit limit = bound(to, level)->max_step(*before, x);
     CAPTURE(i, limit.fraction, limit.by);
     REQUIRE(limit.fraction > 0);
     REQUIRE(limit.fraction <= 1);
@@ -155,7 +142,7 @@ TEST_CASE("ipc: no obstacle motion passes through the cloth; a shortened step is
     (limit.fraction < 1 ? shortened : full) += 1;
     if (limit.fraction == 1) continue;
     const Bodies part = blended(from, to, limit.fraction);
-    CHECK(max_step(*before, *bound(part, level), x).fraction == 1);
+    CHECK(bound(part, level)->max_step(*before, x).fraction == 1);
     would_cross += crossings(from, to, 1, level, x, 1.5e-3) > 0;
     // Not overly conservative: an intersection would follow soon.
     const double soon = limit.fraction + 2e-3 / (distance_moved(from, to) + 1);
@@ -169,7 +156,7 @@ TEST_CASE("ipc: no obstacle motion passes through the cloth; a shortened step is
 }
 
 TEST_CASE("ipc: an edge that is highest during a rotation does not pass through the cloth") {
-  const Level level = square(5, 0.2);
+  const Level level = square_sheet(5, 0.2);
   const Positions& x = level.rest.vertices;
   const double apex = 0.1 / std::sqrt(2.0), lower = apex * (1 - std::cos(2 * M_PI / 180));  // 4.3e-5 m
   for (const bool passes : {true, false}) {
@@ -177,7 +164,7 @@ TEST_CASE("ipc: an edge that is highest during a rotation does not pass through 
     from[0].rotate.y() = 43;
     to[0].rotate.y() = 47;
     REQUIRE(bound(to, level)->intersections(x).empty());
-    const double fraction = max_step(*bound(from, level), *bound(to, level), x).fraction;
+    const double fraction = bound(to, level)->max_step(*bound(from, level), x).fraction;
     CHECK(fraction > 0.01);
     CHECK((fraction == 1) == passes);
     CHECK(fraction < (passes ? 2 : 0.2));
@@ -185,14 +172,14 @@ TEST_CASE("ipc: an edge that is highest during a rotation does not pass through 
 }
 
 TEST_CASE("ipc: rotating obstacles keep gaps below a micrometre") {
-  const Level level = square(5, 0.2);
+  const Level level = square_sheet(5, 0.2);
   const Positions& x = level.rest.vertices;
   for (const double gap : {1e-7, 1e-6, 1e-5}) {
     Bodies from = {box({0.1, 0.1, 0.1}, {0, 0, -0.05 - gap})}, to = from;
     to[0].rotate = {30, 0, 40};
     const auto before = bound(from, level);
     for (int round = 0; round < 6; ++round) {
-      const double fraction = max_step(*before, *bound(to, level), x).fraction;
+      const double fraction = bound(to, level)->max_step(*before, x).fraction;
       CAPTURE(gap, round, fraction);
       CHECK(fraction > 0);
       if (round > 0) CHECK(fraction == 1);
@@ -224,7 +211,7 @@ TEST_CASE("ipc: an animation is interpolated linearly and never passes through t
   expected += 0.25 * obstacle_of(from[0]).mesh.vertices;
   CHECK((between - expected).norm() < 1e-14);
 
-  const Level level = square(9, 0.2);
+  const Level level = square_sheet(9, 0.2);
   Positions x = level.rest.vertices;
   const auto at = [&](double frame) {
     Bodies bodies = from;
@@ -234,17 +221,17 @@ TEST_CASE("ipc: an animation is interpolated linearly and never passes through t
   // The wing's right end goes up in frames 1 to 2 and down in frames 2 to 3: highest in between.
   x.col(2).setConstant(0.005);
   x.col(0).array() += 0.12;
-  const double blocked = max_step(*at(1), *at(3), x).fraction;
+  const double blocked = at(3)->max_step(*at(1), x).fraction;
   CHECK(blocked > 0.1);
   CHECK(blocked < 0.5);
   for (int k = 0; k <= 500; ++k) CHECK(at(1 + 2 * blocked * k / 500)->intersections(x).empty());
   CHECK(!at(1 + 2 * blocked + 0.05)->intersections(x).empty());
-  CHECK(max_step(*at(1), *at(1 + 2 * blocked), x).fraction == 1);
+  CHECK(at(1 + 2 * blocked)->max_step(*at(1), x).fraction == 1);
   CHECK(at(3)->intersections(x).empty());
   x.col(2).setConstant(0.05);
-  CHECK(max_step(*at(1), *at(3), x).fraction == 1);
-  CHECK(max_step(*at(3), *at(0), x).fraction == 1);
-  CHECK(max_step(*at(0.5), *at(0.5), x).fraction == 1);
+  CHECK(at(3)->max_step(*at(1), x).fraction == 1);
+  CHECK(at(0)->max_step(*at(3), x).fraction == 1);
+  CHECK(at(0.5)->max_step(*at(0.5), x).fraction == 1);
 
   ObstacleParameters wrong = from[0];
   wrong.frame = 3.5;
@@ -264,7 +251,7 @@ TEST_CASE("ipc: an animation is interpolated linearly and never passes through t
 }
 
 TEST_CASE("ipc: one of many obstacles moves, bit for bit the same with any number of threads") {
-  const Level level = square(41, 0.4);
+  const Level level = square_sheet(41, 0.4);
   Positions x = wavy(level, 0.01);
   Bodies from = {box({0.2, 0.2, 0.1}, {0, 0, -0.5}), box({0.05, 0.05, 0.1}, {0.1, 0, -0.12})}, to;
   from[1].name = "mover";
@@ -277,16 +264,9 @@ TEST_CASE("ipc: one of many obstacles moves, bit for bit the same with any numbe
   from.push_back(ball);
   // The first and the last nearly touch the cloth, and are static.
   from[0].translate.z() = x.col(2).minCoeff() - 0.05 - 1e-5;
-  const double up = max_step(*bound({ball}, level),
-                             *bound(
-                                 [&] {
-                                   Bodies high = {ball};
-                                   high[0].translate.z() += 0.3;
-                                   return high;
-                                 }(),
-                                 level),
-                             x)
-                        .fraction;
+  Bodies high = {ball};
+  high[0].translate.z() += 0.3;
+  const double up = bound(high, level)->max_step(*bound({ball}, level), x).fraction;
   from[2].translate.z() += 0.3 * up;
   to = from;
   to[1].translate += Vector(0.02, 0.01, 0.3);
@@ -294,7 +274,7 @@ TEST_CASE("ipc: one of many obstacles moves, bit for bit the same with any numbe
   std::vector<double> fractions;
   for (const int threads : {1, 2, 3}) {
     set_thread_count(threads);
-    const StepLimit limit = max_step(*bound(from, level), *bound(to, level), x);
+    const StepLimit limit = bound(to, level)->max_step(*bound(from, level), x);
     CHECK_THAT(limit.by, Catch::Contains("mover"));
     fractions.push_back(limit.fraction);
   }
@@ -305,11 +285,11 @@ TEST_CASE("ipc: one of many obstacles moves, bit for bit the same with any numbe
   CHECK(fractions[2] == fractions[0]);
   to = from;
   to[1].translate.z() -= 1;
-  CHECK(max_step(*bound(from, level), *bound(to, level), x).fraction == 1);
+  CHECK(bound(to, level)->max_step(*bound(from, level), x).fraction == 1);
 }
 
 TEST_CASE("ipc: an obstacle whose triangles change is refused by name") {
-  const Level level = square(3, 0.2);
+  const Level level = square_sheet(3, 0.2);
   ObstacleParameters ball;
   ball.name = "ball";
   ball.meshed_shape = "sphere";
@@ -317,12 +297,12 @@ TEST_CASE("ipc: an obstacle whose triangles change is refused by name") {
   ball.subdivisions = 1;
   const auto before = bound({ball}, level);
   ball.subdivisions = 2;
-  CHECK_THROWS_WITH(max_step(*before, *bound({ball}, level), level.rest.vertices),
+  CHECK_THROWS_WITH(bound({ball}, level)->max_step(*before, level.rest.vertices),
                     Catch::Contains("\"ball\"") && Catch::Contains("320 triangles instead of 80"));
 }
 
 TEST_CASE("ipc: touched points move with their obstacle") {
-  const Level level = square(5, 0.2);
+  const Level level = square_sheet(5, 0.2);
   Positions x = level.rest.vertices;
   x.col(2).setConstant(4e-4);
   const Bodies from = {box({1, 0.5, 1}, {0.5, 0, -0.5})};  // below one half of the cloth
@@ -371,7 +351,7 @@ double normal_force(const BoundContact& model, const Positions& x) {
 TEST_CASE(
     "ipc: a plate that slides below a cloth drags it with μ times the normal force, however finely it is "
     "meshed") {
-  const Level level = square(9, 0.2);
+  const Level level = square_sheet(9, 0.2);
   Positions x = level.rest.vertices;
   x.col(2).setConstant(4e-4);
   const Scratch folder;
@@ -398,7 +378,7 @@ TEST_CASE(
 }
 
 TEST_CASE("ipc: of two obstacles that a cloth lies between, the static one does not drag it along") {
-  const Level level = square(9, 0.2);
+  const Level level = square_sheet(9, 0.2);
   Positions x = level.rest.vertices;
   x.col(2).setConstant(4e-4);
   const auto between = [&](double shift) {
@@ -417,7 +397,7 @@ TEST_CASE("ipc: of two obstacles that a cloth lies between, the static one does 
 }
 
 TEST_CASE("ipc: contacts that form in a step have friction when the obstacle moves next") {
-  const Level level = square(9, 0.2);
+  const Level level = square_sheet(9, 0.2);
   Positions apart = level.rest.vertices, x = apart;
   apart.col(2).setConstant(2e-3);
   x.col(2).setConstant(4e-4);

@@ -15,6 +15,7 @@
 #include "tests/support/command.h"
 #include "tests/support/evaluate.h"
 #include "tests/support/meshes.h"
+#include "tests/support/near_surface.h"
 
 using namespace drape;
 using namespace drape::ipc;
@@ -23,7 +24,7 @@ using Catch::Contains;
 
 namespace {
 
-constexpr double dhat = 0.01;
+constexpr double dhat = NearSurface::dhat;
 
 /// A flat sheet of 10 cm with 5 × 5 vertices, 12 the one in its middle.
 TriangleMesh sheet() {
@@ -63,29 +64,6 @@ TriangleMesh tangle(unsigned seed) {
   for (int t = 0; t < 14; ++t) append(mesh, {}, {{which(random), which(random), which(random)}});
   return repair_mesh({mesh}).frames[0];
 }
-
-/// One vertex of weight 1 near an obstacle, all of whose triangles are candidates.
-struct Near {
-  Obstacles obstacles;
-  OperatorCoefficients coefficients;
-  std::vector<VertexTriangleCandidate> candidates;
-  Eigen::VectorXd area = Eigen::VectorXd::Ones(1);
-  BarrierParameters parameters;
-
-  explicit Near(const TriangleMesh& mesh)
-      : obstacles(Obstacles::of({{"mesh", mesh, {}, {{ValidatedMesh::of(mesh)}}}})) {
-    parameters.dhat = dhat;
-    parameters.stiffness = 1 / dhat;
-    coefficients = OperatorCoefficients::of(obstacles.surface, obstacles.dihedrals, dhat);
-    for (int t = 0; t < mesh.triangles.rows(); ++t) candidates.push_back({0, t});
-  }
-  SurfaceContacts contacts(const Vector& p) const {
-    return SurfaceContacts::of(p.transpose(), obstacles, coefficients, candidates, area, 0, dhat);
-  }
-  double value(const Vector& p) const {
-    return make_surface_contacts(contacts(p), parameters)->value(p.transpose());
-  }
-};
 
 ObstacleParameters obstacle(const std::string& file) {
   ObstacleParameters p;
@@ -176,7 +154,7 @@ TEST_CASE("ipc: a flat sheet acts as its plane where a wall joins it from below"
   TriangleMesh mesh = sheet_with_wall();
   mesh.vertices *= 10;  // so that its triangles are large against d̂
   REQUIRE(repair_mesh({mesh}).done.crowded_edges == 4);
-  const Near near(mesh);
+  const NearSurface near(mesh);
   std::mt19937 random(3);
   std::uniform_real_distribution<double> along(-0.6, 0.6), across(-0.015, 0.015), above(1e-6, 1);
   for (int i = 0; i < 400; ++i) {
@@ -201,7 +179,7 @@ TEST_CASE("ipc: the nearest feature of any triangles counts at least once, and t
   std::normal_distribution<double> off(0, 1);
   std::uniform_real_distribution<double> part(0, 1);
   for (std::size_t k = 0; k < meshes.size(); ++k) {
-    const Near near(meshes[k]);
+    const NearSurface near(meshes[k]);
     for (int i = 0; i < 200; ++i) {
       const auto t = meshes[k].triangles.row(i % meshes[k].triangles.rows());
       const double a = i % 2 ? part(random) : 0, b = i % 3 ? (1 - a) * part(random) : 0;

@@ -2,7 +2,6 @@
 
 #include <Eigen/Geometry>
 #include <catch2/catch.hpp>
-#include <random>
 
 #include "core/numerics/contact/pair_geometry.h"
 #include "core/numerics/contact/surface_contacts.h"
@@ -12,6 +11,8 @@
 #include "plugins/contact/ipc/obstacle.h"
 #include "tests/support/decompositions.h"
 #include "tests/support/evaluate.h"
+#include "tests/support/near_surface.h"
+#include "tests/support/random.h"
 
 using namespace drape;
 using namespace drape::ipc;
@@ -20,37 +21,10 @@ namespace {
 
 using Vector = Eigen::Vector3d;
 
-constexpr double dhat = 0.01;
+constexpr double dhat = NearSurface::dhat;
 
-struct Random {
-  std::mt19937 engine;
-  double operator()(double low, double high) {
-    return std::uniform_real_distribution<double>(low, high)(engine);
-  }
-};
-
-/// One vertex of weight 1 near a mesh, all of whose triangles are candidates.
-struct Scene {
-  Obstacles obstacles;
-  OperatorCoefficients coefficients;
-  std::vector<VertexTriangleCandidate> candidates;
-  Eigen::VectorXd area = Eigen::VectorXd::Ones(1);
-  BarrierParameters parameters;
-
-  explicit Scene(const TriangleMesh& mesh)
-      : obstacles(Obstacles::of({{"mesh", mesh, 0.5, {{ValidatedMesh::of(mesh)}}}})) {
-    parameters.dhat = dhat;
-    parameters.stiffness = 1 / dhat;  // E = Σ coefficient b
-    coefficients = OperatorCoefficients::of(obstacles.surface, obstacles.dihedrals, dhat);
-    for (int t = 0; t < mesh.triangles.rows(); ++t) candidates.push_back({0, t});
-  }
-  SurfaceContacts contacts(const Vector& p) const {
-    return SurfaceContacts::of(p.transpose(), obstacles, coefficients, candidates, area, 0, dhat);
-  }
-  std::unique_ptr<Collisions> set(const Vector& p) const {
-    return make_surface_contacts(contacts(p), parameters);
-  }
-  double value(const Vector& p) const { return set(p)->value(p.transpose()); }
+struct Scene : NearSurface {
+  using NearSurface::NearSurface;
   Vector gradient(const Vector& p) const { return gradient_of(*set(p), p.transpose()).transpose(); }
   Eigen::Matrix3d hessian(const Vector& p, Projection projection) const {
     return dense(hessian_of(*set(p), p.transpose(), projection));
@@ -68,7 +42,7 @@ struct Scene {
 };
 
 /// A sheet of 5 cm with hills and valleys of this height and wave length, its vertices moved in its plane.
-TriangleMesh hills(int columns, double height, double wave, Random& random) {
+TriangleMesh hills(int columns, double height, double wave, RandomNumbers& random) {
   TriangleMesh mesh = grid({0.05, 0.05}, columns, columns, Diagonals::criss_cross);
   const double cell = 0.05 / (columns - 1), a = random(0, 6), b = random(0, 6);
   for (auto v : mesh.vertices.rowwise()) {
@@ -82,7 +56,7 @@ TriangleMesh hills(int columns, double height, double wave, Random& random) {
 }
 
 /// Over the middle of a mesh, or below it.
-Vector near_middle(const Scene& scene, Random& random) {
+Vector near_middle(const Scene& scene, RandomNumbers& random) {
   const auto vertices = scene.obstacles.vertices;
   const Eigen::Index v = static_cast<Eigen::Index>(random(0, 1) * static_cast<double>(vertices.rows() - 1));
   return Vector(0.5 * vertices.row(v)) + Vector(0.0125, 0.0125, 0) +
@@ -92,7 +66,7 @@ Vector near_middle(const Scene& scene, Random& random) {
 }  // namespace
 
 TEST_CASE("surface: a flat sheet acts as its plane, for any triangulation") {
-  Random random;
+  RandomNumbers random;
   std::vector<TriangleMesh> sheets = {grid({0.05, 0.05}, 2, 2, Diagonals::one_way),
                                       random_triangulation({0.05, 0.05}, 300, 1)};
   for (const int columns : {3, 11, 41}) sheets.push_back(hills(columns, 0, 1, random));
@@ -117,7 +91,7 @@ TEST_CASE("surface: a flat sheet acts as its plane, for any triangulation") {
 }
 
 TEST_CASE("surface: energy and force are continuous where the nearest features change") {
-  Random random;
+  RandomNumbers random;
   int changes = 0, negative = 0;
   for (int round = 0; round < 12; ++round) {
     const Scene scene(hills(12, round % 3 == 0 ? 3e-4 : 2e-3, 0.02, random));
@@ -161,7 +135,7 @@ TEST_CASE("surface: energy and force are continuous where the nearest features c
 }
 
 TEST_CASE("surface: derivatives and projections") {
-  Random random;
+  RandomNumbers random;
   int negative = 0, indefinite = 0;
   for (int round = 0; round < 10; ++round) {
     const Scene scene(hills(12, 2e-3, 0.02, random));
@@ -194,7 +168,7 @@ TEST_CASE("surface: derivatives and projections") {
 }
 
 TEST_CASE("surface: the nearest feature's coefficient is at least 1, on any rough surface") {
-  Random random;
+  RandomNumbers random;
   // From hills that are wide against d̂ to pits that are a tenth of it.
   for (const auto& [columns, height, wave] :
        {std::tuple(41, 2e-4, 0.03), std::tuple(21, 6e-4, 0.03), std::tuple(12, 2e-3, 0.02),
@@ -226,7 +200,7 @@ TEST_CASE("surface: the nearest feature's coefficient is at least 1, on any roug
 }
 
 TEST_CASE("surface: the barrier is unbounded at every point of a surface") {
-  Random random;
+  RandomNumbers random;
   for (const double height : {0.0, 2e-3, 5e-3}) {
     const Scene scene(hills(12, height, 0.02, random));
     const Positions& v = scene.obstacles.vertices;
@@ -251,7 +225,7 @@ TEST_CASE("surface: the barrier is unbounded at every point of a surface") {
 }
 
 TEST_CASE("surface: friction uses the net normal force") {
-  Random random;
+  RandomNumbers random;
   int negative = 0;
   for (int round = 0; round < 6; ++round) {
     const Scene scene(hills(12, round % 2 ? 3e-4 : 2e-3, 0.02, random));

@@ -1,11 +1,12 @@
 #include <catch2/catch.hpp>
-#include <random>
 
 #include "core/numerics/contact_forces/friction.h"
 #include "core/numerics/model/active_contacts.h"
 #include "core/numerics/patterns/generate.h"
 #include "plugins/contact/shapes/separation.h"
 #include "plugins/contact/shapes/shapes.h"
+#include "tests/support/meshes.h"
+#include "tests/support/random.h"
 
 using namespace drape;
 using namespace drape::shapes;
@@ -17,11 +18,7 @@ constexpr SolidKind kinds[] = {SolidKind::sphere, SolidKind::box, SolidKind::cap
                                SolidKind::half_space};
 constexpr double dhat = 1e-3;
 
-std::mt19937 generator(5);
-double uniform(double low, double high) {
-  return std::uniform_real_distribution<double>(low, high)(generator);
-}
-Vector3d any(double size) { return {uniform(-size, size), uniform(-size, size), uniform(-size, size)}; }
+RandomNumbers uniform(5);
 
 std::unique_ptr<BoundContact> bound(const std::vector<ShapeParameters>& shapes, const Level& level,
                                     double friction = 0) {
@@ -35,10 +32,6 @@ std::unique_ptr<BoundContact> bound(const ShapeParameters& shape, const Level& l
   return bound(std::vector{shape}, level, friction);
 }
 
-StepLimit max_step(const BoundContact& before, const BoundContact& after, const Positions& x) {
-  return after.max_step(before, x);
-}
-
 ShapeParameters blended(const ShapeParameters& from, const ShapeParameters& to, double part) {
   ShapeParameters p = to;
   p.translate = from.translate + part * (to.translate - from.translate);
@@ -48,12 +41,6 @@ ShapeParameters blended(const ShapeParameters& from, const ShapeParameters& to, 
   p.rotate = from.rotate + part * (to.rotate - from.rotate);
   p.normal = from.normal + part * (to.normal - from.normal);
   return p;
-}
-
-Level square(int side, double size) {
-  TriangleMesh mesh = grid({size, size}, side, side, Diagonals::criss_cross);
-  mesh.vertices.rowwise() -= Eigen::RowVector3d(size / 2, size / 2, 0);
-  return Level::of(0, mesh);
 }
 
 ShapeParameters level_with(SolidKind kind, double gap) {
@@ -72,7 +59,7 @@ ShapeParameters level_with(SolidKind kind, double gap) {
 }  // namespace
 
 TEST_CASE("shapes: a solid leaves a tenth of dhat, or most of a smaller gap") {
-  const Level level = square(9, 0.4);
+  const Level level = square_sheet(9, 0.4);
   const Positions& x = level.rest.vertices;
   for (const SolidKind kind : kinds) {
     INFO(to_string(kind));
@@ -80,36 +67,36 @@ TEST_CASE("shapes: a solid leaves a tenth of dhat, or most of a smaller gap") {
       const ShapeParameters from = level_with(kind, gap);
       ShapeParameters to = from;
       to.translate.z() += 0.1;
-      const StepLimit limit = max_step(*bound(from, level), *bound(to, level), x);
+      const StepLimit limit = bound(to, level)->max_step(*bound(from, level), x);
       const double left = 0.8 * std::min(gap, dhat / 8);
       CHECK(limit.fraction == Approx((gap - left) / 0.1).epsilon(gap > dhat ? 2e-3 : 0.1));
       CHECK_THAT(limit.by, Catch::StartsWith("cloth triangle ") && Catch::EndsWith(to_string(kind)));
       to.translate.z() = from.translate.z() - 3;
-      CHECK(max_step(*bound(from, level), *bound(to, level), x).fraction == 1);
-      CHECK(max_step(*bound(from, level), *bound(from, level), x).fraction == 1);
+      CHECK(bound(to, level)->max_step(*bound(from, level), x).fraction == 1);
+      CHECK(bound(from, level)->max_step(*bound(from, level), x).fraction == 1);
     }
   }
   const ShapeParameters small = level_with(SolidKind::sphere, 0.01);
   ShapeParameters large = small;
   large.radius = 0.2;
-  CHECK(max_step(*bound(small, level), *bound(large, level), x).fraction ==
+  CHECK(bound(large, level)->max_step(*bound(small, level), x).fraction ==
         Approx((0.01 - 0.1 * dhat) / 0.1).epsilon(2e-3));
 }
 
 TEST_CASE("shapes: solids that slide and rotate below the cloth are not limited") {
-  const Level level = square(9, 0.4);
+  const Level level = square_sheet(9, 0.4);
   for (const SolidKind kind : kinds) {
     const ShapeParameters from = level_with(kind, 1e-4);
     ShapeParameters to = from;
     to.translate.x() += 0.2;
     to.rotate.z() = 100;
     INFO(to_string(kind));
-    CHECK(max_step(*bound(from, level), *bound(to, level), level.rest.vertices).fraction == 1);
+    CHECK(bound(to, level)->max_step(*bound(from, level), level.rest.vertices).fraction == 1);
   }
 }
 
 TEST_CASE("shapes: no solid's motion passes through the cloth; a shortened step is not shortened again") {
-  const Level level = square(6, 0.3);
+  const Level level = square_sheet(6, 0.3);
   int shortened = 0, full = 0, would_cross = 0, barely = 0;
   for (int i = 0; i < 300; ++i) {
     Positions x = level.rest.vertices;
@@ -119,20 +106,21 @@ TEST_CASE("shapes: no solid's motion passes through the cloth; a shortened step 
     ShapeParameters from;
     from.shape = kinds[i % 5];
     do {
-      from.translate = any(0.3);
-      from.rotate = any(180);
-      from.normal = any(1);
+      from.translate = uniform.vector(0.3);
+      from.rotate = uniform.vector(180);
+      from.normal = uniform.vector(1);
       from.radius = i % 2 ? 0.002 : uniform(0.03, 0.1);  // a needle
       from.height = uniform(0.1, 0.4);
       from.size = i % 3 ? Vector3d(0.3, 0.2, 0.002) : Vector3d(0.05, 0.08, 0.1);
     } while (crosses(from));
     ShapeParameters to = from;
-    to.translate = i % 3 == 0 ? Vector3d(from.translate + any(0.02)) : Vector3d(any(0.1) - from.translate);
-    to.rotate += i % 4 ? any(60) : any(720);
-    to.normal += any(0.7);
+    to.translate = i % 3 == 0 ? Vector3d(from.translate + uniform.vector(0.02))
+                              : Vector3d(uniform.vector(0.1) - from.translate);
+    to.rotate += i % 4 ? uniform.vector(60) : uniform.vector(720);
+    to.normal += uniform.vector(0.7);
     if (i % 7 == 0) to.radius = uniform(0.01, 0.2), to.size *= 1.5;
     const auto before = bound(from, level);
-    const StepLimit limit = max_step(*before, *bound(to, level), x);
+    const StepLimit limit = bound(to, level)->max_step(*before, x);
     CAPTURE(i, to_string(from.shape), limit.fraction);
     REQUIRE(limit.fraction > 0);
     REQUIRE(limit.fraction <= 1);
@@ -146,7 +134,7 @@ TEST_CASE("shapes: no solid's motion passes through the cloth; a shortened step 
     CHECK(crossings(0, limit.fraction, 700) == 0);
     (limit.fraction < 1 ? shortened : full) += 1;
     if (limit.fraction == 1) continue;
-    CHECK(max_step(*before, *bound(blended(from, to, limit.fraction), level), x).fraction == 1);
+    CHECK(bound(blended(from, to, limit.fraction), level)->max_step(*before, x).fraction == 1);
     would_cross += crossings(limit.fraction, 1, 700) > 0;
     barely += crossings(limit.fraction, std::min(1.0, limit.fraction + 0.01), 20) > 0;
   }
@@ -158,10 +146,10 @@ TEST_CASE("shapes: no solid's motion passes through the cloth; a shortened step 
 }
 
 TEST_CASE("shapes: a solid whose kind changes is refused by name") {
-  const Level level = square(3, 0.2);
+  const Level level = square_sheet(3, 0.2);
   const auto before = bound(level_with(SolidKind::box, 1), level);
   CHECK_THROWS_WITH(
-      max_step(*before, *bound(level_with(SolidKind::sphere, 1), level), level.rest.vertices),
+      bound(level_with(SolidKind::sphere, 1), level)->max_step(*before, level.rest.vertices),
       Catch::StartsWith("thing: sphere cannot replace thing: box") && Catch::EndsWith(" during a run"));
 }
 
@@ -176,14 +164,10 @@ std::vector<FrictionContact> friction_contacts(const BoundContact& contact, cons
   return all;
 }
 
-Vector3d displacement(const BoundContact& from, const BoundContact& to, const ObstaclePoint& point) {
-  return to.displacement(from, point);
-}
-
 }  // namespace
 
 TEST_CASE("shapes: touched points move with their solid") {
-  const Level level = square(5, 0.2);
+  const Level level = square_sheet(5, 0.2);
   Positions x = level.rest.vertices;
   x.col(2).setConstant(4e-4);
   for (const SolidKind kind : kinds) {
@@ -196,7 +180,7 @@ TEST_CASE("shapes: touched points move with their solid") {
     CHECK(contacts.size() >= 1);
     for (const FrictionContact& contact : contacts) {
       CHECK(contact.touched.obstacle == 0);
-      CHECK((displacement(*before, *after, contact.touched) - Vector3d(0.01, 0.003, 0)).norm() < 1e-15);
+      CHECK((after->displacement(*before, contact.touched) - Vector3d(0.01, 0.003, 0)).norm() < 1e-15);
     }
   }
   // A ball that turns about a horizontal axis moves what lies on it, with a static centre.
@@ -206,12 +190,12 @@ TEST_CASE("shapes: touched points move with their solid") {
   const auto before = bound(from, level, 0.3), after = bound(to, level, 0.3);
   double farthest = 0;
   for (const FrictionContact& contact : friction_contacts(*before, x))
-    farthest = std::max(farthest, displacement(*before, *after, contact.touched).x());
+    farthest = std::max(farthest, after->displacement(*before, contact.touched).x());
   CHECK(farthest == Approx(0.1 * M_PI / 180).epsilon(1e-3));
 }
 
 TEST_CASE("shapes: a half-space turns by the angle between its normals, wherever they point") {
-  const Level level = square(5, 0.2);
+  const Level level = square_sheet(5, 0.2);
   for (const double up : {-1.0, 1.0}) {
     const auto facing = [&](double x, double y) {
       ShapeParameters p = level_with(SolidKind::half_space, 0);
@@ -221,14 +205,14 @@ TEST_CASE("shapes: a half-space turns by the angle between its normals, wherever
     ObstaclePoint point{0};
     point.offset = {1, 0.5, 0};
     const double angle = std::sqrt(2) * 1e-4, distance = point.offset.norm();
-    const Vector3d moved = displacement(*facing(1e-4, 0), *facing(0, 1e-4), point);
+    const Vector3d moved = facing(0, 1e-4)->displacement(*facing(1e-4, 0), point);
     CHECK(moved.norm() < 1.01 * angle * distance);
     CHECK(moved.norm() > 0);
   }
 }
 
 TEST_CASE("shapes: friction goes on while a solid turns below the cloth") {
-  const Level level = square(9, 0.1);
+  const Level level = square_sheet(9, 0.1);
   const auto roll = [&](double y, double radius, double turned) {
     ShapeParameters p = level_with(SolidKind::cylinder, y);
     p.radius = radius;
@@ -269,7 +253,7 @@ TEST_CASE("shapes: friction goes on while a solid turns below the cloth") {
 }
 
 TEST_CASE("shapes: contacts keep their keys while another cylinder grows") {
-  const Level level = square(4, 0.5);  // larger than the box, whose edges touch it
+  const Level level = square_sheet(4, 0.5);  // larger than the box, whose edges touch it
   Positions x = level.rest.vertices;
   x.col(2).setConstant(4e-4);
   const auto keys = [&](double radius) {

@@ -1,7 +1,6 @@
 #include <Eigen/Geometry>
 #include <catch2/catch.hpp>
 #include <limits>
-#include <random>
 
 #include "core/numerics/contact_forces/barrier.h"
 #include "core/numerics/contact_forces/contact_stiffness.h"
@@ -13,6 +12,7 @@
 #include "tests/support/evaluate.h"
 #include "tests/support/kernel_check.h"
 #include "tests/support/meshes.h"
+#include "tests/support/random.h"
 
 using namespace drape;
 using namespace drape::shapes;
@@ -24,13 +24,7 @@ constexpr SolidKind kinds[] = {SolidKind::sphere, SolidKind::box, SolidKind::cap
                                SolidKind::half_space};
 constexpr double dhat = 1e-3, min_gap_fraction = 0.1, kappa = 20;
 
-std::mt19937 generator(7);
-double uniform(double low, double high) {
-  return std::uniform_real_distribution<double>(low, high)(generator);
-}
-Vector3d random_vector(double size) {
-  return {uniform(-size, size), uniform(-size, size), uniform(-size, size)};
-}
+RandomNumbers uniform(7);
 
 /// A shape of about 0.1 m, turned and off the origin.
 ShapeParameters some(SolidKind kind) {
@@ -130,23 +124,17 @@ double searched_distance(const Solid& s, const Corners& c) {
 /// A triangle whose distance is positive and mostly small.
 Corners some_triangle(const Solid& s, double size) {
   for (;;) {
-    const Vector3d middle = s.centre + random_vector(0.15);
+    const Vector3d middle = s.centre + uniform.vector(0.15);
     const SignedDistance n = s.nearest(middle);
     if (n.distance < 0 && s.kind != SolidKind::half_space) continue;
     const Vector3d at = middle - (n.distance - std::pow(10.0, uniform(-5, -1.5))) * n.normal;
-    Corners c{at, at + random_vector(size), at + random_vector(size)};
+    Corners c{at, at + uniform.vector(size), at + uniform.vector(size)};
     if (uniform(0, 1) < 0.5) {  // nearly tangent
       for (Vector3d& p : c) p -= 0.98 * n.normal.dot(p - at) * n.normal;
     }
     const double d = searched_distance(s, c);
     if (d > 1e-6) return c;
   }
-}
-
-Level square(int side, double size) {
-  TriangleMesh mesh = grid({size, size}, side, side, Diagonals::criss_cross);
-  mesh.vertices.rowwise() -= Eigen::RowVector3d(size / 2, size / 2, 0);
-  return Level::of(0, mesh);
 }
 
 /// The cloth's positions at a height.
@@ -175,14 +163,14 @@ double cloth_distance(const Solid& s, const Level& level, const Positions& x) {
 /// A cloth of few triangles, crumpled, its distance to the solid between 5 and 90 % of d̂.
 Positions near_cloth(const Solid& s, const Level& level) {
   for (;;) {
-    const Vector3d middle = s.centre + random_vector(0.15);
+    const Vector3d middle = s.centre + uniform.vector(0.15);
     const SignedDistance n = s.nearest(middle);
     if (n.distance <= 0) continue;
     const Eigen::Quaterniond turn = uniform(0, 1) < 0.5
                                         ? Eigen::Quaterniond::UnitRandom()
                                         : Eigen::Quaterniond::FromTwoVectors(Vector3d::UnitZ(), n.normal);
     Positions x = level.rest.vertices * turn.toRotationMatrix().transpose();
-    for (Eigen::Index i = 0; i < x.rows(); ++i) x.row(i) += (middle + random_vector(5e-4)).transpose();
+    for (Eigen::Index i = 0; i < x.rows(); ++i) x.row(i) += (middle + uniform.vector(5e-4)).transpose();
     for (int round = 0; round < 60; ++round) {
       const double d = cloth_distance(s, level, x);
       if (d > 0.05 * dhat && d < 0.9 * dhat) return x;
@@ -198,7 +186,7 @@ TEST_CASE("shapes: distance, gradient and curvature of solids") {
     const Solid s = solid_of(some(kind));
     int tested = 0;
     for (int i = 0; i < 3000; ++i) {
-      const Vector3d p = s.centre + random_vector(0.2);
+      const Vector3d p = s.centre + uniform.vector(0.2);
       const SignedDistance n = s.nearest(p);
       INFO(to_string(kind) << " at " << p.transpose());
       CHECK(s.distance(p) == Approx(n.distance).margin(1e-15));
@@ -244,7 +232,7 @@ TEST_CASE("shapes: a solid's support function and its mesh") {
     for (Eigen::Index i = 0; i < mesh.vertices.rows(); ++i)
       CHECK(std::abs(s.distance(mesh.vertices.row(i))) < 1e-12);
     for (int i = 0; i < 100; ++i) {
-      const Vector3d n = random_vector(1).normalized();
+      const Vector3d n = uniform.vector(1).normalized();
       const double drawn = (mesh.vertices * n).maxCoeff();
       CHECK(drawn <= s.support(n) + 1e-12);
       CHECK(drawn >= s.support(n) - 5e-4);
@@ -269,7 +257,7 @@ TEST_CASE("shapes: the distance of a triangle is the largest separation") {
 }
 
 TEST_CASE("shapes: the smallest gap is the cloth's distance") {
-  const Level level = square(3, 0.02), big = square(2, 0.2);
+  const Level level = square_sheet(3, 0.02), big = square_sheet(2, 0.2);
   for (const SolidKind kind : kinds) {
     const ShapeParameters p = some(kind);
     const Solid s = solid_of(p);
@@ -310,7 +298,7 @@ TEST_CASE("shapes: a half-space's axes are those of the shortest rotation, where
 }
 
 TEST_CASE("shapes: flat cloth on a face has the pressure κ |b'|") {
-  const Level level = square(5, 0.04);
+  const Level level = square_sheet(5, 0.04);
   for (const SolidKind kind : {SolidKind::half_space, SolidKind::box, SolidKind::cylinder}) {
     const auto bound = Shapes(with({level_with(kind)})).bind(level, Material());
     for (const double s : {0.05, 0.5, 0.9}) {
@@ -332,7 +320,7 @@ TEST_CASE("shapes: flat cloth on a face has the pressure κ |b'|") {
 }
 
 TEST_CASE("shapes: forces are continuous during sliding") {
-  const Level level = square(4, 0.03);
+  const Level level = square_sheet(4, 0.03);
   for (const SolidKind kind : kinds) {
     ShapeParameters p = level_with(kind);
     if (kind == SolidKind::sphere) p.translate.z() = -p.radius;
@@ -374,7 +362,7 @@ TEST_CASE("shapes: a step never leads to an intersection") {
       Corners to = from;
       const Vector3d through = 2.2 * (s.centre - (from[0] + from[1] + from[2]) / 3);
       const double turn = i % 5 ? 0.02 : 0.5, size = i % 7 ? 1 : 10;
-      for (Vector3d& q : to) q += size * (through + random_vector(turn));
+      for (Vector3d& q : to) q += size * (through + uniform.vector(turn));
       const double start = searched_distance(s, from), part = advance(s, from, to, min_gap_fraction);
       INFO(to_string(kind) << " " << i << ": " << part);
       CHECK(part >= 0);
@@ -399,7 +387,7 @@ TEST_CASE("shapes: a step never leads to an intersection") {
 }
 
 TEST_CASE("shapes: max_step names the blocking pair") {
-  const Level level = square(2, 0.1);  // two triangles
+  const Level level = square_sheet(2, 0.1);  // two triangles
   ShapeParameters p = level_with(SolidKind::sphere);
   p.name = "ball";
   p.radius = 0.002;
@@ -426,7 +414,7 @@ TEST_CASE("shapes: max_step names the blocking pair") {
 }
 
 TEST_CASE("shapes: collisions at a state do not depend on the motion of the candidates") {
-  const Level level = square(9, 0.16);
+  const Level level = square_sheet(9, 0.16);
   std::vector<ShapeParameters> all;
   for (const SolidKind kind : kinds) all.push_back(some(kind));
   all[4].translate.z() = -0.2;
@@ -453,7 +441,7 @@ TEST_CASE("shapes: collisions at a state do not depend on the motion of the cand
 }
 
 TEST_CASE("shapes: parameters") {
-  const Level level = square(3, 0.1);
+  const Level level = square_sheet(3, 0.1);
   CHECK(Shapes(with({})).bind(level, Material()) == nullptr);
   ShapeParameters p = level_with(SolidKind::half_space);
   p.normal.setZero();

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "core/numerics/contact/surface_contacts.h"
+#include "plugins/contact/ipc/obstacle.h"
+#include "tests/support/evaluate.h"
+
+/// One vertex of weight 1 near a mesh, all of whose triangles are candidates; E = Σ coefficient b.
+struct NearSurface {
+  using Vector = Eigen::Vector3d;
+  static constexpr double dhat = 0.01;
+  drape::ipc::Obstacles obstacles;
+  drape::OperatorCoefficients coefficients;
+  std::vector<drape::VertexTriangleCandidate> candidates;
+  Eigen::VectorXd area = Eigen::VectorXd::Ones(1);
+  drape::BarrierParameters parameters;
+
+  explicit NearSurface(const drape::TriangleMesh& mesh)
+      : obstacles(drape::ipc::Obstacles::of({{"mesh", mesh, 0.5, {{drape::ipc::ValidatedMesh::of(mesh)}}}})),
+        coefficients(drape::OperatorCoefficients::of(obstacles.surface, obstacles.dihedrals, dhat)) {
+    parameters.dhat = dhat;
+    parameters.stiffness = 1 / dhat;
+    for (int t = 0; t < mesh.triangles.rows(); ++t) candidates.push_back({0, t});
+  }
+  drape::SurfaceContacts contacts(const Vector& p) const {
+    return drape::SurfaceContacts::of(p.transpose(), obstacles, coefficients, candidates, area, 0, dhat);
+  }
+  std::unique_ptr<drape::Collisions> set(const Vector& p) const {
+    return make_surface_contacts(contacts(p), parameters);
+  }
+  double value(const Vector& p) const { return set(p)->value(p.transpose()); }
+};
