@@ -102,11 +102,11 @@ double strip_stiffness(double r) {
   strip.stiffness = 100;  // were it 6 k
   strip.slenderness = r;
   const double alpha = 0.01, load = alpha * strip.stiffness * strip.width();
-  const Solved s = solve_yaml(strip.yaml("[neo_hookean, hinge, " + strip.end_load({0, 0, -load}) + "]",
-                                         "newton: {step_size: 0.1, step_growth: 2,"
-                                         " force_tolerance: 1e-4, max_steps: 500}\n"));
-  INFO("r = " << r << ": " << s.levels.back().message);
-  REQUIRE(s.levels.back().outcome == Outcome::converged);
+  INFO("r = " << r);
+  const Solved s =
+      converged(solve_yaml(strip.yaml("[neo_hookean, hinge, " + strip.end_load({0, 0, -load}) + "]",
+                                      "newton: {step_size: 0.1, step_growth: 2,"
+                                      " force_tolerance: 1e-4, max_steps: 500}\n")));
   // The deflection of a chain of hinges of stiffness 6 k is less than that of the beam by its lumping.
   const double chain = alpha / 3 * (1 - 0.25 / std::pow(strip.cells - 0.5, 2));
   return 6 * chain / -place(s, strip.cells, strip.cells).z();

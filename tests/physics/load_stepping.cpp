@@ -8,10 +8,11 @@ using namespace drape;
 
 namespace {
 
-/// Records the result of every increment, and counts intersections.
-struct Increments : Observer {
-  explicit Increments(const Solved& solved) : s(solved) {}
-  const Solved& s;
+/// A scene that is solved, with the result of every increment, and the number of intersections on the way.
+struct Stepped : Solved, Observer {
+  explicit Stepped(const std::string& yaml) : Solved(scene_from(yaml)) {
+    levels = experiment.methods[0].second->solve(*scene, *this);
+  }
   std::vector<IncrementRow> rows;
   std::vector<Positions> states;
   std::size_t intersections = 0;
@@ -21,14 +22,10 @@ struct Increments : Observer {
     states.push_back(x);
   }
   void iteration(const IterationRow& row, const Positions& x) override {
-    for (const auto& contact : s.scene->model(row.level)->contacts())
+    for (const auto& contact : scene->model(row.level)->contacts())
       intersections += contact->intersections(x).size();
   }
 };
-
-void run(Solved& s, Increments& increments) {
-  s.levels = s.experiment.methods[0].second->solve(*s.scene, increments);
-}
 
 /// A square above a ball, of which one pin is moved by the schedule.
 std::string dragged_onto_a_ball(int levels, const std::string& schedule) {
@@ -54,7 +51,7 @@ TEST_CASE("A strip that is lifted by its end while its weight grows follows the 
   const int cells = 40;
   BeamStrip strip{cells};
   strip.stiffness = strip.density * 9.81 * strip.thickness;  // Γ = 1 under full weight
-  Solved s = scene_from(strip.yaml("[neo_hookean, hinge, gravity]", R"(
+  Stepped s(strip.yaml("[neo_hookean, hinge, gravity]", R"(
 newton: {step_size: 0.1, step_growth: 2, force_tolerance: 1e-4, max_steps: 500}
 schedule:
   steps: 6
@@ -64,28 +61,26 @@ schedule:
        values: [[0, 0, -0.981], [0, 0, -9.81], [0, 0, -49.05], [0, 0, -196.2], [0, 0, -981]]}
     - {parameter: pins.0.translate, times: [0, 6], values: [[0, 0, 0], [0.3, -0.2, 0.9]]}
 )"));
-  Increments increments(s);
-  run(s, increments);
   INFO(s.levels[0].message);
   REQUIRE(s.levels[0].outcome == Outcome::converged);
-  REQUIRE(increments.rows.size() == 7);
+  REQUIRE(s.rows.size() == 7);
   row("\nTip angle [degrees] of a cantilever that is moved while its weight grows");
   row("%8s %12s %12s %8s", "gamma", "hinge", "exact", "steps");
   const std::pair<int, double> loads[] = {{0, 0.1}, {3, 1}, {4, 5}, {5, 20}, {6, 100}};
   for (const auto& [increment, gamma] : loads) {
     const double exact = cantilever_under_weight(gamma).tip * 180 / M_PI;
-    s.levels[0].x = increments.states[increment];
+    s.levels[0].x = s.states[increment];
     const double angle = tip_angle(s, cells);
-    row("%8g %12.5f %12.5f %8d", gamma, angle, exact, increments.rows[increment].steps);
+    row("%8g %12.5f %12.5f %8d", gamma, angle, exact, s.rows[increment].steps);
     CHECK(std::abs(angle - exact) < 0.02);
     // The clamp reaches its target exactly.
     const Eigen::Vector3d moved = Eigen::Vector3d(0.3, -0.2, 0.9) * (increment / 6.0);
-    CHECK((increments.states[increment].row(0) - s.rest().row(0) - moved.transpose()).norm() < 1e-15);
+    CHECK((s.states[increment].row(0) - s.rest().row(0) - moved.transpose()).norm() < 1e-15);
   }
 }
 
 TEST_CASE("A ribbon that is slowly twisted and untwisted recovers its energy", "[physics]") {
-  Solved s = scene_from(R"(
+  Stepped s(R"(
 name: ribbon
 cloth: {shape: rectangle, size: [0.4, 0.05], triangulation: criss_cross, columns: 33, rows: 5}
 levels: 1
@@ -103,19 +98,17 @@ schedule:
     - {parameter: pins.1.rotate, times: [0, 1, 2], values: [[0, 0, 0], [60, 0, 0], [0, 0, 0]]}
 methods: {newton: {}}
 )");
-  Increments increments(s);
-  run(s, increments);
   INFO(s.levels[0].message);
   REQUIRE(s.levels[0].outcome == Outcome::converged);
-  REQUIRE(increments.rows.size() == 13);
+  REQUIRE(s.rows.size() == 13);
   row("\nEnergy [J] of a ribbon, its end turned");
-  for (const IncrementRow& r : increments.rows)
+  for (const IncrementRow& r : s.rows)
     row("%8.3f %14.8f %6d steps", 60 * (r.time <= 1 ? r.time : 2 - r.time), r.energy, r.steps);
-  const double before = increments.rows.front().energy, twisted = increments.rows[6].energy;
+  const double before = s.rows.front().energy, twisted = s.rows[6].energy;
   REQUIRE(std::abs(twisted - before) > 0.1 * std::abs(before));
-  CHECK(std::abs(increments.rows.back().energy - before) < 1e-5 * std::abs(before));
+  CHECK(std::abs(s.rows.back().energy - before) < 1e-5 * std::abs(before));
   for (std::size_t k = 1; k < 6; ++k) {  // the same angle on the way there and back
-    const double there = increments.rows[k].energy, back = increments.rows[12 - k].energy;
+    const double there = s.rows[k].energy, back = s.rows[12 - k].energy;
     CHECK(std::abs(back - there) < 1e-4 * std::abs(there));
   }
 }
@@ -123,11 +116,11 @@ methods: {newton: {}}
 TEST_CASE("Handles carry the weight by their displacement", "[physics]") {
   const double stiffness = 2000;
   for (const int levels : {1, 2}) {
-    Solved s = scene_from(R"(
+    Stepped s(R"(
 name: carried
 cloth: {shape: square, side: 0.2, columns: 9, rows: 9}
 levels: )" + std::to_string(levels) +
-                          R"(
+              R"(
 handles:
   - {region: nearest, point: [0, 0, 0], stiffness: 2000}
   - {region: nearest, point: [0.2, 0, 0], stiffness: 2000}
@@ -137,8 +130,6 @@ energies: [neo_hookean, hinge, gravity]
 newton: {force_tolerance: 1e-7}
 methods: {pcs: {}}
 )");
-    Increments increments(s);
-    run(s, increments);
     REQUIRE(s.levels.back().outcome == Outcome::converged);
     const Level& coarsest = s.scene->hierarchy.levels[0];
     const double area_density = s.model().material().area_density();
@@ -150,11 +141,9 @@ methods: {pcs: {}}
 }
 
 TEST_CASE("A pin that is dragged into an obstacle stops there and is named", "[physics]") {
-  Solved s = scene_from(dragged_onto_a_ball(2,
-                                            "{steps: 3, keys: [{parameter: pins.0.translate, times: [0, 1], "
-                                            "values: [[-0.25, -0.25, 0.22], [-0.25, -0.25, 0.1]]}]}"));
-  Increments increments(s);
-  run(s, increments);
+  Stepped s(dragged_onto_a_ball(2,
+                                "{steps: 3, keys: [{parameter: pins.0.translate, times: [0, 1], "
+                                "values: [[-0.25, -0.25, 0.22], [-0.25, -0.25, 0.1]]}]}"));
   REQUIRE(s.levels.size() == 2);
   for (const LevelResult& level : s.levels) {
     CHECK(level.outcome == Outcome::infeasible);
@@ -168,7 +157,7 @@ TEST_CASE("A pin that is dragged into an obstacle stops there and is named", "[p
     CHECK(above > 0);
     CHECK(above < 1e-3);
   }
-  CHECK(increments.intersections == 0);
+  CHECK(s.intersections == 0);
 }
 
 TEST_CASE("A pin that stopped short of its target is named where the level ends without equilibrium too",
@@ -179,14 +168,10 @@ TEST_CASE("A pin that stopped short of its target is named where the level ends 
       "-0.25, 0.1]]}]}");
   // Short steps approach the equilibrium slowly, after the target has been found infeasible.
   const std::string newton = "newton: {step_size: 0.02, step_growth: 1, force_tolerance: 1e-6, max_steps: ";
-  Solved whole = scene_from(scene + newton + "5000}\n");
-  Increments increments(whole);
-  run(whole, increments);
+  const Stepped whole(scene + newton + "5000}\n");
   REQUIRE(whole.levels[0].outcome == Outcome::infeasible);
-  REQUIRE(!increments.rows.empty());
-  Solved cut = scene_from(scene + newton + std::to_string(increments.rows.back().steps - 1) + "}\n");
-  Increments others(cut);
-  run(cut, others);
+  REQUIRE(!whole.rows.empty());
+  const Stepped cut(scene + newton + std::to_string(whole.rows.back().steps - 1) + "}\n");
   CHECK(cut.levels[0].outcome == Outcome::max_steps_reached);
   CHECK_THAT(cut.levels[0].message,
              Catch::StartsWith("no equilibrium within max_steps = ") &&
@@ -195,12 +180,9 @@ TEST_CASE("A pin that stopped short of its target is named where the level ends 
 }
 
 TEST_CASE("A target that an earlier increment did not reach stays in the level's message", "[physics]") {
-  Solved s = scene_from(
-      dragged_onto_a_ball(1,
-                          "{steps: 4, keys: [{parameter: pins.0.translate, times: [0, 1, 2], values: "
-                          "[[-0.25, -0.25, 0.22], [-0.25, -0.25, 0.1], [-0.25, -0.25, 0.22]]}]}"));
-  Increments increments(s);
-  run(s, increments);
+  Stepped s(dragged_onto_a_ball(1,
+                                "{steps: 4, keys: [{parameter: pins.0.translate, times: [0, 1, 2], values: "
+                                "[[-0.25, -0.25, 0.22], [-0.25, -0.25, 0.1], [-0.25, -0.25, 0.22]]}]}"));
   REQUIRE(s.levels.size() == 1);
   CHECK(s.levels[0].outcome == Outcome::converged);
   CHECK_THAT(s.levels[0].message, Catch::StartsWith("at pseudo-time 0.5 pin 0 stopped 0.0") &&
@@ -208,7 +190,7 @@ TEST_CASE("A target that an earlier increment did not reach stays in the level's
 }
 
 TEST_CASE("Jumps of loads, materials and limits leave a feasible state", "[physics]") {
-  Solved s = scene_from(R"(
+  Stepped s(R"(
 name: jumps
 cloth: {shape: square, side: 0.4, columns: 10, rows: 10}
 levels: 2
@@ -228,14 +210,12 @@ schedule:
     - {parameter: material.density, interpolation: step, times: [0, 6], values: [470, 100]}
 methods: {pcs: {}}
 )");
-  Increments increments(s);
-  run(s, increments);
   for (const LevelResult& level : s.levels) {
     INFO(level.message);
     CHECK(level.outcome == Outcome::converged);
   }
-  CHECK(increments.intersections == 0);
-  REQUIRE(increments.rows.size() == 8);  // of level 0, and the last ones of level 1
+  CHECK(s.intersections == 0);
+  REQUIRE(s.rows.size() == 8);  // of level 0, and the last ones of level 1
   CHECK(s.model().material().density == 100);
   const auto& limit = *s.model().limits()[0]->stretch_limit();
   CHECK(limit.limit() == 1.05);
@@ -244,7 +224,7 @@ methods: {pcs: {}}
 
 TEST_CASE("A rising floor lifts a cloth, and a closing lid is stopped", "[physics]") {
   const auto scene = [](const std::string& keys) {
-    return scene_from(R"(
+    return R"(
 name: lifted
 cloth: {shape: square, side: 0.3, columns: 10, rows: 10}
 levels: 1
@@ -257,37 +237,34 @@ obstacles:
 friction: 0.3
 schedule:
   steps: 10
-  keys: [)" + keys + R"(]
+  keys: [)" +
+           keys + R"(]
 methods: {newton: {}}
-)");
+)";
   };
-  Solved s = scene(
-      "{parameter: obstacles.plate.translate, times: [0, 1], values: [[0, 0, 0.04], [0.05, 0, "
-      "0.24]]}");
-  Increments increments(s);
-  run(s, increments);
+  const Stepped s(
+      scene("{parameter: obstacles.plate.translate, times: [0, 1], values: [[0, 0, 0.04], [0.05, 0, "
+            "0.24]]}"));
   INFO(s.levels[0].message);
   REQUIRE(s.levels[0].outcome == Outcome::converged);
-  CHECK(increments.intersections == 0);
+  CHECK(s.intersections == 0);
   const Eigen::RowVector3d centroid = s.x().colwise().mean();
   CHECK(centroid.z() == Approx(0.245).margin(1.5e-3));
   // Friction drags it sideways too, except for what slid while it was lifted off the start.
   CHECK(centroid.x() > 0.03);
 
-  Solved closing =
-      scene("{parameter: obstacles.lid.translate, times: [0, 1], values: [[0, 0, 0.5], [0, 0, 0.045]]}");
-  Increments closing_increments(closing);
-  run(closing, closing_increments);
+  const Stepped closing(
+      scene("{parameter: obstacles.lid.translate, times: [0, 1], values: [[0, 0, 0.5], [0, 0, 0.045]]}"));
   CHECK(closing.levels[0].outcome == Outcome::infeasible);
   CHECK_THAT(closing.levels[0].message,
              Catch::Contains("cannot be completed") && Catch::Contains("lid: box"));
-  CHECK(closing_increments.intersections == 0);
+  CHECK(closing.intersections == 0);
 }
 
 TEST_CASE("An obstacle whose target touches held cloth is named, and soon") {
   for (const std::string plate : {"shape: box, size", "meshed_shape: box, size"}) {
     INFO(plate);
-    Solved s = scene_from(R"(name: touched
+    Stepped s(R"(name: touched
 cloth: {shape: square, side: 0.2, columns: 8, rows: 8}
 levels: 1
 energies: [neo_hookean, hinge, gravity]
@@ -298,20 +275,18 @@ pins:
   - {region: nearest, point: [0.2, 0.2, 0]}
 contact: [{type: ipc, self_contact: false}, shapes]
 obstacles: [{name: plate, )" +
-                          plate + R"(: [1, 1, 0.1], translate: [0, 0, -0.2]}]
+              plate + R"(: [1, 1, 0.1], translate: [0, 0, -0.2]}]
 methods: {newton: {newton: {max_steps: 500}}}
 schedule:
   steps: 4
   equilibrate: true
   keys: [{parameter: obstacles.plate.translate, times: [0, 1], values: [[0, 0, -0.2], [0, 0, -0.05]]}]
 )");
-    Increments increments(s);
-    run(s, increments);
     CHECK(s.levels[0].outcome == Outcome::infeasible);
     CHECK_THAT(s.levels[0].message,
                Catch::Contains("the increment to pseudo-time 1 cannot be completed") &&
                    Catch::Contains("plate") &&
                    Catch::EndsWith(" m: at its target the obstacle touches or crosses the cloth"));
-    CHECK(increments.intersections == 0);
+    CHECK(s.intersections == 0);
   }
 }

@@ -8,6 +8,7 @@
 #include "core/numerics/patterns/generate.h"
 #include "tests/support/decompositions.h"
 #include "tests/support/evaluate.h"
+#include "tests/support/free_stiffness.h"
 #include "tests/support/strip.h"
 
 using namespace drape;
@@ -25,55 +26,24 @@ const Model models[] = {{"hinge", "hinge"},
 
 using Matrix = Eigen::SparseMatrix<double>;
 
-/// Stiffness [N/m] by deflections.
-Matrix stiffness_of(const Level& level, const Model& model, double nu) {
+BlockMatrix hessian_at_rest(const Level& level, const Model& model, double nu) {
   const auto energy = make_plugin_from<Energy>(model.yaml)->bind(level, unit_plate(nu));
-  const BlockMatrix h = hessian_of(*energy, level.rest.vertices, Projection::none);
-  std::vector<Eigen::Triplet<double>> entries;
-  for (int i = 0; i < h.pattern->rows(); ++i)
-    for (int b = h.pattern->row_start[i]; b < h.pattern->row_start[i + 1]; ++b) {
-      const int j = h.pattern->columns[b];
-      const double value = h.block(b)[8];
-      entries.emplace_back(i, j, value);
-      if (i != j) entries.emplace_back(j, i, value);
-    }
-  Matrix k(level.vertex_count(), level.vertex_count());
-  k.setFromTriplets(entries.begin(), entries.end());
-  return k;
+  return hessian_of(*energy, level.rest.vertices, Projection::none);
 }
 
-/// The rows and columns of free vertices.
-Matrix of_free(const Matrix& k, const std::vector<int>& number, int free) {
-  std::vector<Eigen::Triplet<double>> entries;
-  for (int c = 0; c < k.outerSize(); ++c)
-    for (Matrix::InnerIterator it(k, c); it; ++it)
-      if (number[it.row()] >= 0 && number[it.col()] >= 0)
-        entries.emplace_back(number[it.row()], number[it.col()], it.value());
-  Matrix part(free, free);
-  part.setFromTriplets(entries.begin(), entries.end());
-  return part;
-}
-
-/// Numbers of the vertices that `held` leaves free, -1 for the others.
-template <class Held>
-std::vector<int> free_numbers(const Level& level, const Held& held, int& free) {
-  std::vector<int> number(level.vertex_count(), -1);
-  free = 0;
-  for (int v = 0; v < level.vertex_count(); ++v)
-    if (!held(Eigen::Vector2d(level.rest.vertices.row(v).head<2>().transpose()))) number[v] = free++;
-  return number;
-}
+/// Stiffness [N/m] by deflections.
+Matrix by_deflections(const BlockMatrix& h, const FreeVertices& free) { return stiffness_of(h, free, {2}); }
 
 /// Deflections under forces, where no vertex for whose place held(p) holds moves.
 template <class Held>
-Eigen::VectorXd deflections(const Level& level, const Matrix& k, const Eigen::VectorXd& forces,
+Eigen::VectorXd deflections(const Level& level, const BlockMatrix& h, const Eigen::VectorXd& forces,
                             const Held& held) {
-  int free = 0;
-  const std::vector<int> number = free_numbers(level, held, free);
-  Eigen::VectorXd f(free);
+  const FreeVertices free(level, held);
+  const std::vector<int>& number = free.number;
+  Eigen::VectorXd f(free.count);
   for (int v = 0; v < level.vertex_count(); ++v)
     if (number[v] >= 0) f[number[v]] = forces[v];
-  const Eigen::SimplicialLDLT<Matrix> factor(of_free(k, number, free));
+  const Eigen::SimplicialLDLT<Matrix> factor(by_deflections(h, free));
   REQUIRE(factor.info() == Eigen::Success);
   REQUIRE(factor.vectorD().minCoeff() > 0);
   const Eigen::VectorXd solved = factor.solve(f);
@@ -93,19 +63,19 @@ int vertex_at(const Level& level, const Eigen::Vector2d& p) {
 /// middle.
 double beam(const std::string& triangulation, const Model& model, double a) {
   const Level level = Level::of(0, triangulated(triangulation, {1, 0.2}, a));
-  const Matrix k = stiffness_of(level, model, 0);
-  const Eigen::VectorXd w = deflections(level, k, level.vertex_area,
+  const BlockMatrix h = hessian_at_rest(level, model, 0);
+  const Eigen::VectorXd w = deflections(level, h, level.vertex_area,
                                         [](const Eigen::Vector2d& p) { return p.x() == 0 || p.x() == 1; });
   return 5. / 384 / w.maxCoeff();
 }
 
+bool on_sides(const Eigen::Vector2d& p) { return p.x() == 0 || p.x() == 1 || p.y() == 0 || p.y() == 1; }
+
 /// A square plate on its four sides under its weight: stiffness over the plate's, 0.00406235 q L⁴ / D.
 double supported_plate(const std::string& triangulation, const Model& model, double a) {
   const Level level = Level::of(0, triangulated(triangulation, {1, 1}, a));
-  const Matrix k = stiffness_of(level, model, 0.3);
-  const Eigen::VectorXd w = deflections(level, k, level.vertex_area, [](const Eigen::Vector2d& p) {
-    return p.x() == 0 || p.x() == 1 || p.y() == 0 || p.y() == 1;
-  });
+  const BlockMatrix h = hessian_at_rest(level, model, 0.3);
+  const Eigen::VectorXd w = deflections(level, h, level.vertex_area, on_sides);
   return 0.00406235 / w.maxCoeff();
 }
 
@@ -114,11 +84,11 @@ double supported_plate(const std::string& triangulation, const Model& model, dou
 double twisted_plate(const std::string& triangulation, const Model& model, double a) {
   const double nu = 0.3;
   const Level level = Level::of(0, triangulated(triangulation, {1, 1}, a));
-  const Matrix k = stiffness_of(level, model, nu);
+  const BlockMatrix h = hessian_at_rest(level, model, nu);
   Eigen::VectorXd force = Eigen::VectorXd::Zero(level.vertex_count());
   const int corner = vertex_at(level, {1, 1});
   force[corner] = 1;
-  const Eigen::VectorXd w = deflections(level, k, force, [](const Eigen::Vector2d& p) {
+  const Eigen::VectorXd w = deflections(level, h, force, [](const Eigen::Vector2d& p) {
     return (p.x() == 0 && p.y() == 0) || (p.x() == 1 && p.y() == 0) || (p.x() == 0 && p.y() == 1);
   });
   return 1 / (2 * (1 - nu)) / w[corner];
@@ -168,17 +138,13 @@ TEST_CASE("midedge_bending has the modes of a plate on every triangulation, and 
     for (const Model& model : models) {
       if (model.name == "quadratic") continue;
       const Level level = Level::of(0, triangulated(triangulation, {1, 1}, 0.05));
-      int free = 0;
-      const std::vector<int> number = free_numbers(
-          level,
-          [](const Eigen::Vector2d& p) { return p.x() == 0 || p.x() == 1 || p.y() == 0 || p.y() == 1; },
-          free);
-      Eigen::MatrixXd k = of_free(stiffness_of(level, model, 0.3), number, free);
+      const FreeVertices free(level, on_sides);
+      Eigen::MatrixXd k = by_deflections(hessian_at_rest(level, model, 0.3), free);
       for (int v = 0; v < level.vertex_count(); ++v)
-        if (number[v] >= 0) {
+        if (const int i = free.number[v]; i >= 0) {
           const double scale = 1 / std::sqrt(level.vertex_area[v]);
-          k.row(number[v]) *= scale;
-          k.col(number[v]) *= scale;
+          k.row(i) *= scale;
+          k.col(i) *= scale;
         }
       const Eigen::VectorXd found = eigenvalues_of(k);
       row("%14s %10s  1st %.4f  2nd %.4f  5th %.4f  10th %.4f  20th %.4f", triangulation.c_str(),

@@ -2,64 +2,19 @@
 
 #include <catch2/catch.hpp>
 
+#include "tests/support/cut_strip.h"
 #include "tests/support/elastica.h"
-#include "tests/support/strip.h"
 
 using namespace drape;
 
 namespace {
 
-constexpr double strip_density = 1000, strip_thickness = 0.01;
-
-/// A strip of cells × across square cells' size along x, clamped where x is up to one cell. On grids the
-/// clamp is in the middle of that cell (see BeamStrip), on others somewhere in it: L = (cells - 1/2) cells is
-/// taken to be 1 m.
-struct Strip {
-  std::string triangulation;
-  int cells, across;
-
-  double cell() const { return 1 / (cells - 0.5); }
-  double length() const { return cells * cell(); }
-  double width() const { return across * cell(); }
-
+struct Strip : CutStrip {
   /// `stiffness` is EI per width [N m]: D for midedge_bending, 3 D for hinge along a grid's edges (ν = 0).
-  Solved solved(const std::string& bending, double stiffness, const std::string& load) const {
-    const double modulus = (bending == "hinge" ? 4 : 12) * stiffness / std::pow(strip_thickness, 3);
-    const bool grid = triangulation == "one_way" || triangulation == "criss_cross";
-    const std::string counts =
-        grid ? ", columns: " + std::to_string(cells + 1) + ", rows: " + std::to_string(across + 1)
-             : ", vertices: " + std::to_string((cells + 1) * (across + 1));
-    Solved s = solve_yaml(
-        "name: strip\ncloth: {shape: rectangle, triangulation: " + triangulation + ", size: [" +
-        text(length()) + ", " + text(width()) + "]" + counts +
-        "}\nlevels: 1\nmaterial: {density: " + text(strip_density) + ", thickness: " + text(strip_thickness) +
-        ", membrane_modulus: 1e8, bending_modulus: " + text(modulus) +
-        ", poisson_ratio: 0}\npins: [{region: box, lower: [-1, -1, -1], upper: [" + text(1.01 * cell()) +
-        ", 1, 1]}]\nenergies: [neo_hookean, " + bending + ", " + load +
-        "]\nmethods: {newton: {}}\n"
-        "newton: {step_size: 0.1, step_growth: 2, force_tolerance: 1e-5, max_steps: 500}\n");
-    INFO(triangulation << ", " << cells << " cells, " << bending << ": " << s.levels.back().message);
-    REQUIRE(s.levels.back().outcome == Outcome::converged);
-    return s;
-  }
-
-  /// Mean place of the vertices between two distances [cells] from the free end.
-  Eigen::Vector3d mean(const Solved& s, double from, double to) const {
-    Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-    int count = 0;
-    for (Eigen::Index v = 0; v < s.rest().rows(); ++v) {
-      const double distance = (length() - s.rest()(v, 0)) / cell();
-      if (distance < from || distance > to) continue;
-      sum += s.x().row(v).transpose();
-      ++count;
-    }
-    REQUIRE(count > 0);
-    return sum / count;
-  }
-
-  double tip_angle(const Solved& s) const {
-    const Eigen::Vector3d d = mean(s, -0.01, 0.01) - mean(s, 0.3, 1.7);
-    return std::atan2(-d.z(), d.x()) * 180 / M_PI;
+  Solved bent(const std::string& bending, double stiffness, const std::string& load) const {
+    const double modulus = (bending == "hinge" ? 4 : 12) * stiffness / std::pow(thickness, 3);
+    return solved("bending_modulus: " + text(modulus) + ", poisson_ratio: 0",
+                  "neo_hookean, " + bending + ", " + load);
   }
 
   /// How much higher the end's corner at y = width is than the one at y = 0 [m].
@@ -82,10 +37,6 @@ struct Strip {
   }
 };
 
-bool is_grid(const std::string& triangulation) {
-  return triangulation == "one_way" || triangulation == "criss_cross";
-}
-
 }  // namespace
 
 TEST_CASE(
@@ -97,10 +48,10 @@ TEST_CASE(
   for (const std::string& triangulation : all_triangulations) {
     std::vector<double> errors;
     for (const int cells : {10, 20, 40}) {
-      const Strip strip{triangulation, cells, cells / 5};
-      const double stiffness = strip_density * standard_gravity * strip_thickness / gamma;
-      const Solved by_hinge = strip.solved("hinge", stiffness, "gravity"),
-                   by_midedge = strip.solved("midedge_bending", stiffness, "gravity");
+      const Strip strip{{triangulation, cells, cells / 5}};
+      const double stiffness = Strip::density * standard_gravity * Strip::thickness / gamma;
+      const Solved by_hinge = strip.bent("hinge", stiffness, "gravity"),
+                   by_midedge = strip.bent("midedge_bending", stiffness, "gravity");
       const double twist = strip.twist(by_midedge);
       errors.push_back(std::abs(strip.tip_angle(by_midedge) - exact));
       row("%14s %8d %12.4f %10.3f %12.4f %10.3f", triangulation.c_str(), cells, strip.tip_angle(by_hinge),
@@ -126,12 +77,12 @@ TEST_CASE("A strip with a load at its end bends alike on every triangulation wit
   for (const std::string& triangulation : all_triangulations) {
     std::vector<double> errors[2];
     for (const int cells : {10, 20, 40}) {
-      const Strip strip{triangulation, cells, 2};
+      const Strip strip{{triangulation, cells, 2}};
       double deflection[2];
       for (int i = 0; i < 2; ++i) {
         const double alpha = i == 0 ? 1 : 4, stiffness = 20;
         const Solved s =
-            strip.solved("midedge_bending", stiffness, strip.end_load(alpha * stiffness * strip.width()));
+            strip.bent("midedge_bending", stiffness, strip.end_load(alpha * stiffness * strip.width()));
         deflection[i] = -strip.mean(s, -0.01, 0.01).z();
         errors[i].push_back(std::abs(deflection[i] - cantilever_under_end_load(alpha).deflection));
       }

@@ -8,9 +8,10 @@
 
 #include "core/numerics/elements/orthotropic_stiffness.h"
 #include "core/numerics/patterns/generate.h"
+#include "tests/support/cut_strip.h"
 #include "tests/support/elastica.h"
 #include "tests/support/evaluate.h"
-#include "tests/support/strip.h"
+#include "tests/support/free_stiffness.h"
 
 using namespace drape;
 
@@ -61,58 +62,11 @@ TEST_CASE("A strip of woven cloth that is pulled stretches in closed form at eve
     }
 }
 
-namespace {
-
-constexpr double density = 1000, sheet_thickness = 0.01;
-
-/// A strip of cells × across cells that hangs from its clamp, of which half a cell is in the clamp. L = 1 m.
-struct WovenStrip {
-  std::string triangulation;
-  double degrees;  ///< of warp to the strip
-  int cells = 40, across = 2;
-
-  double cell() const { return 1 / (cells - 0.5); }
-
-  double tip_angle(const std::string& bending, double nu) const {
-    const bool grid = triangulation == "one_way" || triangulation == "criss_cross";
-    const std::string counts =
-        grid ? ", columns: " + std::to_string(cells + 1) + ", rows: " + std::to_string(across + 1)
-             : ", vertices: " + std::to_string((cells + 1) * (across + 1));
-    const Solved s = solve_yaml(
-        "name: strip\ncloth: {shape: rectangle, triangulation: " + triangulation + ", size: [" +
-        text(cells * cell()) + ", " + text(across * cell()) + "]" + counts + ", grain: " + text(degrees) +
-        "}\nlevels: 1\nmaterial: {density: " + text(density) + ", thickness: " + text(sheet_thickness) +
-        ", membrane_modulus: 1e8, poisson_ratio: " + text(nu) + ", " + bending +
-        "}\npins: [{region: box, lower: [-1, -1, -1], upper: [" + text(1.01 * cell()) +
-        ", 1, 1]}]\nenergies: [woven, midedge_bending, gravity]\nmethods: {newton: {}}\n"
-        "newton: {step_size: 0.1, step_growth: 2, force_tolerance: 1e-5, max_steps: 500}\n");
-    INFO(triangulation << ": " << s.levels.back().message);
-    REQUIRE(s.levels.back().outcome == Outcome::converged);
-    return mean_angle(s);
-  }
-
- private:
-  double mean_angle(const Solved& s) const {
-    const auto mean = [&](double from, double to) {
-      Eigen::RowVector3d sum = Eigen::RowVector3d::Zero();
-      int count = 0;
-      for (Eigen::Index v = 0; v < s.rest().rows(); ++v)
-        if (const double d = cells - s.rest()(v, 0) / cell(); d >= from && d <= to)
-          sum += s.x().row(v), ++count;
-      return Eigen::RowVector3d(sum / count);
-    };
-    const Eigen::RowVector3d d = mean(-0.01, 0.01) - mean(0.3, 1.7);
-    return std::atan2(-d.z(), d.x()) * 180 / M_PI;
-  }
-};
-
-}  // namespace
-
 TEST_CASE("A cantilever along warp, weft and the bias bends as the elastica with that direction's rigidity",
           "[physics]") {
   // Weight over these rigidities: Γ = 5 along warp, 10 along weft, 7.5 on the bias. A strip on the bias bends
   // across as an isotropic one with ν = 1/3: s12 = (s11 + s22 - s66)/4 = -1/2, s11 = 3/2 of warp's there.
-  const double weight = density * standard_gravity * sheet_thickness;
+  const double weight = CutStrip::density * standard_gravity * CutStrip::thickness;
   const std::string unbalanced = "warp_bending: " + text(weight / 5) + ", weft_bending: " + text(weight / 10);
   const std::string balanced = "warp_bending: " + text(weight / 5) + ", bias_bending: " + text(weight / 7.5);
   struct Case {
@@ -127,11 +81,15 @@ TEST_CASE("A cantilever along warp, weft and the bias bends as the elastica with
   row("%8s %14s %12s %12s %12s", "along", "triangles", "woven", "isotropic", "elastica");
   for (const Case& c : cases)
     for (const std::string& triangulation : all_triangulations) {
-      const bool grid = triangulation == "one_way" || triangulation == "criss_cross";
-      const WovenStrip strip{triangulation, c.degrees, grid ? 40 : 80};  // the clamp is within half a cell
+      // Off grids the clamp is within half a cell.
+      const CutStrip strip{triangulation, is_grid(triangulation) ? 40 : 80, 2, c.degrees};
+      const auto tip_angle = [&](const std::string& bending, double nu) {
+        return strip.tip_angle(
+            strip.solved("poisson_ratio: " + text(nu) + ", " + bending, "woven, midedge_bending, gravity"));
+      };
       const double exact = cantilever_under_weight(c.gamma).tip * 180 / M_PI;
-      const double woven = strip.tip_angle(c.bending, 0),
-                   isotropic = strip.tip_angle("warp_bending: " + text(weight / c.gamma), c.nu);
+      const double woven = tip_angle(c.bending, 0),
+                   isotropic = tip_angle("warp_bending: " + text(weight / c.gamma), c.nu);
       row("%8s %14s %12.4f %12.4f %12.4f", c.name, triangulation.c_str(), woven, isotropic, exact);
       INFO(c.name << ", " << triangulation);
       CHECK(woven == Approx(exact).epsilon(0.01));
@@ -164,27 +122,6 @@ namespace {
 
 using Matrix = Eigen::SparseMatrix<double>;
 
-/// Stiffness of the free vertices by `axes` of each: number[v] is a vertex's place among them, or -1.
-Matrix stiffness(const BlockMatrix& h, const std::vector<int>& number, int free,
-                 const std::vector<int>& axes) {
-  const int n = static_cast<int>(axes.size());
-  std::vector<Eigen::Triplet<double>> entries;
-  for (int i = 0; i < h.pattern->rows(); ++i)
-    for (int b = h.pattern->row_start[i]; b < h.pattern->row_start[i + 1]; ++b) {
-      const int j = h.pattern->columns[b];
-      if (number[i] < 0 || number[j] < 0) continue;
-      for (int p = 0; p < n; ++p)
-        for (int q = 0; q < n; ++q) {
-          const double value = h.block(b)[3 * axes[p] + axes[q]];
-          entries.emplace_back(n * number[i] + p, n * number[j] + q, value);
-          if (i != j) entries.emplace_back(n * number[j] + q, n * number[i] + p, value);
-        }
-    }
-  Matrix k(n * free, n * free);
-  k.setFromTriplets(entries.begin(), entries.end());
-  return k;
-}
-
 /// Γ* = ρ g d L³ / D at which a strip on its edge, clamped at one end, buckles sideways under its weight; by
 /// its height over its length.
 double lateral_buckling(const std::string& triangulation, const std::string& bending, double nu,
@@ -197,16 +134,14 @@ double lateral_buckling(const std::string& triangulation, const std::string& ben
   Material m;
   m.thickness = 1e-3, m.poisson_ratio = nu, m.membrane_modulus = 1e6;
   m.bending_modulus = 12 * (1 - nu * nu) / std::pow(m.thickness, 3);  // D = 1 N m
-  std::vector<int> number(level.vertex_count(), -1);
-  int free = 0;
-  for (int v = 0; v < level.vertex_count(); ++v)
-    if (level.rest.vertices(v, 0) > 1.01 * cell) number[v] = free++;
+  const FreeVertices free(level, [&](const Eigen::Vector2d& p) { return p.x() <= 1.01 * cell; });
+  const std::vector<int>& number = free.number;
 
   // In its plane it bends under a weight of 1 N/m² along y, here by a small part of that.
   const auto membrane = make_plugin_from<Energy>("neo_hookean")->bind(level, m);
   const Matrix in_plane =
-      stiffness(hessian_of(*membrane, level.rest.vertices, Projection::none), number, free, {0, 1});
-  Eigen::VectorXd force = Eigen::VectorXd::Zero(2 * free);
+      stiffness_of(hessian_of(*membrane, level.rest.vertices, Projection::none), free, {0, 1});
+  Eigen::VectorXd force = Eigen::VectorXd::Zero(2 * free.count);
   for (int v = 0; v < level.vertex_count(); ++v)
     if (number[v] >= 0) force[2 * number[v] + 1] = -level.vertex_area[v];
   const Eigen::VectorXd u = Eigen::SimplicialLDLT<Matrix>(in_plane).solve(force);
@@ -217,15 +152,15 @@ double lateral_buckling(const std::string& triangulation, const std::string& ben
     for (int v = 0; v < level.vertex_count(); ++v)
       if (number[v] >= 0)
         for (int c = 0; c < 2; ++c) x(v, c) += load * u[2 * number[v] + c];
-    return stiffness(hessian_of(*membrane, x, Projection::none), number, free, {2});
+    return stiffness_of(hessian_of(*membrane, x, Projection::none), free, {2});
   };
   const Matrix weight = (across_plane(part) - across_plane(-part)) / (2 * part);
-  const Matrix plate = stiffness(
+  const Matrix plate = stiffness_of(
       hessian_of(*make_plugin_from<Energy>(bending)->bind(level, m), level.rest.vertices, Projection::none),
-      number, free, {2});
+      free, {2});
   // (plate + Γ weight) w = 0 has eigenvalues of both signs: by iteration with the square.
   const Eigen::SimplicialLDLT<Matrix> factor(plate);
-  Eigen::VectorXd w = Eigen::VectorXd::LinSpaced(free, 0.5, 1.5);
+  Eigen::VectorXd w = Eigen::VectorXd::LinSpaced(free.count, 0.5, 1.5);
   double load = 0;
   for (int i = 0; i < 200; ++i) {
     w.normalize();

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <catch2/catch.hpp>
 #include <filesystem>
 #include <memory>
 #include <stdexcept>
@@ -62,5 +63,12 @@ inline void run_method(Solved& s, const std::string& name = "") {
 inline Solved solve_yaml(const std::string& text, const std::string& method = "") {
   Solved s = scene_from(text);
   run_method(s, method);
+  return s;
+}
+
+/// What has been solved, whose last level must have converged.
+inline Solved converged(Solved s) {
+  INFO(s.levels.back().message);
+  REQUIRE(s.levels.back().outcome == drape::Outcome::converged);
   return s;
 }
