@@ -8,7 +8,6 @@
 #include <cstddef>
 #include <cstdlib>
 #include <filesystem>
-#include <fstream>
 
 #include "core/kernel/files/file.h"
 #include "core/kernel/interfaces/refiner.h"
@@ -16,7 +15,9 @@
 #include "core/kernel/plugin/make.h"
 #include "core/numerics/linear_algebra/block_matrix.h"
 #include "core/numerics/step/newton_parameters.h"
+#include "tests/support/command.h"
 #include "tests/support/folders.h"
+#include "tests/support/refusal.h"
 
 using namespace drape;
 using Catch::Matchers::Contains;
@@ -33,17 +34,6 @@ class PluginPath {
  public:
   explicit PluginPath(const std::string& value) { setenv("DRAPE_PLUGIN_PATH", value.c_str(), 1); }
   ~PluginPath() { unsetenv("DRAPE_PLUGIN_PATH"); }
-};
-
-/// An empty folder that goes away with the object.
-struct TemporaryFolder {
-  TemporaryFolder() {
-    std::string name = (fs::temp_directory_path() / "drape_loader_XXXXXX").string();
-    REQUIRE(mkdtemp(name.data()));
-    path = name;
-  }
-  ~TemporaryFolder() { fs::remove_all(path); }
-  fs::path path;
 };
 
 constexpr DrapePluginDescriptor ours = DRAPE_ABI_DESCRIPTOR(nullptr);
@@ -136,23 +126,19 @@ TEST_CASE("a library that is no plugin, or no library, is refused with its path"
                     test_library("not_a_plugin").string() +
                         ": is not a drape plugin: it exports no function drape_plugin"
                         " (see DRAPE_PLUGIN in core/kernel/plugin/plugin.h)");
-  const TemporaryFolder folder;
-  const fs::path file = folder.path / "broken.so";
-  REQUIRE(std::fclose(std::fopen(file.c_str(), "w")) == 0);
+  const Scratch folder;
+  const fs::path file = folder / "broken.so";
+  folder.write("broken.so", "");
   CHECK_THROWS_WITH(load_plugins(registry, {folder.path}), Contains(file.string() + ": cannot be loaded: "));
   CHECK(registry.entries().empty());
 }
 
 TEST_CASE("a plugin that gives nothing where something is needed is refused with its path") {
-  const auto error_of = [](const std::string& name) -> std::string {
+  const auto error_of = [](const std::string& name) {
     Registry registry;
-    try {
-      load_plugins(registry, {plugins / name});
-    } catch (const std::runtime_error& error) {
-      REQUIRE(registry.entries().empty());
-      return error.what();
-    }
-    return "";
+    const std::string error = refusal_of([&] { load_plugins(registry, {plugins / name}); });
+    REQUIRE(registry.entries().empty());
+    return error;
   };
   CHECK(error_of("null_descriptor") == test_library("null_descriptor").string() +
                                            ": is not a drape plugin: its function drape_plugin returns null"
@@ -175,18 +161,12 @@ namespace {
 
 /// What loading a folder says whose one plugin is this file.
 std::string error_of_bytes(const std::string& bytes) {
-  const TemporaryFolder folder;
-  const fs::path file = folder.path / "some.so";
-  std::ofstream(file, std::ios::binary) << bytes;
+  const Scratch folder;
+  folder.write("some.so", bytes);
   Registry registry;
-  try {
-    load_plugins(registry, {folder.path});
-  } catch (const std::runtime_error& error) {
-    const std::string message = error.what(), begin = file.string() + ": cannot be loaded: ";
-    REQUIRE(message.substr(0, begin.size()) == begin);
-    return message.substr(begin.size());
-  }
-  return "";
+  const std::string message = refusal_of([&] { load_plugins(registry, {folder.path}); }),
+                    begin = (folder / "some.so").string() + ": cannot be loaded: ";
+  return message.empty() ? "" : replaced(message, begin, "");
 }
 
 }  // namespace
@@ -221,9 +201,9 @@ TEST_CASE("a library of another machine or kind, or none is refused") {
   CHECK_THAT(with(offsetof(ElfW(Ehdr), e_shoff) + 3, 0x7f), Contains("cut short"));
   CHECK_THAT(error_of_bytes("#!/bin/sh\n" + std::string(100, ' ')), Contains("it is no shared library"));
 
-  const TemporaryFolder folder;
+  const Scratch folder;
   Registry registry;
-  const fs::path odd = folder.path / "odd.so";
+  const fs::path odd = folder / "odd.so";
   const auto refused = [&](const std::string& why) {
     CHECK_THROWS_WITH(load_plugins(registry, {folder.path}), odd.string() + ": cannot be loaded: " + why);
     fs::remove(odd);
@@ -238,12 +218,12 @@ TEST_CASE("a library of another machine or kind, or none is refused") {
 
 TEST_CASE("only *.so files are loaded, and a missing folder is refused") {
   Registry registry;
-  const TemporaryFolder folder;
-  REQUIRE(std::fclose(std::fopen((folder.path / "README.md").c_str(), "w")) == 0);
+  const Scratch folder;
+  folder.write("README.md", "");
   load_plugins(registry, {folder.path});
   CHECK(registry.entries().empty());
-  CHECK_THROWS_WITH(load_plugins(registry, {folder.path / "none"}),
-                    (folder.path / "none").string() + ": is not a folder of plugins");
+  CHECK_THROWS_WITH(load_plugins(registry, {folder / "none"}),
+                    (folder / "none").string() + ": is not a folder of plugins");
 }
 
 TEST_CASE("DRAPE_PLUGIN_PATH lists folders, which must exist") {
