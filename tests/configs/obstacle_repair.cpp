@@ -84,13 +84,3 @@ TEST_CASE("cages enclose a repaired obstacle, and its animation moves") {
     CHECK(level["intersections"] == 0);
   }
 }
-
-TEST_CASE("a strict obstacle is refused with all of its faults") {
-  const Scratch folder;
-  folder.write("scan.obj", pyramid + "v 9 9 9\nf 1 5 2\nf 3 3 2\n");
-  folder.write("e.yaml", replaced(wild, "mesh: scan.obj", "mesh: scan.obj, strict: true"));
-  const std::string said = refused_by("check e.yaml", folder.path);
-  for (const std::string fault : {" belongs to no triangle: 5", " repeats a vertex: 5 (2, 2, 1)",
-                                  " has the same vertices as another: 4 (0, 4, 1) as 0"})
-    CHECK_THAT(said, Catch::Contains("obstacle \"scan\": scan.obj: 1 ") && Catch::Contains(fault));
-}

@@ -121,14 +121,6 @@ TEST_CASE("a plugin's own members are its parameters where it declares them") {
   CHECK(registry.find("refiner", "columns")->schema.parameters.size() == 1);
 }
 
-TEST_CASE("a name can be registered once") {
-  Registry registry = filled();
-  registry.current_library = "/lib/b.so";
-  CHECK_THROWS_WITH((registry.add<Refiner, Linear>("loop", "Not the same.")),
-                    "refiner \"loop\" of /lib/b.so is already registered by /lib/a.so;"
-                    " rename it or take one of them out of the search path");
-}
-
 namespace {
 
 /// A refiner with one parameter, declared with or without a fault.
