@@ -58,6 +58,13 @@ std::pair<int, int> size_of_png(const std::string& bytes) {
   return {number(16), number(20)};
 }
 
+/// The name of picture k of film.png.
+std::string film_picture(std::size_t k) {
+  char name[32];
+  std::snprintf(name, sizeof name, "film_%04zu.png", k);
+  return name;
+}
+
 /// The largest difference of the accessor's vertices, in glTF's axes, and the mesh's [m].
 double difference(const Glb& glb, int accessor, const Positions& x) {
   const std::vector<float> floats = glb.floats(accessor);
@@ -275,11 +282,8 @@ TEST_CASE("with --frames a .png is a series of every level's snapshots, coarse t
     const Ended ended = drape_ends(
         "export " + finished_run().string() + " --to film.png --frames --width 90 " + options, folder);
     std::vector<std::string> pictures;
-    char name[32];
-    for (;; pictures.push_back(text_of(folder / name))) {
-      std::snprintf(name, sizeof name, "film_%04zu.png", pictures.size());
-      if (!fs::exists(folder / name)) break;
-    }
+    while (fs::exists(folder / film_picture(pictures.size())))
+      pictures.push_back(text_of(folder / film_picture(pictures.size())));
     CHECK_THAT(ended.out, StartsWith("written: film_0000.png to film_00") && EndsWith(".png\n"));
     CHECK(std::distance(fs::directory_iterator(folder.path), {}) == std::ptrdiff_t(pictures.size()));
     return pictures;
@@ -298,21 +302,16 @@ TEST_CASE("a series of pictures leaves none of a longer one behind it") {
       "export " + finished_run().string() + " --to film.png --frames --width 90 --level 0";
   drape_ends(film, folder);
   std::size_t count = 0;
-  const auto name = [](std::size_t k) {
-    char text[32];
-    std::snprintf(text, sizeof text, "film_%04zu.png", k);
-    return std::string(text);
-  };
-  while (fs::exists(folder / name(count))) ++count;
+  while (fs::exists(folder / film_picture(count))) ++count;
   REQUIRE(count > 1);
-  for (std::size_t k = 0; k < count; ++k) fs::remove(folder / name(k));
-  for (const std::size_t k : {count, count + 1, count + 3}) folder.write(name(k), "longer");
+  for (std::size_t k = 0; k < count; ++k) fs::remove(folder / film_picture(k));
+  for (const std::size_t k : {count, count + 1, count + 3}) folder.write(film_picture(k), "longer");
   drape_ends(film, folder, 2);
-  CHECK_FALSE(fs::exists(folder / name(0)));
+  CHECK_FALSE(fs::exists(folder / film_picture(0)));
   drape_ends(film + " --overwrite", folder);
-  CHECK(fs::exists(folder / name(count - 1)));
-  for (const std::size_t k : {count, count + 1}) CHECK_FALSE(fs::exists(folder / name(k)));
-  CHECK(text_of(folder / name(count + 3)) == "longer");  // no part of a series
+  CHECK(fs::exists(folder / film_picture(count - 1)));
+  for (const std::size_t k : {count, count + 1}) CHECK_FALSE(fs::exists(folder / film_picture(k)));
+  CHECK(text_of(folder / film_picture(count + 3)) == "longer");  // no part of a series
 }
 
 TEST_CASE("snapshots that are damaged are neither exported nor shown") {

@@ -10,6 +10,7 @@
 #include "core/kernel/threads/parallel.h"
 #include "tests/support/decompositions.h"
 #include "tests/support/dense_matrix.h"
+#include "tests/support/evaluate.h"
 #include "tests/support/random_block_matrix.h"
 
 using namespace drape;
@@ -28,12 +29,22 @@ bool agree(LinearSolver solver, const Positions& x, const Positions& y) {
 /// Largest error of a solution with a well-conditioned matrix: round-off, or where conjugate gradients end.
 double error_bound(LinearSolver solver) { return solver == LinearSolver::mixed ? 1e-3 : 1e-12; }
 
+/// One that has analysed the matrix's pattern.
+BlockCholesky analysed(LinearSolver solver, const BlockMatrix& a, const std::vector<char>& fixed) {
+  BlockCholesky cholesky(solver);
+  cholesky.analyse(a.pattern, fixed);
+  return cholesky;
+}
+/// Without fixed vertices.
+BlockCholesky analysed(LinearSolver solver, const BlockMatrix& a) {
+  return analysed(solver, a, std::vector<char>(a.pattern->rows(), 0));
+}
+
 /// The largest difference from a dense solution, relative to it.
 double error(LinearSolver solver, const BlockMatrix& a, const Eigen::VectorXd& shift,
              const std::vector<char>& fixed) {
   const int n = a.pattern->rows();
-  BlockCholesky cholesky(solver);
-  cholesky.analyse(a.pattern, fixed);
+  BlockCholesky cholesky = analysed(solver, a, fixed);
   REQUIRE(cholesky.factorise(a, shift));
   std::srand(7);
   const Positions b = Positions::Random(n, 3);
@@ -41,22 +52,19 @@ double error(LinearSolver solver, const BlockMatrix& a, const Eigen::VectorXd& s
   REQUIRE(cholesky.solve(b, x));
 
   Eigen::MatrixXd d = dense(a);
-  Eigen::VectorXd right(3 * n), got(3 * n);
+  Eigen::VectorXd right = flat(b);
   for (int k = 0; k < 3 * n; ++k) {
     d(k, k) += shift[k / 3];
-    right[k] = b(k / 3, k % 3);
-    got[k] = x(k / 3, k % 3);
-  }
-  for (int k = 0; k < 3 * n; ++k)
     if (fixed[k / 3]) {
       d.row(k).setZero();
       d.col(k).setZero();
       d(k, k) = 1;
       right[k] = 0;
     }
+  }
   const Eigen::VectorXd expected = d.llt().solve(right);
   REQUIRE(expected.norm() > 0.01);
-  return (got - expected).cwiseAbs().maxCoeff() / expected.cwiseAbs().maxCoeff();
+  return (flat(x) - expected).cwiseAbs().maxCoeff() / expected.cwiseAbs().maxCoeff();
 }
 
 }  // namespace
@@ -95,10 +103,8 @@ TEST_CASE("Block Cholesky solves what a dense factorisation solves", "[cholesky]
   }
   SECTION("a factor without zeros, of several tiles") {
     for (int n : {64, 65, 150, 267}) {
-      BlockCholesky cholesky(solver);
       const BlockMatrix a = random_matrix(n, tangle(n, 6 * n, n), 5);
-      cholesky.analyse(a.pattern, free(n));
-      REQUIRE(cholesky.factor_entries() > 0.6 * 9 * n * n / 2);
+      REQUIRE(analysed(solver, a).factor_entries() > 0.6 * 9 * n * n / 2);
       REQUIRE(error(solver, a, shift(n), free(n)) < 10 * bound);
     }
   }
@@ -117,8 +123,7 @@ TEST_CASE("Block Cholesky gives the same bits with any number of threads, as far
   Positions first;
   for (int threads : {1, 2, 3, 8}) {
     set_thread_count(threads);
-    BlockCholesky cholesky(solver);
-    cholesky.analyse(a.pattern, std::vector<char>(n, 0));
+    BlockCholesky cholesky = analysed(solver, a);
     for (int repeat = 0; repeat < 3; ++repeat) {
       REQUIRE(cholesky.factorise(a, Eigen::VectorXd::Constant(n, 0.1)));
       Positions x;
@@ -140,8 +145,7 @@ TEST_CASE("Block Cholesky refuses an indefinite matrix wherever it is so, and th
   const Eigen::VectorXd shift = Eigen::VectorXd::Ones(n);
   const Positions b = Positions::Random(n, 3);
   const LinearSolver solver = any_solver();
-  BlockCholesky cholesky(solver);
-  cholesky.analyse(good.pattern, std::vector<char>(n, 0));
+  BlockCholesky cholesky = analysed(solver, good);
   REQUIRE(cholesky.factorise(good, shift));
   Positions expected, x;
   cholesky.solve(b, expected);
@@ -164,8 +168,7 @@ TEST_CASE("Block Cholesky detects indefinite matrices up to round-off", "[choles
   for (const auto& [n, stencils] : {std::pair(144, shell(12, 4)), std::pair(120, tangle(120, 500, 4))}) {
     const BlockMatrix a = random_matrix(n, stencils, 6);
     const double smallest = eigenvalues_of(dense(a))[0];
-    BlockCholesky cholesky(solver);
-    cholesky.analyse(a.pattern, std::vector<char>(n, 0));
+    BlockCholesky cholesky = analysed(solver, a);
     REQUIRE(cholesky.factorise(a, Eigen::VectorXd::Constant(n, -smallest + 1e-9)));
     REQUIRE_FALSE(cholesky.factorise(a, Eigen::VectorXd::Constant(n, -smallest - 1e-9)));
   }
@@ -176,10 +179,9 @@ TEST_CASE("In single precision, conjugate gradients detect what the factor does 
   const BlockMatrix a = random_matrix(n, shell(side, 4), 6);
   const auto eigen = eigenpairs_of(dense(a));
   const double smallest = eigen.values[0];
-  Positions b(n, 3), x;
-  for (int k = 0; k < 3 * n; ++k) b(k / 3, k % 3) = eigen.vectors(k, 0);
-  BlockCholesky cholesky(LinearSolver::mixed);
-  cholesky.analyse(a.pattern, std::vector<char>(n, 0));
+  const Positions b = Eigen::Map<const Positions>(eigen.vectors.col(0).data(), n, 3);
+  Positions x;
+  BlockCholesky cholesky = analysed(LinearSolver::mixed, a);
   for (const double curvature : {-1e-2, -1e-5, -1e-9}) {
     const bool accepted = cholesky.factorise(a, Eigen::VectorXd::Constant(n, curvature - smallest));
     REQUIRE_FALSE((accepted && cholesky.solve(b, x)));
@@ -193,8 +195,7 @@ TEST_CASE("A matrix and a right-hand side of any unit are solved in single preci
   const int side = 12, n = side * side;
   BlockMatrix a = random_matrix(n, shell(side, 4), 6);
   const Positions b = Positions::Random(n, 3);
-  BlockCholesky cholesky(LinearSolver::mixed);
-  cholesky.analyse(a.pattern, std::vector<char>(n, 0));
+  BlockCholesky cholesky = analysed(LinearSolver::mixed, a);
   Positions expected, x;
   REQUIRE(cholesky.factorise(a, Eigen::VectorXd::Ones(n)));
   REQUIRE(cholesky.solve(b, expected));
@@ -215,8 +216,7 @@ TEST_CASE("Denormal numbers are flushed within a factorisation only, in every th
   set_thread_count(4);
   const int side = 60, n = side * side;
   const BlockMatrix a = random_matrix(n, shell(side, 4), 6);
-  BlockCholesky cholesky(LinearSolver::mixed);
-  cholesky.analyse(a.pattern, std::vector<char>(n, 0));
+  BlockCholesky cholesky = analysed(LinearSolver::mixed, a);
   const Positions b = Positions::Random(n, 3);
   Positions x;
   for (int repeat = 0; repeat < 5; ++repeat) {
@@ -243,8 +243,7 @@ TEST_CASE("Denormal numbers are flushed within a factorisation only, in every th
 
 TEST_CASE("Block Cholesky with every vertex fixed has nothing to solve", "[cholesky]") {
   const BlockMatrix a = random_matrix(10, 2);
-  BlockCholesky cholesky(any_solver());
-  cholesky.analyse(a.pattern, std::vector<char>(10, 1));
+  BlockCholesky cholesky = analysed(any_solver(), a, std::vector<char>(10, 1));
   REQUIRE(cholesky.factorise(a, Eigen::VectorXd::Zero(10)));
   Positions x;
   cholesky.solve(Positions::Random(10, 3), x);

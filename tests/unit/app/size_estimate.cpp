@@ -1,6 +1,8 @@
 #include <catch2/catch.hpp>
 
 #include "core/app/experiment/cloth.h"
+#include "core/app/files/machine.h"
+#include "tests/support/command.h"
 
 using namespace drape;
 
@@ -86,4 +88,25 @@ TEST_CASE("What exceeds the machine's memory is refused unless it is allowed") {
       refusal(grid_of(24, 10)),
       Catch::Matches(".* that can be counted; take at most [1-8] levels, for which this machine's memory "
                      "of [0-9.]+ GB suffices, or up to 9 levels with --allow-memory"));
+}
+
+TEST_CASE(
+    "A container's memory is what its limit leaves, without the files that the kernel drops on demand") {
+  const Scratch group;
+  CHECK(ContainerMemory::of(group.path).limit > 1e17);
+  group.write("memory.max", "max");  // no limit
+  CHECK(ContainerMemory::of(group.path).available > 1e17);
+  group.write("memory.max", "4000");
+  group.write("memory.current", "3000");
+  CHECK(ContainerMemory::of(group.path).limit == 4000);
+  CHECK(ContainerMemory::of(group.path).available == 1000);
+  group.write("memory.stat", "anon 1000\ninactive_file 500\nactive_file 20");
+  CHECK(ContainerMemory::of(group.path).available == 1500);
+  group.write("memory.current", "9000");
+  CHECK(ContainerMemory::of(group.path).available == 0);
+}
+
+TEST_CASE("This machine's available memory is known") {
+  CHECK(available_memory() > 0);
+  CHECK(available_memory() < 1e17);
 }

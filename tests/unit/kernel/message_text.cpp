@@ -1,15 +1,18 @@
-// How texts of users and files appear in messages, and what is read of files at all.
+// How numbers and texts of users and files appear in messages, and what is read of files at all.
 
 #include "core/kernel/files/message_text.h"
 
 #include <sys/stat.h>
 
 #include <catch2/catch.hpp>
+#include <cstdio>
+#include <limits>
 #include <new>
 #include <system_error>
 
 #include "core/app/files/yaml_file.h"
 #include "core/kernel/files/file.h"
+#include "core/kernel/files/number_text.h"
 #include "core/kernel/files/string_utils.h"
 #include "core/numerics/mesh_files/io.h"
 #include "tests/support/command.h"
@@ -32,6 +35,23 @@ TEST_CASE("a quantity is shown with three digits, whatever its size") {
   CHECK(three_digits(1234.5) == "1.23e+03");
   CHECK(three_digits(0.125) == "0.125");
   CHECK(three_digits(2) == "2");
+}
+
+TEST_CASE("numbers are written as printf writes them in the C locale") {
+  const auto printed = [](const char* format, int precision, double value) {
+    char text[400];
+    std::snprintf(text, sizeof text, format, precision, value);
+    return std::string(text);
+  };
+  using Limits = std::numeric_limits<double>;
+  for (const double value : {0.0, -0.0, 0.5, 2.5, 1.0 / 3, -1e-5, 99999.95, 123456789.0, 1e22, -5e-324,
+                             Limits::max(), Limits::infinity(), -Limits::infinity(), Limits::quiet_NaN()})
+    for (const int precision : {0, 1, 2, 3, 6, 9, 17}) {
+      CAPTURE(value, precision);
+      CHECK(fixed_text(value, precision) == printed("%.*f", precision, value));
+      CHECK(scientific_text(value, precision) == printed("%.*e", precision, value));
+      CHECK(general_text(value, precision) == printed("%.*g", precision, value));
+    }
 }
 
 TEST_CASE("a text is split at every separator") {

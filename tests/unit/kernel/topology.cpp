@@ -11,18 +11,14 @@ using namespace drape;
 
 namespace {
 
-Triangles two_triangles() {
-  Triangles t(2, 3);
-  t << 0, 1, 2, 2, 1, 3;
-  return t;
-}
+const Triangles two_triangles{{0, 1, 2}, {2, 1, 3}};
 
 std::vector<int> row(const AdjacencyList& list, int i) { return {list.begin(i), list.end(i)}; }
 
 }  // namespace
 
 TEST_CASE("the topology of two triangles", "[topology]") {
-  const Topology topology = Topology::of(two_triangles(), 5);
+  const Topology topology = Topology::of(two_triangles, 5);
 
   Eigen::MatrixXi edges(5, 2), triangle_edges(2, 3), edge_triangles(5, 2);
   edges << 1, 2, 0, 2, 0, 1, 1, 3, 2, 3;
@@ -47,7 +43,7 @@ TEST_CASE("meshes with another number of triangles have other triangles", "[topo
 }
 
 TEST_CASE("hinges keep the mesh's orientation", "[topology]") {
-  const Triangles two = two_triangles();
+  const Triangles two = two_triangles;
   const auto hinges = Topology::of(two, 4).hinges(two);
   REQUIRE(hinges.rows() == 1);
   CHECK(hinges.row(0) == Eigen::RowVector4i(1, 2, 0, 3));
@@ -91,4 +87,17 @@ TEST_CASE("a fan of a million triangles takes no quadratic time", "[topology]") 
   const Topology topology = Topology::of(fan, count + 1);
   CHECK(topology.vertex_vertices.size(0) == count);
   CHECK_FALSE(topology.on_border[0]);
+}
+
+TEST_CASE("a level's vertex areas are thirds of its triangles") {
+  const Level level = Level::of(3, grid({2, 3}, 3, 4, Diagonals::one_way));
+  CHECK(level.index == 3);
+  CHECK(level.vertex_count() == 12);
+  CHECK(level.triangle_count() == 12);
+  CHECK(level.topology.edges.rows() == 12 + 12 - 1);
+  REQUIRE(level.vertex_area.size() == 12);
+  CHECK(level.vertex_area.sum() == Approx(6).epsilon(1e-14));
+  CHECK(level.vertex_area[4] == Approx(6 * 0.5 / 3).epsilon(1e-14));  // inside: six triangles of 1/2
+  CHECK(level.vertex_area[0] == Approx(2 * 0.5 / 3).epsilon(1e-14));
+  CHECK(level.vertex_area[2] == Approx(1 * 0.5 / 3).epsilon(1e-14));
 }
