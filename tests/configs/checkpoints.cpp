@@ -346,7 +346,7 @@ void wait_for_steps(Command& command, const fs::path& out, int steps) {
 /// What a run of the sheets leaves that was interrupted in the middle.
 void interrupt_sheets(const Scratch& folder) {
   write_sheets(folder);
-  Command command("exec " + drape_command + " " + sheets_run, folder.path);
+  DrapeAtWork command(sheets_run, folder);
   wait_for_steps(command, folder / "out", 12);
   command.send(SIGINT);
   REQUIRE(command.wait().exit_code == 130);
@@ -358,7 +358,7 @@ void interrupt_sheets(const Scratch& folder) {
 TEST_CASE("A run that is killed at twenty random moments resumes every time, with equal results") {
   const Scratch folder;
   write_sheets(folder);
-  Command check("exec " + drape_command + " check e.yaml", folder.path);
+  DrapeAtWork check("check e.yaml", folder);
   REQUIRE(check.wait().exit_code == 0);
   const double to_begin = check.processor_time();
   drape_ends(replaced(sheets_run, "--out out", "--out whole"), folder, 1);
@@ -369,8 +369,7 @@ TEST_CASE("A run that is killed at twenty random moments resumes every time, wit
   for (int kill = 0; kill < 20; ++kill) {
     const bool begun = fs::exists(folder / "out/checkpoint/state.bin");
     resumed += begun;
-    Command command("exec " + drape_command + " " + (begun ? go_on : sheets_run + " --overwrite"),
-                    folder.path);
+    DrapeAtWork command((begun ? go_on : sheets_run + " --overwrite"), folder);
     // Half of them while it begins, half after some steps more than it had, at most a twentieth of all.
     const double part = static_cast<double>(random() % 1000) / 1000;
     if (kill % 2)
@@ -385,13 +384,10 @@ TEST_CASE("A run that is killed at twenty random moments resumes every time, wit
   CHECK(cut == 20);
   CHECK(resumed >= 15);
   CHECK_FALSE(is_complete(folder / "out"));
-  const Ended ended = drape_with(go_on, folder.path);
-  CHECK(ended.err == "");
-  CHECK(ended.exit_code == 1);  // as the run that was not killed: out of steps
+  CHECK(drape_ends(go_on, folder, 1).err == "");  // out of steps, as the run that was not killed
   check_equal(folder / "out", folder / "whole");
-  const Ended again = drape_with("run --resume out", folder.path);
-  CHECK(again.exit_code == 1);  // the run's own
-  CHECK(again.out == "out: the run is complete; there is nothing to resume\n");
+  CHECK(drape_ends("run --resume out", folder, 1).out ==  // the run's own exit code
+        "out: the run is complete; there is nothing to resume\n");
   CHECK_FALSE(fs::exists(folder / "out/checkpoint/state.bin"));
 }
 
@@ -440,9 +436,8 @@ TEST_CASE("A damaged checkpoint is replaced by its predecessor, with a warning")
   interrupt_sheets(folder);
   drape_ends(replaced(sheets_run, "--out out", "--out whole"), folder, 1);
   folder.write("out/checkpoint/state.bin", "drapestt");
-  const Ended ended = drape_with(go_on, folder.path);
-  CHECK_THAT(ended.err, Contains("state.bin: is cut short; going on from the checkpoint before it"));
-  CHECK(ended.exit_code == 1);
+  CHECK_THAT(drape_ends(go_on, folder, 1).err,
+             Contains("state.bin: is cut short; going on from the checkpoint before it"));
   check_equal(folder / "out", folder / "whole");
 }
 
@@ -470,9 +465,7 @@ TEST_CASE("Damaged and missing files of an interrupted run are restored, bit for
   const auto write = [&](const std::string& name, const std::string& bytes) {
     folder.write("out/" + name, bytes);
   };
-  std::string flipped = before.at("levels/pcs_l0.ply");
-  flipped[flipped.size() / 2] ^= 1;
-  write("levels/pcs_l0.ply", flipped);
+  folder.damage("out/levels/pcs_l0.ply");
   write("levels/pcs_l2.ply", before.at("levels/pcs_l2.ply").substr(0, 100));
   write("levels/cascadic_l1.vtp", "");
   fs::remove(folder / "out/levels/cascadic_l1.ply");
@@ -480,13 +473,11 @@ TEST_CASE("Damaged and missing files of an interrupted run are restored, bit for
   fs::remove(folder / "out/levels/pcs.pvd");
   fs::remove_all(folder / "out/rest");
   fs::remove(folder / "out/fields/pcs_l0_l2.ply");
-  flipped = before.at("fields/cascadic_l1_l2.ply");
+  std::string flipped = before.at("fields/cascadic_l1_l2.ply");
   flipped[flipped.size() - 9] ^= 1;
   write("fields/cascadic_l1_l2.ply", flipped);
 
-  const Ended ended = drape_with("run --resume out --quiet --no-report", folder.path);
-  CHECK(ended.exit_code == 1);  // out of steps
-  CHECK(ended.err ==
+  CHECK(drape_ends("run --resume out --quiet --no-report", folder, 1).err ==  // out of steps
         "warning: damaged or missing files were written again: rest/l0.ply, rest/l1.ply, rest/l2.ply, "
         "levels/pcs_l0.ply, levels/pcs_l2.ply, levels/cascadic_l1.ply, levels/cascadic_l1.vtp, "
         "levels/newton_l0.ply, levels/pcs.pvd, fields/pcs_l0_l2.ply, fields/cascadic_l1_l2.ply\n");
@@ -503,9 +494,7 @@ TEST_CASE("Damaged snapshots are skipped in errors.csv, without other effects") 
   RunOptions options = silent(folder / "out");
   options.stop = [&] { return fs::exists(folder / "out/levels/cascadic_l0.ply"); };
   run_experiment(experiment, *scene_of(experiment), options);
-  std::string snapshots = text_of(folder / "out/snapshots/pcs_l0.bin");
-  snapshots[snapshots.size() / 2] ^= 1;
-  folder.write("out/snapshots/pcs_l0.bin", snapshots);
+  folder.damage("out/snapshots/pcs_l0.bin");
   drape_ends("run --resume out --quiet --no-report", folder);
   CHECK_THAT(text_of(folder / "out/log.jsonl"), Contains("snapshots/pcs_l0.bin: is damaged"));
   const std::string errors = text_of(folder / "out/errors.csv");
@@ -519,21 +508,16 @@ TEST_CASE("Resuming a complete run returns its exit code and checks its files") 
                     said = ": the run is complete; there is nothing to resume\n";
   drape_ends(run + "good", folder);
   drape_ends(run + "poor --set newton.max_steps=2", folder, 1);
-  const Ended good = drape_ends("run --resume good", folder);
-  CHECK(good.out == "good" + said);
-  CHECK(good.err == "");
-  const Ended poor = drape_ends("run --resume poor", folder, 1);
-  CHECK(poor.out == "poor" + said);
+  CHECK(shown_by("run --resume good", folder.path) == "good" + said);
+  CHECK(drape_ends("run --resume poor", folder, 1).out == "poor" + said);
 
   const std::string rest = text_of(folder / "good/rest/l1.ply");
   fs::remove_all(folder / "good/rest");
-  const Ended restored = drape_ends("run --resume good", folder);
-  CHECK(restored.err == "warning: damaged or missing files were written again: rest/l0.ply, rest/l1.ply\n");
+  CHECK(drape_ends("run --resume good", folder).err ==
+        "warning: damaged or missing files were written again: rest/l0.ply, rest/l1.ply\n");
   CHECK((text_of(folder / "good/rest/l1.ply") == rest));
 
-  std::string mesh = text_of(folder / "good/levels/pcs_l0.ply");
-  mesh[mesh.size() / 2] ^= 1;
-  folder.write("good/levels/pcs_l0.ply", mesh);
+  folder.damage("good/levels/pcs_l0.ply");
   fs::remove(folder / "good/levels/pcs_l1.ply");
   CHECK(refused_by("run --resume good", folder.path) ==
         "error: good: the run is complete, but files are damaged or missing: levels/pcs_l0.ply, "
@@ -620,8 +604,7 @@ schedule:
     - {parameter: pins.0.radius, times: [0, 1], values: [0.05, 0.12]}
 methods: {newton: {}}
 )yaml");
-  Command command("exec " + drape_command + " run e.yaml --out out --checkpoint 0 -q --no-report",
-                  folder.path);
+  DrapeAtWork command("run e.yaml --out out --checkpoint 0 -q --no-report", folder);
   wait_for_steps(command, folder / "out", 320);
   command.send(SIGINT);
   REQUIRE(command.wait().exit_code == 130);
@@ -634,7 +617,7 @@ TEST_CASE("An obstacle's mesh that changed since is named") {
   const Scratch folder(replaced(experiment_of_tests("contact"), "obstacles: [",
                                 "obstacles: [{mesh: box.obj, translate: [0, 0, -1]}, "));
   write_mesh(folder / "box.obj", grid({0.4, 0.4}, 2, 2, Diagonals::one_way));
-  Command command("exec " + drape_command + " " + sheets_run, folder.path);
+  DrapeAtWork command(sheets_run, folder);
   wait_for_steps(command, folder / "out", 3);
   command.send(SIGKILL);
   command.wait();
@@ -670,7 +653,7 @@ TEST_CASE("A run warm-starts from a saved state under changed parameters, in ano
   CHECK((flown - left).norm() > 0);
 
   // Interrupted and resumed, it has the bits of one that is not.
-  Command command("exec " + drape_command + " " + flow + "--out part --checkpoint 0", folder.path);
+  DrapeAtWork command(flow + "--out part --checkpoint 0", folder);
   wait_for_steps(command, folder / "part", 5);
   command.send(SIGKILL);
   command.wait();

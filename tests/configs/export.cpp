@@ -317,9 +317,7 @@ TEST_CASE("a series of pictures leaves none of a longer one behind it") {
 TEST_CASE("snapshots that are damaged are neither exported nor shown") {
   const Scratch folder;
   fs::copy(finished_run(), folder / "out", fs::copy_options::recursive);
-  std::string snapshots = text_of(folder / "out/snapshots/pcs_l1.bin");
-  snapshots[snapshots.size() / 2] ^= 1;
-  folder.write("out/snapshots/pcs_l1.bin", snapshots);
+  folder.damage("out/snapshots/pcs_l1.bin");
   for (const std::string name : {"a.glb", "a.png"}) {
     CHECK_THAT(refused_by("export out --frames --to " + name, folder.path),
                EndsWith("snapshots/pcs_l1.bin: is damaged: its checksum does not fit\n"));

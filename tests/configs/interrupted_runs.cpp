@@ -31,7 +31,7 @@ void wait_for_lines(Command& command, const fs::path& file, int lines) {
 
 TEST_CASE("SIGINT ends a run after the step, with all results so far and the report") {
   const Scratch folder(small_experiment());
-  Command command("exec " + drape_command + " " + endless + " --set newton.max_steps=100000", folder.path);
+  DrapeAtWork command(endless + " --set newton.max_steps=100000", folder);
   wait_for_lines(command, folder / "out/iterations.csv", 6);
   command.send(SIGINT);
   const Ended ended = command.wait();
@@ -53,7 +53,7 @@ TEST_CASE("SIGINT ends a run after the step, with all results so far and the rep
 TEST_CASE("SIGHUP, as of a terminal that is closed, ends a run as SIGTERM does; under nohup it does not") {
   const Scratch folder(small_experiment());
   {
-    Command command("exec " + drape_command + " " + endless + " --set newton.max_steps=100000", folder.path);
+    DrapeAtWork command(endless + " --set newton.max_steps=100000", folder);
     wait_for_lines(command, folder / "out/iterations.csv", 6);
     command.send(SIGHUP);
     CHECK(command.wait().exit_code == 129);
@@ -74,9 +74,7 @@ TEST_CASE("SIGHUP, as of a terminal that is closed, ends a run as SIGTERM does; 
 
 TEST_CASE("A run writes nothing of its progress into its files where the standard streams are closed") {
   const Scratch folder(small_experiment());
-  Command command(
-      "exec " + drape_command + " run e.yaml --levels 1 --method pcs --no-report --out out <&- >&- 2>&-",
-      folder.path);
+  DrapeAtWork command("run e.yaml --levels 1 --method pcs --no-report --out out <&- >&- 2>&-", folder);
   REQUIRE(command.wait().exit_code == 0);
   for (const auto& entry : fs::recursive_directory_iterator(folder / "out")) {
     if (!entry.is_regular_file()) continue;
@@ -99,9 +97,7 @@ TEST_CASE("An interrupted run is resumed although its results.json is damaged an
   const bool between_renames = GENERATE(false, true);  // of a checkpoint's save
   const Scratch folder(small_experiment());
   const std::string run = "run e.yaml --out out --threads 1 --no-report --quiet --method pcs --checkpoint 0 ";
-  Command command("exec " + drape_command + " " + run + "--set newton.max_steps=100000 " +
-                      "--set newton.force_tolerance=1e-300",
-                  folder.path);
+  DrapeAtWork command(run + "--set newton.max_steps=100000 " + "--set newton.force_tolerance=1e-300", folder);
   wait_for_lines(command, folder / "out/iterations.csv", 6);
   command.send(SIGKILL);
   command.wait();
@@ -109,7 +105,7 @@ TEST_CASE("An interrupted run is resumed although its results.json is damaged an
   const fs::path newest = folder / "out/checkpoint/state.bin";
   if (between_renames && fs::exists(newest)) fs::rename(newest, folder / "out/checkpoint/previous.bin");
   fs::remove(folder / "out/config.yaml");
-  Command resumed("exec " + drape_command + " run --resume out --quiet --no-report", folder.path);
+  DrapeAtWork resumed("run --resume out --quiet --no-report", folder);
   const std::string before = text_of(folder / "out/iterations.csv");
   resumed.wait_until("it has gone on",
                      [&] { return contents(folder / "out/iterations.csv").size() > before.size() + 500; });
@@ -124,7 +120,7 @@ TEST_CASE("SIGKILL at any moment leaves complete files, sufficient for a report"
   const std::string fast = " --set newton.max_steps=3 --set cloth.columns=16 --set cloth.rows=16";
   for (const int level_lines : {1, 4, 7, 10, 13}) {
     const Scratch folder(small_experiment());
-    Command command("exec " + drape_command + " " + endless + fast, folder.path);
+    DrapeAtWork command(endless + fast, folder);
     wait_for_lines(command, folder / "out/log.jsonl", level_lines);
     command.send(SIGKILL);
     REQUIRE(command.wait().exit_code == 128 + SIGKILL);
@@ -168,7 +164,7 @@ Ended ended_by_two_signals(Command& command) {
 
 TEST_CASE("a second signal ends a run at once") {
   const Scratch folder(small_experiment());
-  Command command("exec " + drape_command + " " + endless + " --set newton.max_steps=100000", folder.path);
+  DrapeAtWork command(endless + " --set newton.max_steps=100000", folder);
   wait_for_lines(command, folder / "out/iterations.csv", 6);
   const Ended ended = ended_by_two_signals(command);
   CHECK(ended.exit_code == 128 + SIGTERM);
@@ -179,12 +175,11 @@ TEST_CASE("a second signal ends a run at once") {
 TEST_CASE("a second signal ends a run at once while metrics and the report are made") {
   const Scratch folder(small_experiment());
   // A metric of neighbourhoods of thousands of vertices each, which takes seconds.
-  Command command(
-      "exec " + drape_command +
-          " run e.yaml --out out --method newton --threads 1 --levels 2 --set cloth.columns=75 --set "
-          "cloth.rows=75 --set 'metrics=[{type: curvature_consistency, rings: 50}]' "
-          "--set snapshots=0 --set newton.max_steps=2 --set newton.force_tolerance=1e9",
-      folder.path);
+  DrapeAtWork command(
+      "run e.yaml --out out --method newton --threads 1 --levels 2 --set cloth.columns=75 --set "
+      "cloth.rows=75 --set 'metrics=[{type: curvature_consistency, rings: 50}]' "
+      "--set snapshots=0 --set newton.max_steps=2 --set newton.force_tolerance=1e9",
+      folder);
   wait_for_lines(command, folder / "out/log.jsonl", 6);  // both levels have ended
   CHECK(ended_by_two_signals(command).exit_code == 128 + SIGTERM);
 }
@@ -193,9 +188,8 @@ TEST_CASE("before a run has begun the first signal ends the process") {
   const Scratch folder(small_experiment());
   for (const std::string line : {"check e.yaml", "run e.yaml --out out"}) {
     INFO(line);
-    Command command("exec " + drape_command + " " + line +
-                        " --allow-memory --levels 1 --set cloth.columns=2000 --set cloth.rows=2000",
-                    folder.path);
+    DrapeAtWork command(line + " --allow-memory --levels 1 --set cloth.columns=2000 --set cloth.rows=2000",
+                        folder);
     command.wait_until("it is at work", [&] { return command.processor_time() > 0.5; });
     command.send(SIGTERM);
     const Ended ended = command.wait({20 * test_slowdown(), 10});

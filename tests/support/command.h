@@ -37,6 +37,14 @@ struct Scratch {
     std::ofstream(path / name, std::ios::binary) << text;
   }
 
+  /// Changes the byte in the middle of a file.
+  void damage(const std::string& name) const {
+    std::fstream file(path / name, std::ios::binary | std::ios::in | std::ios::out);
+    const auto middle = static_cast<std::streamoff>(std::filesystem::file_size(path / name) / 2);
+    const int byte = file.seekg(middle).peek();
+    REQUIRE(file.seekp(middle).put(static_cast<char>(byte ^ 1)));
+  }
+
   std::filesystem::path path;
 };
 
@@ -162,6 +170,12 @@ inline void wait_until(const std::string& what, const std::function<bool()>& con
 }
 
 inline const std::string drape_command = (folders::commands() / "drape").string();
+
+/// `drape` with these arguments, at work in that folder.
+struct DrapeAtWork : Command {
+  DrapeAtWork(const std::string& arguments, const Scratch& folder)
+      : Command("exec " + drape_command + " " + arguments, folder.path) {}
+};
 
 /// `drape` with these arguments, in that folder, to its end.
 inline Ended drape_with(const std::string& arguments, const std::filesystem::path& folder,

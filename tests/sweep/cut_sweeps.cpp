@@ -17,7 +17,7 @@ void write_slow(const Scratch& folder) {
 
 /// Begins the sweep, and ends it by a signal as soon as its run has a checkpoint.
 void cut_slow(const Scratch& folder, int signal) {
-  Command command("exec " + drape_command + " sweep s.yaml --out out", folder.path);
+  DrapeAtWork command("sweep s.yaml --out out", folder);
   command.wait_until("the run has a checkpoint", [&] {
     return std::filesystem::exists(folder / "out/runs/slow/seed_1/checkpoint/state.bin");
   });
@@ -57,7 +57,7 @@ TEST_CASE("a sweep removes no run that another process is resuming") {
   write_slow(folder);
   cut_slow(folder, SIGKILL);
   const std::string run = "out/runs/slow/seed_1";
-  Command by_hand("exec " + drape_command + " run --resume " + run + " --no-report", folder.path);
+  DrapeAtWork by_hand("run --resume " + run + " --no-report", folder);
   by_hand.wait_until("it resumes", [&] {
     return text_of(folder / (run + "/log.jsonl")).find("run_resumed") != std::string::npos;
   });

@@ -115,9 +115,8 @@ TEST_CASE("a fit refuses what it cannot do, before it runs anything") {
 
 TEST_CASE("a fit that is interrupted keeps its runs and says how to go on") {
   const Scratch folder(specimen);
-  Command fit("exec " + drape_command +
-                  " fit e.yaml --to 45 --by material.bending --set cloth.vertices=20000 --threads 1 -o fit",
-              folder.path);
+  DrapeAtWork fit("fit e.yaml --to 45 --by material.bending --set cloth.vertices=20000 --threads 1 -o fit",
+                  folder);
   wait_for(fit, folder / "fit", "running", 1);
   fit.send_alone(SIGINT);
   const Ended ended = fit.wait();

@@ -117,7 +117,7 @@ TEST_CASE("kill -9 loses only the active runs") {
   const Scratch folder;
   drape_ends(small_sweep + "--out whole", folder);
   for (const int done : {1, 9, 17}) {
-    Command command("exec " + drape_command + " " + small_sweep + " --out cut", folder.path);
+    DrapeAtWork command(small_sweep + " --out cut", folder);
     wait_for(command, folder / "cut", "converged", done);
     command.send(SIGKILL);  // the sweep alone: its runs are in groups of their own, and must die with it
     REQUIRE(command.wait().exit_code == 128 + SIGKILL);
@@ -139,7 +139,7 @@ TEST_CASE("kill -9 loses only the active runs") {
 TEST_CASE("Ctrl-C stops the runs, which save their state, and the same command resumes") {
   const Scratch folder;
   write_endless(folder);
-  Command command("exec " + drape_command + " sweep s.yaml --out out --workers 1", folder.path);
+  DrapeAtWork command("sweep s.yaml --out out --workers 1", folder);
   wait_for_endless(command, folder);
   CHECK_THAT(refused_by("sweep s.yaml --out out", folder.path),
              Catch::Matchers::Matches("error: out: another `drape sweep` uses this folder \\(process "
@@ -202,7 +202,7 @@ TEST_CASE("a failed run is listed with its error, does not stop the others, and 
 TEST_CASE("a killed run has failed, with the name of the signal") {
   const Scratch folder;
   write_endless(folder);
-  Command command("exec " + drape_command + " sweep s.yaml --out out --workers 1", folder.path);
+  DrapeAtWork command("sweep s.yaml --out out --workers 1", folder);
   wait_for_endless(command, folder);
   // The one process whose command names this run's folder.
   for (const auto& entry : fs::directory_iterator("/proc")) {
@@ -315,8 +315,7 @@ TEST_CASE("two tasks for one run, as after a daemon's death, run it once") {
   drape_ends("sweep s.yaml --out out", folder);
   fs::remove_all(folder / "out/runs/base/seed_1");
   fs::remove(folder / "out/runs/base/seed_1.status.json");
-  const std::string task = "exec " + drape_command + " sweep-job out --task 0";
-  Command first(task, folder.path), second(task, folder.path);
+  DrapeAtWork first("sweep-job out --task 0", folder), second("sweep-job out --task 0", folder);
   CHECK(first.wait().exit_code == 0);
   CHECK(second.wait().exit_code == 0);
   drape_ends("sweep-job out", folder);  // collects

@@ -4,6 +4,7 @@
 #include <set>
 #include <utility>
 
+#include "core/kernel/interfaces/level.h"
 #include "core/numerics/mesh/same_entries.h"
 #include "core/numerics/patterns/generate.h"
 
@@ -43,8 +44,7 @@ TEST_CASE("meshes with another number of triangles have other triangles", "[topo
 }
 
 TEST_CASE("hinges keep the mesh's orientation", "[topology]") {
-  const Triangles two = two_triangles;
-  const auto hinges = Topology::of(two, 4).hinges(two);
+  const auto hinges = Topology::of(two_triangles, 4).hinges(two_triangles);
   REQUIRE(hinges.rows() == 1);
   CHECK(hinges.row(0) == Eigen::RowVector4i(1, 2, 0, 3));
 
