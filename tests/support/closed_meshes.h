@@ -1,36 +1,14 @@
 #pragma once
 
 #include <cmath>
-#include <vector>
 
-#include "core/numerics/hierarchy/midpoint.h"
-#include "core/numerics/mesh/split_triangles.h"
+#include "core/numerics/patterns/primitives.h"
 
 // Closed meshes to blow up, triangles counter-clockwise seen from outside.
 
-/// A sphere about the origin with 20 · 4^splits triangles: an icosahedron, split, every vertex on the sphere.
+/// A sphere about the origin with 20 · 4^splits triangles.
 inline drape::TriangleMesh sphere_mesh(double radius, int splits) {
-  const double g = (1 + std::sqrt(5.0)) / 2;
-  drape::TriangleMesh mesh;
-  mesh.vertices.resize(12, 3);
-  mesh.vertices << -1, g, 0, 1, g, 0, -1, -g, 0, 1, -g, 0, 0, -1, g, 0, 1, g, 0, -1, -g, 0, 1, -g, g, 0, -1,
-      g, 0, 1, -g, 0, -1, -g, 0, 1;
-  mesh.triangles.resize(20, 3);
-  mesh.triangles << 0, 11, 5, 0, 5, 1, 0, 1, 7, 0, 7, 10, 0, 10, 11, 1, 5, 9, 5, 11, 4, 11, 10, 2, 10, 7, 6,
-      7, 1, 8, 3, 9, 4, 3, 4, 2, 3, 2, 6, 3, 6, 8, 3, 8, 9, 4, 9, 5, 2, 4, 11, 6, 2, 10, 8, 6, 7, 9, 8, 1;
-  for (int s = 0; s <= splits; ++s) {
-    if (s > 0) {
-      const drape::Level coarse = drape::Level::of(0, mesh);
-      drape::Positions all(coarse.vertex_count() + coarse.topology.edges.rows(), 3);
-      all.topRows(coarse.vertex_count()) = mesh.vertices;
-      for (Eigen::Index e = 0; e < coarse.topology.edges.rows(); ++e)
-        all.row(coarse.vertex_count() + e) = (mesh.vertices.row(coarse.topology.edges(e, 0)) +
-                                              mesh.vertices.row(coarse.topology.edges(e, 1))) /
-                                             2;
-      mesh = {all, drape::split_triangles(mesh.triangles, coarse.topology)};
-    }
-    mesh.vertices.rowwise().normalize();
-  }
+  drape::TriangleMesh mesh = drape::unit_sphere(splits);
   mesh.vertices *= radius;
   return mesh;
 }
