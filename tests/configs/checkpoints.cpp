@@ -10,10 +10,9 @@
 #include "core/numerics/mesh_files/io.h"
 #include "core/numerics/patterns/generate.h"
 #include "tests/support/command.h"
-#include "tests/support/drum.h"
+#include "tests/support/contact_scenes.h"
 #include "tests/support/folders.h"
 #include "tests/support/meshes.h"
-#include "tests/support/sheets.h"
 #include "tests/support/solve.h"
 
 using namespace drape;

@@ -5,8 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "tests/support/command.h"
-#include "tests/support/drum.h"
-#include "tests/support/sheets.h"
+#include "tests/support/contact_scenes.h"
 
 namespace {
 
