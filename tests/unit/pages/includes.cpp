@@ -3,23 +3,16 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <filesystem>
-#include <fstream>
 #include <regex>
 #include <string>
 #include <vector>
 
 #include "tests/support/folders.h"
+#include "tests/support/pages.h"
 
 namespace fs = std::filesystem;
 
 namespace {
-
-std::vector<std::string> lines_of(const fs::path& file) {
-  std::ifstream in(file);
-  std::vector<std::string> lines;
-  for (std::string line; std::getline(in, line);) lines.push_back(line);
-  return lines;
-}
 
 /// The folders of the tables of core/README.md, from the lowest upwards: "core/kernel/files", …
 std::vector<std::string> folders_of_core() {
@@ -27,7 +20,7 @@ std::vector<std::string> folders_of_core() {
   std::vector<std::string> order;
   std::string library;
   std::smatch match;
-  for (const std::string& line : lines_of(folders::source() / "core/README.md")) {
+  for (const std::string& line : pages::lines_of(folders::source() / "core/README.md")) {
     if (std::regex_match(line, match, heading)) library = match[1];
     if (std::regex_match(line, match, row)) order.push_back("core/" + library + "/" + match[1].str());
   }
@@ -47,7 +40,7 @@ std::vector<std::string> includes_of(const fs::path& file) {
   static const std::regex include("#include \"([^\"]+)\"");
   std::vector<std::string> included;
   std::smatch match;
-  for (const std::string& line : lines_of(folders::source() / file))
+  for (const std::string& line : pages::lines_of(folders::source() / file))
     if (std::regex_match(line, match, include)) included.push_back(match[1]);
   return included;
 }
@@ -104,7 +97,7 @@ TEST_CASE(
   for (const char* part : {"core/kernel", "core/numerics"})
     for (const fs::path& file : sources_in(part)) {
       if (file.extension() != ".h" || file.filename() == "cholmod_context.h") continue;
-      for (const std::string& line : lines_of(folders::source() / file))
+      for (const std::string& line : pages::lines_of(folders::source() / file))
         if (std::regex_match(line, match, outside)) {
           CAPTURE(file, line);
           CHECK((match[1] == "Eigen/" || match[1] == "immintrin.h>"));
@@ -115,7 +108,7 @@ TEST_CASE(
 TEST_CASE("the kernel stays small, and no folder of the core has more files than a reader takes in") {
   int lines = 0;
   for (const fs::path& file : sources_in("core/kernel"))
-    lines += static_cast<int>(lines_of(folders::source() / file).size());
+    lines += static_cast<int>(pages::lines_of(folders::source() / file).size());
   CHECK(lines <= 4200);
   for (const std::string& folder : folders_of_core()) {
     if (folder.rfind("core/app/", 0) == 0) continue;
