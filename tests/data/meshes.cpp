@@ -1,3 +1,5 @@
+#include "tests/support/meshes.h"
+
 #include <Eigen/Geometry>
 #include <catch2/catch.hpp>
 #include <cstdlib>
@@ -38,16 +40,6 @@ std::vector<std::string> names() {
   return all;
 }
 
-double volume(const TriangleMesh& mesh) {
-  double six = 0;
-  for (const auto& t : mesh.triangles.rowwise()) {
-    const Eigen::Vector3d a = mesh.vertices.row(t[0]), b = mesh.vertices.row(t[1]),
-                          c = mesh.vertices.row(t[2]);
-    six += a.dot(b.cross(c));
-  }
-  return six / 6;
-}
-
 }  // namespace
 
 TEST_CASE("scanned meshes are valid obstacles of the size in their record") {
@@ -74,6 +66,6 @@ TEST_CASE("scanned meshes are valid obstacles of the size in their record") {
     CHECK(std::abs(low.x() + high.x()) <= 1e-12);
     CHECK(std::abs(low.y() + high.y()) <= 1e-12);
     CHECK((high - low).minCoeff() > 0.3 * height);
-    CHECK(volume(mesh) > 0.1 * (high - low).prod());  // faces outwards
+    CHECK(volume_of(mesh) > 0.1 * (high - low).prod());  // faces outwards
   }
 }

@@ -122,3 +122,9 @@ inline Eigen::VectorXd normal_numbers(int n, unsigned seed) {
   std::normal_distribution<double> normal;
   return Eigen::VectorXd::NullaryExpr(n, [&] { return normal(random); });
 }
+
+/// Every coordinate moved by an independent normal number of this size [m].
+inline drape::Positions shaken(const drape::Positions& x, double size, unsigned seed) {
+  const Eigen::VectorXd noise = size * normal_numbers(static_cast<int>(x.size()), seed);
+  return x + Eigen::Map<const drape::Positions>(noise.data(), x.rows(), 3);
+}

@@ -299,8 +299,7 @@ TEST_CASE("midedge_bending: derivatives where neighbours across different edges 
   const TriangleMesh mesh = tetrahedron();  // a triangle's neighbours have the same vertex across all edges
   const auto bound = bind(Level::of(0, mesh));
   CHECK(bound->stencils().maxCoeff() == 3);
-  const Eigen::VectorXd noise = 0.1 * normal_numbers(12, 3);
-  const Positions x = mesh.vertices + Eigen::Map<const Positions>(noise.data(), 4, 3);
+  const Positions x = shaken(mesh.vertices, 0.1, 3);
   const Positions g = gradient_of(*bound, x);
   REQUIRE(g.norm() > 0);
   CHECK((gradient_by_differences(*bound, x, 1e-4) - flat(g)).norm() <= 1e-7 * g.norm());

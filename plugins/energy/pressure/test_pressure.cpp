@@ -22,11 +22,6 @@ std::unique_ptr<BoundEnergy> bound(const Level& level, double pressure,
   return p.bind(level, Material());
 }
 
-Positions noisy(const Positions& x, double size, unsigned seed) {
-  const Eigen::VectorXd noise = size * normal_numbers(static_cast<int>(x.size()), seed);
-  return x + Eigen::Map<const Positions>(noise.data(), x.rows(), 3);
-}
-
 Level open_level() { return Level::of(0, random_triangulation({0.6, 0.5}, 30, 7)); }
 Level closed_level() { return Level::of(0, sphere_mesh(0.3, 1)); }
 
@@ -34,7 +29,7 @@ Level closed_level() { return Level::of(0, sphere_mesh(0.3, 1)); }
 
 TEST_CASE("pressure: projection is that of every edge's matrix") {
   const Level level = Level::of(0, grid({1, 1}, 2, 2, Diagonals::one_way));
-  const Positions x = noisy(level.rest.vertices, 0.1, 4);
+  const Positions x = shaken(level.rest.vertices, 0.1, 4);
   const auto energy = bound(level, -30);
   const Eigen::MatrixXd exact = dense(hessian_of(*energy, x, Projection::none));
   for (const double blend : {1.0, 0.3}) {
@@ -63,7 +58,7 @@ TEST_CASE("pressure: projection is that of every edge's matrix") {
 
 TEST_CASE("pressure: a closed mesh feels no net force and no torque, wherever it is") {
   const Level level = closed_level();
-  const Positions x = noisy(level.rest.vertices, 0.05, 5);
+  const Positions x = shaken(level.rest.vertices, 0.05, 5);
   const auto energy = bound(level, 100);
   const Positions near = gradient_of(*energy, x);
   CHECK(near.colwise().sum().norm() <= 1e-14 * near.norm());
@@ -103,7 +98,7 @@ TEST_CASE("pressure: a sphere's volume, and a force along every normal") {
 
 TEST_CASE("pressure: inner vertices of an open cloth carry a third of the area around them") {
   const Level level = open_level();
-  const Positions x = noisy(level.rest.vertices, 0.02, 6);
+  const Positions x = shaken(level.rest.vertices, 0.02, 6);
   Positions expected = Positions::Zero(x.rows(), 3);
   for (int t = 0; t < level.triangle_count(); ++t) {
     const auto v = level.rest.triangles.row(t);

@@ -84,11 +84,6 @@ double largest_stretch(const Level& level, const Positions& x) {
   return largest;
 }
 
-Positions moved(const Positions& x, double size, unsigned seed) {
-  const Eigen::VectorXd noise = size * normal_numbers(static_cast<int>(x.size()), seed);
-  return x + Eigen::Map<const Positions>(noise.data(), x.rows(), 3);
-}
-
 }  // namespace
 
 TEST_CASE("principal stretches and their frame, by Eigen's SVD") {
@@ -180,11 +175,11 @@ TEST_CASE("strain_limit: a stretched sheet has the energy of its volume, and +in
 TEST_CASE("strain_limit: a filtered step leaves a tenth of the margin and never violates the limit") {
   const Level level = square();
   const auto energy = bound_to(level);
-  const Positions x0 = moved(level.rest.vertices, 0.002, 1);
+  const Positions x0 = shaken(level.rest.vertices, 0.002, 1);
   REQUIRE(largest_stretch(level, x0) > 1.005);
   REQUIRE(largest_stretch(level, x0) < limit);
   for (unsigned seed = 2; seed <= 60; ++seed) {
-    const Positions x1 = moved(x0, std::pow(10.0, static_cast<int>(seed % 6) - 2), seed);
+    const Positions x1 = shaken(x0, std::pow(10.0, static_cast<int>(seed % 6) - 2), seed);
     if (largest_stretch(level, x1) < 1.01) continue;
     const StepLimit step = energy->max_step(x0, x1);
     REQUIRE(step.fraction > 0);
@@ -227,7 +222,7 @@ TEST_CASE("strain_limit: single triangles are followed to the limit through coll
 TEST_CASE("strain_limit: rigid motions and shrinking take full steps") {
   const Level level = square();
   const auto energy = bound_to(level);
-  const Positions x0 = moved(level.rest.vertices, 0.004, 1);
+  const Positions x0 = shaken(level.rest.vertices, 0.004, 1);
   REQUIRE(largest_stretch(level, x0) < limit);
   for (const double angle : {0.1, 1.5, 3.1}) {
     const Eigen::Matrix3d turn =

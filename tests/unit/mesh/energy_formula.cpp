@@ -99,11 +99,7 @@ namespace {
 
 Level sheet() { return Level::of(0, grid({1, 1}, 9, 8, Diagonals::criss_cross)); }
 
-Positions wrinkled(const Level& level, double size = 0.02) {
-  Positions x = level.rest.vertices;
-  const Eigen::VectorXd noise = size * normal_numbers(static_cast<int>(x.size()), 3);
-  return x + Eigen::Map<const Positions>(noise.data(), x.rows(), 3);
-}
+Positions wrinkled(const Level& level, double size = 0.02) { return shaken(level.rest.vertices, size, 3); }
 
 Eigen::VectorXd flat_values(const std::vector<double>& values) {
   return Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size()));
