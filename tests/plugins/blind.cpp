@@ -45,21 +45,14 @@ class BoundBlind final : public drape::BoundContact {
   double height_;
 };
 
-class Blind final : public drape::ContactModel {
- public:
-  struct Parameters {
-    double height = 0;
-    static void declare(drape::Declaration<Parameters>& d) {
-      d.add("height", &Parameters::height).unit("m").description("of the floor").source("test");
-    }
-  };
-  explicit Blind(const Parameters& p) : height_(p.height) {}
-  std::unique_ptr<drape::BoundContact> bind(const drape::Level&, const drape::Material&) const override {
-    return std::make_unique<BoundBlind>(height_);
+struct Blind final : drape::ContactModel {
+  double height = 0;
+  static void declare(drape::Declaration<Blind>& d) {
+    d.add("height", &Blind::height).unit("m").description("of the floor").source("test");
   }
-
- private:
-  double height_;
+  std::unique_ptr<drape::BoundContact> bind(const drape::Level&, const drape::Material&) const override {
+    return std::make_unique<BoundBlind>(height);
+  }
 };
 
 }  // namespace

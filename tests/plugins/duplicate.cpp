@@ -5,12 +5,7 @@
 
 namespace {
 
-class Duplicate final : public drape::Refiner {
- public:
-  struct Parameters {
-    static void declare(drape::Declaration<Parameters>&) {}
-  };
-  explicit Duplicate(const Parameters&) {}
+struct Duplicate final : drape::Refiner {
   drape::ProlongationMatrix weights(const drape::Level&) const override { return {}; }
 };
 

@@ -4,6 +4,7 @@
 #include <cstdlib>
 #include <new>
 #include <stdexcept>
+#include <string>
 
 #include "core/kernel/interfaces/energy.h"
 #include "core/kernel/interfaces/solver.h"
@@ -37,64 +38,50 @@ class BoundFailing final : public drape::BoundEnergy {
   mutable std::atomic<int> gradients_, values_;
 };
 
-class FailingEnergy final : public drape::Energy {
- public:
-  struct Parameters {
-    int level = 0, gradients = -1, values = -1;
-    static void declare(drape::Declaration<Parameters>& d) {
-      d.add("level", &Parameters::level).at_least(0).description("that it fails on").source("test");
-      d.add("gradients", &Parameters::gradients)
-          .at_least(-1)
-          .description("before it throws; -1: never")
-          .source("test");
-      d.add("values", &Parameters::values)
-          .at_least(-1)
-          .description("before it throws; -1: never")
-          .source("test");
-    }
-  };
-  explicit FailingEnergy(const Parameters& p) : p_(p) {}
-  drape::EnergyRole role() const override { return drape::EnergyRole::bending; }
-  std::unique_ptr<drape::BoundEnergy> bind(const drape::Level& level, const drape::Material&) const override {
-    const bool here = level.index == p_.level;
-    return std::make_unique<BoundFailing>(here ? p_.gradients : -1, here ? p_.values : -1);
+struct FailingEnergy final : drape::Energy {
+  int level = 0, gradients = -1, values = -1;
+  static void declare(drape::Declaration<FailingEnergy>& d) {
+    using E = FailingEnergy;
+    const std::string when = "before it throws; -1: never";
+    d.add("level", &E::level).at_least(0).description("that it fails on").source("test");
+    d.add("gradients", &E::gradients).at_least(-1).description(when).source("test");
+    d.add("values", &E::values).at_least(-1).description(when).source("test");
   }
-
- private:
-  Parameters p_;
+  drape::EnergyRole role() const override { return drape::EnergyRole::bending; }
+  std::unique_ptr<drape::BoundEnergy> bind(const drape::Level& bound, const drape::Material&) const override {
+    const bool here = bound.index == level;
+    return std::make_unique<BoundFailing>(here ? gradients : -1, here ? values : -1);
+  }
 };
 
 enum class Throws { nothing, error, memory, other };
 
 /// Takes every level's start for its result. On one level it first has a command run, and throws.
-class FailingSolver final : public drape::Solver {
- public:
-  struct Parameters {
-    int level = 0;
-    std::string command;
-    Throws throws = Throws::nothing;
-    drape::NewtonParameters newton;  // which every method is given
-    static void declare(drape::Declaration<Parameters>& d) {
-      d.add("level", &Parameters::level).at_least(0).description("that it fails on").source("test");
-      d.add("command", &Parameters::command).description("that the shell runs there").source("test");
-      d.add_choice("throws", &Parameters::throws,
-                   {{"nothing", Throws::nothing},
-                    {"error", Throws::error},
-                    {"memory", Throws::memory},
-                    {"other", Throws::other}})
-          .description("what it throws after that")
-          .source("test");
-      d.add_section("newton", &Parameters::newton).description("not used");
-    }
-  };
-  explicit FailingSolver(const Parameters& p) : p_(p) {}
+struct FailingSolver final : drape::Solver {
+  int level = 0;
+  std::string command;
+  Throws throws = Throws::nothing;
+  drape::NewtonParameters newton;  // which every method is given
+  static void declare(drape::Declaration<FailingSolver>& d) {
+    using S = FailingSolver;
+    d.add("level", &S::level).at_least(0).description("that it fails on").source("test");
+    d.add("command", &S::command).description("that the shell runs there").source("test");
+    d.add_choice("throws", &S::throws,
+                 {{"nothing", Throws::nothing},
+                  {"error", Throws::error},
+                  {"memory", Throws::memory},
+                  {"other", Throws::other}})
+        .description("what it throws after that")
+        .source("test");
+    d.add_section("newton", &S::newton).description("not used");
+  }
 
   std::vector<drape::LevelResult> solve(const drape::Problem& problem,
                                         drape::Observer& observer) const override {
     std::vector<drape::LevelResult> results;
     for (int l = 0; l <= problem.finest(); ++l) {
       observer.level_started(l);
-      if (l == p_.level) fail();
+      if (l == level) fail();
       drape::LevelResult result;
       result.level = l;
       result.x = problem.starts[l];
@@ -106,14 +93,12 @@ class FailingSolver final : public drape::Solver {
 
  private:
   void fail() const {
-    if (!p_.command.empty() && std::system(p_.command.c_str()) != 0)
+    if (!command.empty() && std::system(command.c_str()) != 0)
       throw std::runtime_error("the test's command fails");
-    if (p_.throws == Throws::error) throw std::runtime_error("the test's method fails");
-    if (p_.throws == Throws::memory) throw std::bad_alloc();
-    if (p_.throws == Throws::other) throw 17;
+    if (throws == Throws::error) throw std::runtime_error("the test's method fails");
+    if (throws == Throws::memory) throw std::bad_alloc();
+    if (throws == Throws::other) throw 17;
   }
-
-  Parameters p_;
 };
 
 }  // namespace

@@ -5,19 +5,12 @@
 
 namespace {
 
-class Good final : public drape::Refiner {
- public:
-  struct Parameters {
-    int rows = 3;
-    static void declare(drape::Declaration<Parameters>& d) {
-      d.add("rows", &Parameters::rows).at_least(1).description("rows of the returned matrix").source("test");
-    }
-  };
-  explicit Good(const Parameters& p) : rows_(p.rows) {}
-  drape::ProlongationMatrix weights(const drape::Level&) const override { return {rows_, 1}; }
-
- private:
-  int rows_;
+struct Good final : drape::Refiner {
+  int rows = 3;
+  static void declare(drape::Declaration<Good>& d) {
+    d.add("rows", &Good::rows).at_least(1).description("rows of the returned matrix").source("test");
+  }
+  drape::ProlongationMatrix weights(const drape::Level&) const override { return {rows, 1}; }
 };
 
 }  // namespace

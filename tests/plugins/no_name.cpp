@@ -5,12 +5,7 @@
 
 namespace {
 
-class Nameless final : public drape::Refiner {
- public:
-  struct Parameters {
-    static void declare(drape::Declaration<Parameters>&) {}
-  };
-  explicit Nameless(const Parameters&) {}
+struct Nameless final : drape::Refiner {
   drape::ProlongationMatrix weights(const drape::Level&) const override { return {}; }
 };
 

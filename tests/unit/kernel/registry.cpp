@@ -126,19 +126,16 @@ namespace {
 /// A refiner with one parameter, declared with or without a fault.
 template <int fault>
 struct Declared final : Refiner {
-  struct Parameters {
-    int size = 1;
-    std::string word = "some";
-    std::vector<double> list = {1, 2, 3};
-    static void declare(Declaration<Parameters>& d) {
-      d.add("size", &Parameters::size).at_least(fault == 1 ? 5 : 0);
-      auto word = d.add(fault == 2 ? "my word" : fault == 3 ? "type" : "word", &Parameters::word);
-      if (fault == 4) word.choices({"none", "all"});
-      auto list = d.add("list", &Parameters::list);
-      if (fault == 5) list.size(2);
-    }
-  };
-  explicit Declared(const Parameters&) {}
+  int size = 1;
+  std::string word = "some";
+  std::vector<double> list = {1, 2, 3};
+  static void declare(Declaration<Declared>& d) {
+    d.add("size", &Declared::size).at_least(fault == 1 ? 5 : 0);
+    auto of_word = d.add(fault == 2 ? "my word" : fault == 3 ? "type" : "word", &Declared::word);
+    if (fault == 4) of_word.choices({"none", "all"});
+    auto of_list = d.add("list", &Declared::list);
+    if (fault == 5) of_list.size(2);
+  }
   ProlongationMatrix weights(const Level&) const override { return {}; }
 };
 
