@@ -165,7 +165,7 @@ LayeredShape opened(LayeredShape shape) {
 /// The shape comes to rest, no higher than `top` above where it lies.
 void check_rests(const std::function<LayeredShape(double spacing)>& shape_of, double top = 2 * dhat,
                  const std::string& obstacle = "", double height = 0) {
-  row("\n%s", Catch::getResultCapture().getCurrentTestName().c_str());
+  row("\n%s", std::string(Catch::getResultCapture().getCurrentTestName()).c_str());
   row("%9s %8s %10s %12s %9s %8s", "vertices", "hinges", "iterations", "smallest gap", "top", "seconds");
   for (const double spacing : {0.01, 0.005})
     for (const bool hinges : {false, true}) {
