@@ -4,16 +4,11 @@ struct SpringToPlane {
   static constexpr auto role = drape::EnergyRole::position;
   double stiffness = 100, height = 0;
   static void declare(drape::Declaration<SpringToPlane>& d) {
-    d.add("stiffness", &SpringToPlane::stiffness)
+    d.add("stiffness", &SpringToPlane::stiffness, "spring constant of a unit of mass")
         .unit("1/s²")
         .above(0)
-        .at_most(1e9)
-        .description("spring constant of a unit of mass");
-    d.add("height", &SpringToPlane::height)
-        .unit("m")
-        .at_least(-1e3)
-        .at_most(1e3)
-        .description("z of the plane");
+        .at_most(1e9);
+    d.add("height", &SpringToPlane::height, "z of the plane").unit("m").at_least(-1e3).at_most(1e3);
   }
 };
 

@@ -1,5 +1,5 @@
-// The hard cases that take seconds, on their coarsest level alone; `make results STUDIES=hard` runs all, on two levels and by
-// every method. And what a scene's size and place may change of its shape: nothing.
+// The hard cases that take seconds, on their coarsest level alone; `make results STUDIES=hard` runs all, on
+// two levels and by every method. And what a scene's size and place may change of its shape: nothing.
 
 #include <Eigen/Geometry>
 #include <nlohmann/json.hpp>

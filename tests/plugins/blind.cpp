@@ -48,7 +48,7 @@ class BoundBlind final : public drape::BoundContact {
 struct Blind final : drape::ContactModel {
   double height = 0;
   static void declare(drape::Declaration<Blind>& d) {
-    d.add("height", &Blind::height).unit("m").description("of the floor").source("test");
+    d.add("height", &Blind::height, "of the floor").unit("m").source("test");
   }
   std::unique_ptr<drape::BoundContact> bind(const drape::Level&, const drape::Material&) const override {
     return std::make_unique<BoundBlind>(height);

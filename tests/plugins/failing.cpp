@@ -43,9 +43,9 @@ struct FailingEnergy final : drape::Energy {
   static void declare(drape::Declaration<FailingEnergy>& d) {
     using E = FailingEnergy;
     const std::string when = "before it throws; -1: never";
-    d.add("level", &E::level).at_least(0).description("that it fails on").source("test");
-    d.add("gradients", &E::gradients).at_least(-1).description(when).source("test");
-    d.add("values", &E::values).at_least(-1).description(when).source("test");
+    d.add("level", &E::level, "that it fails on").at_least(0).source("test");
+    d.add("gradients", &E::gradients, when).at_least(-1).source("test");
+    d.add("values", &E::values, when).at_least(-1).source("test");
   }
   drape::EnergyRole role() const override { return drape::EnergyRole::bending; }
   std::unique_ptr<drape::BoundEnergy> bind(const drape::Level& bound, const drape::Material&) const override {
@@ -64,16 +64,16 @@ struct FailingSolver final : drape::Solver {
   drape::NewtonParameters newton;  // which every method is given
   static void declare(drape::Declaration<FailingSolver>& d) {
     using S = FailingSolver;
-    d.add("level", &S::level).at_least(0).description("that it fails on").source("test");
-    d.add("command", &S::command).description("that the shell runs there").source("test");
+    d.add("level", &S::level, "that it fails on").at_least(0).source("test");
+    d.add("command", &S::command, "that the shell runs there").source("test");
     d.add_choice("throws", &S::throws,
                  {{"nothing", Throws::nothing},
                   {"error", Throws::error},
                   {"memory", Throws::memory},
-                  {"other", Throws::other}})
-        .description("what it throws after that")
+                  {"other", Throws::other}},
+                 "what it throws after that")
         .source("test");
-    d.add_section("newton", &S::newton).description("not used");
+    d.add_section("newton", &S::newton, "not used");
   }
 
   std::vector<drape::LevelResult> solve(const drape::Problem& problem,

@@ -8,7 +8,7 @@ namespace {
 struct Good final : drape::Refiner {
   int rows = 3;
   static void declare(drape::Declaration<Good>& d) {
-    d.add("rows", &Good::rows).at_least(1).description("rows of the returned matrix").source("test");
+    d.add("rows", &Good::rows, "rows of the returned matrix").at_least(1).source("test");
   }
   drape::ProlongationMatrix weights(const drape::Level&) const override { return {rows, 1}; }
 };

@@ -39,39 +39,34 @@ struct Material {
 /// Declares the material's parameters for it, or for a struct that is derived from it.
 template <class Struct>
 void declare_material(Declaration<Struct>& d) {
-  d.add("density", &Struct::density)
+  d.add("density", &Struct::density, "ρ, mass per volume")
       .unit("kg/m³")
       .at_least(1e-6)
       .at_most(1e6)
-      .description("ρ, mass per volume")
       .source("supplement, Table 2");
-  d.add("thickness", &Struct::thickness)
+  d.add("thickness", &Struct::thickness, "d, thickness of the cloth")
       .unit("m")
       .at_least(bounds::smallest_length)
       .at_most(10)
-      .description("d, thickness of the cloth")
       .source("supplement, Table 2");
-  d.add("membrane_modulus", &Struct::membrane_modulus)
+  d.add("membrane_modulus", &Struct::membrane_modulus, "E_mem, Young's modulus in stretching")
       .unit("Pa")
       .at_least(1e-6)
       .at_most(bounds::largest_modulus)
-      .description("E_mem, Young's modulus in stretching")
       .source("supplement, Table 2");
-  d.add("bending_modulus", &Struct::bending_modulus)
+  d.add("bending_modulus", &Struct::bending_modulus, "E_bend, Young's modulus in bending")
       .unit("Pa")
       .at_least(0)
       .at_most(bounds::largest_modulus)
-      .description("E_bend, Young's modulus in bending")
       .source("supplement, Table 2");
-  d.add("poisson_ratio", &Struct::poisson_ratio)
+  d.add("poisson_ratio", &Struct::poisson_ratio,
+        "ν, of both moduli; where warp and weft differ, the geometric mean of their two Poisson's ratios")
       .at_least(0)
       .below(0.5)
-      .description(
-          "ν, of both moduli; where warp and weft differ, the geometric mean of their two Poisson's ratios")
       .source("supplement, Table 2");
   const auto measured = [&](const char* name, std::optional<double> Material::*member, const char* unit,
                             const char* description) {
-    d.add(name, member).unit(unit).at_least(1e-12).at_most(bounds::largest_modulus).description(description);
+    d.add(name, member, description).unit(unit).at_least(1e-12).at_most(bounds::largest_modulus);
   };
   measured("warp_stiffness", &Material::warp_stiffness, "N/m",
            "force per width over strain of a strip along warp, in place of `membrane_modulus`; null: that "
@@ -86,13 +81,12 @@ void declare_material(Declaration<Struct>& d) {
   measured("weft_bending", &Material::weft_bending, "N m", "the same along weft; null: as along warp");
   measured("bias_bending", &Material::bias_bending, "N m",
            "the same at 45°; null: as of an isotropic cloth with the mean of warp and weft");
-  d.add("bending_hysteresis", &Struct::bending_hysteresis)
+  d.add("bending_hysteresis", &Struct::bending_hysteresis,
+        "2HB, width of the loop of moment against curvature: friction between yarns, which "
+        "`midedge_bending` counts as on first loading and other energies leave out")
       .unit("N")
       .at_least(0)
       .at_most(bounds::largest_modulus)
-      .description(
-          "2HB, width of the loop of moment against curvature: friction between yarns, which "
-          "`midedge_bending` counts as on first loading and other energies leave out")
       .source("KES-FB2");
 }
 

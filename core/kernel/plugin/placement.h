@@ -9,33 +9,30 @@ namespace drape {
 /// file_coordinates.h).
 template <class Struct>
 void declare_file_coordinates(Declaration<Struct>& d) {
-  d.add("unit", &Struct::unit)
-      .choices({"mm", "cm", "m", "inch"})
-      .description("unit of the file's coordinates, which are converted to metres before `scale`");
-  d.add("up", &Struct::up)
-      .choices({"y", "z"})
-      .description(
-          "axis of the file that points up; with y, its (x, y, z) is read as (x, -z, y), before `rotate`");
+  d.add("unit", &Struct::unit, "unit of the file's coordinates, which are converted to metres before `scale`")
+      .choices({"mm", "cm", "m", "inch"});
+  d.add("up", &Struct::up,
+        "axis of the file that points up; with y, its (x, y, z) is read as (x, -z, y), before `rotate`")
+      .choices({"y", "z"});
 }
 
 /// Declares `scale`, one factor on all coordinates of a mesh.
 template <class Struct>
 ParameterHandle declare_scale(Declaration<Struct>& d) {
-  return d.add("scale", &Struct::scale)
+  return d.add("scale", &Struct::scale, "scale factor, applied before `rotate` and `translate`")
       .unit("1")
       .at_least(1 / bounds::largest_scale)
-      .at_most(bounds::largest_scale)
-      .description("scale factor, applied before `rotate` and `translate`");
+      .at_most(bounds::largest_scale);
 }
 
 /// Declares `rotate`, a rotation about the origin.
 template <class Struct>
 ParameterHandle declare_rotate(Declaration<Struct>& d) {
-  return d.add("rotate", &Struct::rotate)
+  return d
+      .add("rotate", &Struct::rotate, "rotation about the x, then y, then z axis, applied before `translate`")
       .unit("degree")
       .at_least(-bounds::largest_angle)
-      .at_most(bounds::largest_angle)
-      .description("rotation about the x, then y, then z axis, applied before `translate`");
+      .at_most(bounds::largest_angle);
 }
 
 /// Declares `rotate` and `translate`, the members by which a struct places the cloth or an obstacle: scaled
@@ -43,11 +40,10 @@ ParameterHandle declare_rotate(Declaration<Struct>& d) {
 template <class Struct>
 ParameterHandle declare_placement(Declaration<Struct>& d) {
   declare_rotate(d);
-  return d.add("translate", &Struct::translate)
+  return d.add("translate", &Struct::translate, "translation, applied last")
       .unit("m")
       .at_least(-bounds::largest_coordinate)
-      .at_most(bounds::largest_coordinate)
-      .description("translation, applied last");
+      .at_most(bounds::largest_coordinate);
 }
 
 }  // namespace drape

@@ -21,8 +21,8 @@ struct CommonObstacleParameters {
 /// Declares its members. Returns the handle of `translate`.
 template <class Derived>
 ParameterHandle declare_obstacle(Declaration<Derived>& d) {
-  d.add("name", &Derived::name)
-      .description("name, for messages and paths; messages call an unnamed obstacle by its kind and number");
+  d.add("name", &Derived::name,
+        "name, for messages and paths; messages call an unnamed obstacle by its kind and number");
   declare_friction(d).description("its own friction coefficient μ; null: the experiment's `friction`");
   return declare_placement(d);
 }

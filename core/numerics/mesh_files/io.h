@@ -20,9 +20,9 @@ using VertexFields = std::vector<VertexField>;
 /// Reads a Wavefront OBJ (v and f), an OFF (text), a PLY (text, binary little or big endian) or an STL (text,
 /// binary), by extension. Faces with more than three corners are cut (cut_polygon.h). Vertices keep their
 /// order and are not merged, except those of an STL, which are the different points of its triangles.
-/// Coordinates are finite and triangles name vertices that are there; check_mesh checks the rest of the geometry. Texture coordinates are the vt of an
-/// OBJ's faces, a PLY's `texcoord` of faces or `s` and `t` of vertices; a face without them has (0, 0) where
-/// others have some. Data beyond what the file declares are
+/// Coordinates are finite and triangles name vertices that are there; check_mesh checks the rest of the
+/// geometry. Texture coordinates are the vt of an OBJ's faces, a PLY's `texcoord` of faces or `s` and `t` of
+/// vertices; a face without them has (0, 0) where others have some. Data beyond what the file declares are
 /// refused. Throws std::runtime_error with "file:line: fault" (in binary parts: the element).
 TriangleMesh read_mesh(const std::filesystem::path& path);
 

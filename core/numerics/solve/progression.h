@@ -13,7 +13,7 @@ class Progression : public Solver {
 
   template <class Derived>
   static void declare_newton(Declaration<Derived>& d) {
-    d.add_section("newton", &Derived::newton).description("settings of the Newton solves");
+    d.add_section("newton", &Derived::newton, "settings of the Newton solves");
   }
 
   /// What a level minimises; by default its own energy.

@@ -6,82 +6,77 @@ namespace drape {
 
 void NewtonParameters::declare(Declaration<NewtonParameters>& d) {
   d.add_choice("form", &NewtonParameters::form,
-               {{"quasistatic", NewtonForm::quasistatic}, {"static", NewtonForm::statics}})
-      .description("damped gradient flow in implicit steps of h, or one minimisation (h infinite)")
+               {{"quasistatic", NewtonForm::quasistatic}, {"static", NewtonForm::statics}},
+               "damped gradient flow in implicit steps of h, or one minimisation (h infinite)")
       .source("PCS section 4; supplement, Figure 4");
-  d.add("step_size", &NewtonParameters::step_size)
+  d.add("step_size", &NewtonParameters::step_size,
+        "h of the first implicit step; in the static form the unit of the decrement and of the mass that "
+        "damps a step without descent")
       .unit("s")
       .at_least(bounds::smallest_time_step)
       .at_most(bounds::largest_time_step)
-      .description(
-          "h of the first implicit step; in the static form the unit of the decrement and of the mass that "
-          "damps a step without descent")
       .source("PCS section 4");
-  d.add("step_growth", &NewtonParameters::step_growth)
+  d.add("step_growth", &NewtonParameters::step_growth,
+        "factor on h after a full step, up to 1000 s; a step cut below a quarter divides h by it. With 1 h "
+        "never grows, and stays as small as damping has made it")
       .at_least(1)
       .at_most(1e3)
-      .description(
-          "factor on h after a full step, up to 1000 s; a step cut below a quarter divides h by it. With 1 h "
-          "never grows, and stays as small as damping has made it")
       .source("departure from the paper");
-  d.add("iterations_per_step", &NewtonParameters::iterations_per_step)
+  d.add("iterations_per_step", &NewtonParameters::iterations_per_step,
+        "maximum Newton iterations of an implicit step; at least 30 where obstacles have just moved under "
+        "friction")
       .at_least(1)
       .at_most(1000)
-      .description(
-          "maximum Newton iterations of an implicit step; at least 30 where obstacles have just moved under "
-          "friction")
       .source("PCS section 4");
-  d.add("max_steps", &NewtonParameters::max_steps)
+  d.add("max_steps", &NewtonParameters::max_steps,
+        "maximum implicit steps of a level, or of each increment of a schedule")
       .at_least(1)
-      .at_most(1e9)
-      .description("maximum implicit steps of a level, or of each increment of a schedule");
-  d.add("force_tolerance", &NewtonParameters::force_tolerance)
+      .at_most(1e9);
+  d.add("force_tolerance", &NewtonParameters::force_tolerance,
+        "a level has converged when the net force on its free vertices is below this fraction of the load")
       .above(0)
       .at_most(1e12)
-      .description(
-          "a level has converged when the net force on its free vertices is below this fraction of the load")
       .source("docs/theory/method.md section 2");
-  d.add("decrement_tolerance", &NewtonParameters::decrement_tolerance)
+  d.add("decrement_tolerance", &NewtonParameters::decrement_tolerance,
+        "also required of the largest of the last three decrements; 0 disables it. The decrement is "
+        "‖p‖ / (h √n), p the Newton direction: a velocity, not √(gᵀH⁻¹g)")
       .unit("m/s")
       .at_least(0)
       .at_most(1e9)
-      .description(
-          "also required of the largest of the last three decrements; 0 disables it. The decrement is "
-          "‖p‖ / (h √n), p the Newton direction: a velocity, not √(gᵀH⁻¹g)")
       .source("Li et al. 2021 (C-IPC)");
   d.add_choice("projection", &NewtonParameters::projection,
-               {{"clamp", Projection::clamp}, {"absolute", Projection::absolute}, {"none", Projection::none}})
-      .description("treatment of negative eigenvalues of an element's Hessian")
+               {{"clamp", Projection::clamp}, {"absolute", Projection::absolute}, {"none", Projection::none}},
+               "treatment of negative eigenvalues of an element's Hessian")
       .source("Teran et al. 2005; Chen et al. 2024 for absolute");
-  d.add_choice("psd_blend", &NewtonParameters::psd_blend,
-               {{"full", PsdBlend::full}, {"adaptive", PsdBlend::adaptive}})
-      .description(
-          "fraction of the projection in the matrix: full (projected Newton), or adaptive, which lowers it "
-          "after full steps and raises it until the matrix is positive definite, and so approaches the exact "
-          "Hessian near an equilibrium")
+  d.add_choice(
+       "psd_blend", &NewtonParameters::psd_blend,
+       {{"full", PsdBlend::full}, {"adaptive", PsdBlend::adaptive}},
+       "fraction of the projection in the matrix: full (projected Newton), or adaptive, which lowers it "
+       "after full steps and raises it until the matrix is positive definite, and so approaches the exact "
+       "Hessian near an equilibrium")
       .source("departure from the paper");
-  d.add("hessian_update_interval", &NewtonParameters::hessian_update_interval)
+  d.add("hessian_update_interval", &NewtonParameters::hessian_update_interval,
+        "iterations that share one Hessian and its factor")
       .at_least(1)
       .at_most(1e6)
-      .description("iterations that share one Hessian and its factor")
       .source("departure from the paper");
-  d.add_choice("linear_solver", &NewtonParameters::linear_solver,
-               {{"automatic", LinearSolver::automatic},
-                {"multigrid", LinearSolver::multigrid},
-                {"mixed", LinearSolver::mixed},
-                {"supernodal", LinearSolver::supernodal},
-                {"cholmod", LinearSolver::cholmod}})
-      .description(
-          "automatic: multigrid on levels of 20,000 vertices and more below which there are coarser ones, "
-          "mixed on others. multigrid: conjugate "
-          "gradients that are preconditioned by V-cycles over the hierarchy's meshes and end at a relative "
-          "residual of 0.1, or of 0.4 where that takes long; where it fails, mixed. mixed: drape's Cholesky "
-          "factorisation in single "
-          "precision, as preconditioner of conjugate "
-          "gradients in double precision; the static form, ill-conditioned matrices and moved pins have it "
-          "in double precision. supernodal: that in double precision throughout. Both are parallel and give "
-          "the same bits with any number of threads. cholmod: CHOLMOD's, whose speed, threads and bits "
-          "depend on the installed BLAS")
+  d.add_choice(
+       "linear_solver", &NewtonParameters::linear_solver,
+       {{"automatic", LinearSolver::automatic},
+        {"multigrid", LinearSolver::multigrid},
+        {"mixed", LinearSolver::mixed},
+        {"supernodal", LinearSolver::supernodal},
+        {"cholmod", LinearSolver::cholmod}},
+       "automatic: multigrid on levels of 20,000 vertices and more below which there are coarser ones, "
+       "mixed on others. multigrid: conjugate "
+       "gradients that are preconditioned by V-cycles over the hierarchy's meshes and end at a relative "
+       "residual of 0.1, or of 0.4 where that takes long; where it fails, mixed. mixed: drape's Cholesky "
+       "factorisation in single "
+       "precision, as preconditioner of conjugate "
+       "gradients in double precision; the static form, ill-conditioned matrices and moved pins have it "
+       "in double precision. supernodal: that in double precision throughout. Both are parallel and give "
+       "the same bits with any number of threads. cholmod: CHOLMOD's, whose speed, threads and bits "
+       "depend on the installed BLAS")
       .source("docs/results/speed.md; Chen et al. 2008 for cholmod");
 }
 

@@ -36,31 +36,27 @@ std::shared_ptr<const ValidatedMesh> wrap(const TriangleMesh& mesh, double alpha
 
 void CageParameters::declare(Declaration<CageParameters>& d) {
   using P = CageParameters;
-  d.add("count", &P::count)
+  d.add("count", &P::count,
+        "number of cages: level l of the cloth collides with cage l, finer levels with the obstacle "
+        "itself")
       .at_least(0)
-      .at_most(8)
-      .description(
-          "number of cages: level l of the cloth collides with cage l, finer levels with the obstacle "
-          "itself");
-  d.add("alpha", &P::alpha)
+      .at_most(8);
+  d.add("alpha", &P::alpha,
+        "alpha of the innermost cage's alpha wrap, relative to the diagonal of the mesh's bounding box; "
+        "sets the size of the holes that are closed, and of triangles")
       .unit("1")
       .at_least(5e-3)
       .below(1)
-      .description(
-          "alpha of the innermost cage's alpha wrap, relative to the diagonal of the mesh's bounding box; "
-          "sets the size of the holes that are closed, and of triangles")
       .source("Portaneri et al. 2022");
-  d.add("offset", &P::offset)
+  d.add("offset", &P::offset, "offset of the innermost cage from the mesh, over the same diagonal")
       .unit("1")
       .at_least(1e-4)
       .below(1)
-      .description("offset of the innermost cage from the mesh, over the same diagonal")
       .source("Portaneri et al. 2022");
-  d.add("growth", &P::growth)
+  d.add("growth", &P::growth, "ratio of a cage's alpha and offset to those of the next finer one")
       .unit("1")
       .at_least(1)
-      .at_most(10)
-      .description("ratio of a cage's alpha and offset to those of the next finer one");
+      .at_most(10);
 }
 
 std::string enclosure_fault(const ValidatedMesh& outer, const ValidatedMesh& inner) {

@@ -10,11 +10,11 @@ namespace drape::ipc {
 
 void Ipc::Parameters::declare(Declaration<Parameters>& d) {
   using P = Parameters;
-  d.add("self_contact", &P::self_contact).description("whether the cloth collides with itself");
+  d.add("self_contact", &P::self_contact, "whether the cloth collides with itself");
   declare_obstacles(d).description("triangle meshes that the cloth collides with");
   declare_contact_parameters(d);
-  d.add_choice("broad_phase", &P::broad_phase, {{"bvh", BroadPhaseKind::bvh}, {"fcl", BroadPhaseKind::fcl}})
-      .description("broad phase algorithm: own BVH or FCL's; the pairs are the same");
+  d.add_choice("broad_phase", &P::broad_phase, {{"bvh", BroadPhaseKind::bvh}, {"fcl", BroadPhaseKind::fcl}},
+               "broad phase algorithm: own BVH or FCL's; the pairs are the same");
 }
 
 Ipc::Ipc(const Parameters& parameters, const Ipc* before) : p_(parameters) {

@@ -89,45 +89,39 @@ std::string fault_text(const std::string& name, const std::string& what) {
 void ObstacleParameters::declare(Declaration<ObstacleParameters>& d) {
   using P = ObstacleParameters;
   declare_obstacle(d);
-  d.add("mesh", &P::mesh)
+  d.add("mesh", &P::mesh, "a mesh file (.obj, .off, .ply or .stl), relative to this file")
       .path()
-      .identifies_item()
-      .description("a mesh file (.obj, .off, .ply or .stl), relative to this file");
-  d.add("meshed_shape", &P::meshed_shape)
+      .identifies_item();
+  d.add("meshed_shape", &P::meshed_shape,
+        "instead of mesh: a triangulated box or an icosphere, centred at the origin")
       .choices({"box", "sphere"})
-      .identifies_item()
-      .description("instead of mesh: a triangulated box or an icosphere, centred at the origin");
-  d.add("size", &P::size)
+      .identifies_item();
+  d.add("size", &P::size, "edge lengths of a box")
       .unit("m")
       .at_least(bounds::smallest_length)
       .at_most(bounds::largest_length)
-      .only_with("meshed_shape", {"box"})
-      .description("edge lengths of a box");
-  d.add("radius", &P::radius)
+      .only_with("meshed_shape", {"box"});
+  d.add("radius", &P::radius, "radius of a sphere")
       .unit("m")
       .at_least(bounds::smallest_length)
       .at_most(bounds::largest_length)
-      .only_with("meshed_shape", {"sphere"})
-      .description("radius of a sphere");
-  d.add("subdivisions", &P::subdivisions)
+      .only_with("meshed_shape", {"sphere"});
+  d.add("subdivisions", &P::subdivisions,
+        "how often a sphere's icosahedron is subdivided; the sphere has 20 · 4^subdivisions triangles")
       .at_least(0)
       .at_most(8)
-      .only_with("meshed_shape", {"sphere"})
-      .description(
-          "how often a sphere's icosahedron is subdivided; the sphere has 20 · 4^subdivisions triangles");
-  d.add("animation", &P::animation)
+      .only_with("meshed_shape", {"sphere"});
+  d.add("animation", &P::animation,
+        "instead of mesh: the frames of an animation, files of meshes with the same triangles")
       .path()
-      .identifies_item()
-      .description("instead of mesh: the frames of an animation, files of meshes with the same triangles");
-  d.add("frame", &P::frame)
+      .identifies_item();
+  d.add("frame", &P::frame, "frame of the animation, from 0, interpolated linearly; for a schedule to change")
       .unit("1")
       .at_least(0)
-      .at_most(1e6)
-      .description("frame of the animation, from 0, interpolated linearly; for a schedule to change");
-  d.add("strict", &P::strict)
-      .description("whether a mesh that a cloth could not have is refused; otherwise it is repaired");
-  d.add_section("cages", &P::cages)
-      .description("closed surfaces around the obstacle that replace it on coarse levels");
+      .at_most(1e6);
+  d.add("strict", &P::strict,
+        "whether a mesh that a cloth could not have is refused; otherwise it is repaired");
+  d.add_section("cages", &P::cages, "closed surfaces around the obstacle that replace it on coarse levels");
   declare_file_coordinates(d);
   declare_scale(d);
 }

@@ -52,12 +52,12 @@ std::string to_string(SolidKind kind) {
 
 void ShapeParameters::declare(Declaration<ShapeParameters>& d) {
   declare_obstacle(d);
-  d.add_choice("shape", &ShapeParameters::shape, kind_names)
+  d.add_choice(
+       "shape", &ShapeParameters::shape, kind_names,
+       "centred at the origin; capsule: all points within radius of a segment; half_space: all points "
+       "behind a plane")
       .required()
       .identifies_item()
-      .description(
-          "centred at the origin; capsule: all points within radius of a segment; half_space: all points "
-          "behind a plane")
       .source("this project");
   d.declared("rotate").only_with("shape", {"sphere", "box", "capsule", "cylinder"});
   const auto add_length = [&](const char* name, auto member, std::vector<std::string> shapes) {
@@ -73,11 +73,11 @@ void ShapeParameters::declare(Declaration<ShapeParameters>& d) {
   add_length("size", &ShapeParameters::size, {"box"}).description("edge lengths of a box");
   add_length("height", &ShapeParameters::height, {"capsule", "cylinder"})
       .description("length along the local z axis of a cylinder, or of a capsule without its hemispheres");
-  d.add("normal", &ShapeParameters::normal)
+  d.add("normal", &ShapeParameters::normal,
+        "outward normal of a half_space, of any length, in place of `rotate`")
       .at_least(-1e6)
       .at_most(1e6)
       .only_with("shape", {"half_space"})
-      .description("outward normal of a half_space, of any length, in place of `rotate`")
       .source("this project");
 }
 

@@ -16,19 +16,17 @@ class ConstantLoad final : public Energy {
     Eigen::Vector3d point{0, 0, 0};
     Eigen::Vector3d force{0, 0, 0};
     static void declare(Declaration<PointForce>& d) {
-      d.add("point", &PointForce::point)
+      d.add("point", &PointForce::point, "point in the rest shape; the nearest vertex receives the force")
           .unit("m")
           .at_least(-bounds::largest_coordinate)
           .at_most(bounds::largest_coordinate)
           .required()
-          .description("point in the rest shape; the nearest vertex receives the force")
           .source("this project");
-      d.add("force", &PointForce::force)
+      d.add("force", &PointForce::force, "total force")
           .unit("N")
           .at_least(-bounds::largest_load)
           .at_most(bounds::largest_load)
           .required()
-          .description("total force")
           .source("this project");
     }
   };
@@ -37,15 +35,12 @@ class ConstantLoad final : public Energy {
   std::vector<PointForce> points;
 
   static void declare(Declaration<ConstantLoad>& d) {
-    d.add("force_density", &ConstantLoad::force_density)
+    d.add("force_density", &ConstantLoad::force_density, "force per rest area on the whole cloth")
         .unit("N/m²")
         .at_least(-bounds::largest_load)
         .at_most(bounds::largest_load)
-        .description("force per rest area on the whole cloth")
         .source("this project");
-    d.add_sections("points", &ConstantLoad::points)
-        .description("forces on single vertices")
-        .source("this project");
+    d.add_sections("points", &ConstantLoad::points, "forces on single vertices").source("this project");
   }
 
   EnergyRole role() const override { return EnergyRole::external; }

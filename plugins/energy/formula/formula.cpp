@@ -15,27 +15,26 @@
 namespace drape::formula {
 
 void Parameters::declare(Declaration<Parameters>& d) {
-  d.add("name", &Parameters::name)
-      .description("name in results and in paths of parameters, as in energies.NAME.CONSTANT");
+  d.add("name", &Parameters::name,
+        "name in results and in paths of parameters, as in energies.NAME.CONSTANT");
   d.add_choice(
-       "per", &Parameters::per,
-       {{"triangle", ElementKind::triangle}, {"hinge", ElementKind::hinge}, {"vertex", ElementKind::vertex}})
-      .description("element that the formula is about; decides which symbols it has");
-  d.add(constants_key, &Parameters::constants)
+      "per", &Parameters::per,
+      {{"triangle", ElementKind::triangle}, {"hinge", ElementKind::hinge}, {"vertex", ElementKind::vertex}},
+      "element that the formula is about; decides which symbols it has");
+  d.add(constants_key, &Parameters::constants,
+        "numbers with names: {NAME: 2} or {NAME: {value: 2, unit: N/m}}, in SI units")
       .at_least(-1e15)
-      .at_most(1e15)
-      .description("numbers with names: {NAME: 2} or {NAME: {value: 2, unit: N/m}}, in SI units");
-  d.add("where", &Parameters::where)
-      .description("sub-expressions with names: {NAME: \"…\"}; each may use those above it");
-  d.add("density", &Parameters::density)
-      .unit("J/m²")
-      .description("the energy of a unit of rest area, a formula; of triangles, instead of `energy`");
-  d.add("energy", &Parameters::energy).unit("J").description("the energy of an element, a formula");
-  d.add("role", &Parameters::role)
-      .choices({"membrane", "bending", "external", "position"})
-      .description(
-          "what the energy is for; null: membrane for triangles, bending for hinges, external for "
-          "vertices");
+      .at_most(1e15);
+  d.add("where", &Parameters::where,
+        "sub-expressions with names: {NAME: \"…\"}; each may use those above it");
+  d.add("density", &Parameters::density,
+        "the energy of a unit of rest area, a formula; of triangles, instead of `energy`")
+      .unit("J/m²");
+  d.add("energy", &Parameters::energy, "the energy of an element, a formula").unit("J");
+  d.add("role", &Parameters::role,
+        "what the energy is for; null: membrane for triangles, bending for hinges, external for "
+        "vertices")
+      .choices({"membrane", "bending", "external", "position"});
 }
 
 namespace {

@@ -3,11 +3,10 @@
 struct Gravity {
   Eigen::Vector3d acceleration{0, 0, -9.81};
   static void declare(drape::Declaration<Gravity>& d) {
-    d.add("acceleration", &Gravity::acceleration)
+    d.add("acceleration", &Gravity::acceleration, "acceleration of free fall")
         .unit("m/s²")
         .at_least(-1e7)
         .at_most(1e7)
-        .description("acceleration of free fall")
         .source("standard gravity, rounded; z is up");
   }
 };

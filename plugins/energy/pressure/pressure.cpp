@@ -132,20 +132,19 @@ class Pressure final : public Energy {
   Eigen::Vector3d centre{0, 0, 0};
 
   static void declare(Declaration<Pressure>& d) {
-    d.add("pressure", &Pressure::pressure)
+    d.add("pressure", &Pressure::pressure,
+          "pressure along the normal of every triangle; negative for suction")
         .unit("Pa")
         .at_least(-bounds::largest_load)
         .at_most(bounds::largest_load)
         .required()
-        .description("pressure along the normal of every triangle; negative for suction")
         .source("this project");
-    d.add("centre", &Pressure::centre)
+    d.add("centre", &Pressure::centre,
+          "apex of the cone that closes an open cloth; it has no effect on a pinned border or a closed "
+          "mesh")
         .unit("m")
         .at_least(-bounds::largest_coordinate)
         .at_most(bounds::largest_coordinate)
-        .description(
-            "apex of the cone that closes an open cloth; it has no effect on a pinned border or a closed "
-            "mesh")
         .source("this project");
   }
 

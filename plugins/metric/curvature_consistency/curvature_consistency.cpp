@@ -62,10 +62,10 @@ class CurvatureConsistency : public Metric {
     int rings = 5;
 
     static void declare(Declaration<Parameters>& d) {
-      d.add("rings", &Parameters::rings)
+      d.add("rings", &Parameters::rings,
+            "how many edges away from a vertex the quadric fit of its curvature reaches")
           .at_least(1)
           .at_most(50)
-          .description("how many edges away from a vertex the quadric fit of its curvature reaches")
           .source("Panozzo et al. 2010; libigl's default is 5");
     }
   };

@@ -84,11 +84,11 @@ class DrapeCoefficient : public Metric {
   double support_radius = 0.09;
 
   static void declare(Declaration<DrapeCoefficient>& d) {
-    d.add("support_radius", &DrapeCoefficient::support_radius)
+    d.add("support_radius", &DrapeCoefficient::support_radius,
+          "radius of the disc that carries the specimen; 0.09 m in BS 5058 and ISO 9073-9")
         .unit("m")
         .above(0)
         .at_most(1e3)
-        .description("radius of the disc that carries the specimen; 0.09 m in BS 5058 and ISO 9073-9")
         .required();
   }
 

@@ -14,11 +14,11 @@ class Residuals : public Metric {
   double step_size = 0.1;  ///< h
 
   static void declare(Declaration<Residuals>& d) {
-    d.add("step_size", &Residuals::step_size)
+    d.add("step_size", &Residuals::step_size,
+          "h of the implicit step whose Newton direction the decrement measures")
         .unit("s")
         .at_least(bounds::smallest_time_step)
         .at_most(bounds::largest_time_step)
-        .description("h of the implicit step whose Newton direction the decrement measures")
         .source("Li et al. 2021 (C-IPC)");
   }
 

@@ -120,10 +120,9 @@ class Silhouette : public Metric {
   int resolution = 256;
 
   static void declare(Declaration<Silhouette>& d) {
-    d.add("resolution", &Silhouette::resolution)
+    d.add("resolution", &Silhouette::resolution, "pixels along the diagonal of the rest shape")
         .at_least(16)
-        .at_most(4096)
-        .description("pixels along the diagonal of the rest shape");
+        .at_most(4096);
   }
 
   MetricScope scope() const override { return MetricScope::pair; }

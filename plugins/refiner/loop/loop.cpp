@@ -17,13 +17,12 @@ class LoopRefiner : public Refiner {
   double corner_angle = 30;
 
   static void declare(Declaration<LoopRefiner>& d) {
-    d.add("corner_angle", &LoopRefiner::corner_angle)
+    d.add("corner_angle", &LoopRefiner::corner_angle,
+          "border vertices whose interior rest angle differs from 180 degrees by more than this are "
+          "corners and are interpolated; others are smoothed")
         .unit("degree")
         .at_least(0)
         .at_most(360)
-        .description(
-            "border vertices whose interior rest angle differs from 180 degrees by more than this are "
-            "corners and are interpolated; others are smoothed")
         .source("docs/theory/method.md, section 4");
   }
 

@@ -9,11 +9,11 @@ struct CascadicSolver : Progression {
   Interpolation prolongation = Interpolation::midpoint;
 
   static void declare(Declaration<CascadicSolver>& d) {
-    d.add_choice("prolongation", &CascadicSolver::prolongation,
-                 {{"midpoint", Interpolation::midpoint}, {"refiner", Interpolation::refiner}})
-        .description(
-            "prolongs a level's state: linearly over the rest shape, on grids by edge midpoints, or by the "
-            "experiment's refiner")
+    d.add_choice(
+         "prolongation", &CascadicSolver::prolongation,
+         {{"midpoint", Interpolation::midpoint}, {"refiner", Interpolation::refiner}},
+         "prolongs a level's state: linearly over the rest shape, on grids by edge midpoints, or by the "
+         "experiment's refiner")
         .source("docs/theory/method.md section 3");
     declare_newton(d);
   }

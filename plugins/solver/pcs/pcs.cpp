@@ -23,8 +23,8 @@ struct ProxyInterpolation {
   static void declare(Declaration<ProxyInterpolation>& d) {
     const auto add = [&](const char* name, Interpolation ProxyInterpolation::*value,
                          const std::string& section, const char* description) {
-      d.add_choice(name, value, {{"midpoint", Interpolation::midpoint}, {"refiner", Interpolation::refiner}})
-          .description(description)
+      d.add_choice(name, value, {{"midpoint", Interpolation::midpoint}, {"refiner", Interpolation::refiner}},
+                   description)
           .source("PCS section " + section +
                   " for refiner; midpoint is a departure (docs/theory/locking.md)");
     };
@@ -47,28 +47,26 @@ struct PcsSolver : Progression {
   bool relaxes = true;    ///< a coarse level, after its proxy
 
   static void declare(Declaration<PcsSolver>& d) {
-    d.add_section("interpolation", &PcsSolver::seen_by)
-        .description("how a coarse level sees the fine mesh whose energy it minimises");
-    d.add_choice("hessian", &PcsSolver::hessian,
-                 {{"coarse", ProxyMatrix::coarse}, {"galerkin", ProxyMatrix::galerkin}})
-        .description(
-            "matrix on coarse levels: that of the plain coarse model, or the Galerkin product of the proxy")
+    d.add_section("interpolation", &PcsSolver::seen_by,
+                  "how a coarse level sees the fine mesh whose energy it minimises");
+    d.add_choice(
+         "hessian", &PcsSolver::hessian,
+         {{"coarse", ProxyMatrix::coarse}, {"galerkin", ProxyMatrix::galerkin}},
+         "matrix on coarse levels: that of the plain coarse model, or the Galerkin product of the proxy")
         .source("PCS section 4.2 for coarse; galerkin is a departure");
-    d.add("depth", &PcsSolver::depth)
+    d.add("depth", &PcsSolver::depth,
+          "how many levels above a coarse level the Hessian is that the Galerkin product restricts, at "
+          "most the finest; for energies that are evaluated on the finest level")
         .at_least(1)
-        .at_most(8)
-        .description(
-            "how many levels above a coarse level the Hessian is that the Galerkin product restricts, at "
-            "most the finest; for energies that are evaluated on the finest level");
-    d.add_choice("membranes", &PcsSolver::effective, {{"plain", false}, {"effective", true}})
-        .description(
-            "how membranes of coarse levels act, unless they are seen by the refiner: by their own laws, or "
-            "as the finest level's do, which buckle below the coarse mesh and give way at lone pins")
+        .at_most(8);
+    d.add_choice(
+         "membranes", &PcsSolver::effective, {{"plain", false}, {"effective", true}},
+         "how membranes of coarse levels act, unless they are seen by the refiner: by their own laws, or "
+         "as the finest level's do, which buckle below the coarse mesh and give way at lone pins")
         .source("PCS section 4 for plain; effective is a departure (docs/theory/locking.md)");
-    d.add_choice("relaxation", &PcsSolver::relaxes, {{"plain", true}, {"none", false}})
-        .description(
-            "what a coarse level minimises after its proxy: its own energy, which makes folds as "
-            "sharp as the level allows, or nothing")
+    d.add_choice("relaxation", &PcsSolver::relaxes, {{"plain", true}, {"none", false}},
+                 "what a coarse level minimises after its proxy: its own energy, which makes folds as "
+                 "sharp as the level allows, or nothing")
         .source("PCS section 4 for none; plain is a departure (docs/theory/locking.md)");
     declare_newton(d);
   }

@@ -41,7 +41,7 @@ struct Everything {
 
   static void declare(Declaration<Everything>& d) {
     using E = Everything;
-    d.add("step_size", &E::step_size).unit("s").above(0).description("step of the flow").source("PCS eq. 2");
+    d.add("step_size", &E::step_size, "step of the flow").unit("s").above(0).source("PCS eq. 2");
     d.add("fraction", &E::fraction).unit("1").at_least(0).below(1);
     d.add("count", &E::count).at_least(1).at_most(10);
     d.add("on", &E::on);
@@ -291,7 +291,7 @@ TEST_CASE("a page describes a shared section once, unless its defaults differ") 
   };
   struct Usual {
     Ball ball;
-    static void declare(Declaration<Usual>& d) { d.add_section("ball", &Usual::ball).description("thrown"); }
+    static void declare(Declaration<Usual>& d) { d.add_section("ball", &Usual::ball, "thrown"); }
   };
   const SharedSection ball{schema_of<Ball>("ball"), "[Ball](#ball)"};
   const std::string usual = describe_markdown(schema_of<Usual>(), &ball);
@@ -310,7 +310,7 @@ TEST_CASE("a schema describes sections and lists of them") {
     std::optional<double> limit;
     double density = 0;
     static void declare(Declaration<Top>& d) {
-      d.add_section("ball", &Top::ball).description("the obstacle");
+      d.add_section("ball", &Top::ball, "the obstacle");
       d.add_sections("balls", &Top::balls);
       d.add("word", &Top::word).choices({"left", "right"});
       d.add("center", &Top::center).unit("m");

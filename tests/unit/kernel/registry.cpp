@@ -26,11 +26,10 @@ class Loop final : public Ballast, public Refiner {
   struct Parameters {
     double corner_angle = 30;
     static void declare(Declaration<Parameters>& d) {
-      d.add("corner_angle", &Parameters::corner_angle)
+      d.add("corner_angle", &Parameters::corner_angle, "sharper corners stay | sharp")
           .unit("deg")
           .above(0)
           .at_most(180)
-          .description("sharper corners stay | sharp")
           .source("Loop 1987");
     }
   };
