@@ -62,10 +62,14 @@ std::string cli_sources() {
 TEST_CASE("commands in the pages name commands, options and files that there are") {
   const fs::path root = folders::source();
   const std::string cli = cli_sources(), makefile = pages::text_of(root / "Makefile");
-  // An option's long name ends its declaration, alone, after its short name or after a flag's negation.
+  // An option's long name stands alone, after its short name or after a flag's negation. It ends its
+  // declaration, or a word in capitals for its value does.
   const auto declares = [&](const std::string& name) {
     for (const char before : {'"', ',', '!'})
-      if (cli.find(before + name + "\"") != cli.npos) return true;
+      for (std::size_t at = cli.find(before + name); at != cli.npos; at = cli.find(before + name, at + 1)) {
+        const std::string end = cli.substr(at + 1 + name.size(), 2);
+        if (end[0] == '"' || (end[0] == ' ' && end[1] >= 'A' && end[1] <= 'Z')) return true;
+      }
     return name.size() == 2 && cli.find("\"" + name + ",--") != cli.npos;
   };
   int drape_commands = 0, make_targets = 0, files = 0;
