@@ -170,7 +170,7 @@ std::string default_method(const std::vector<std::string>& methods) {
 }
 
 std::vector<std::string> chosen_methods(const Experiment& experiment, const std::vector<std::string>& asked) {
-  const std::vector<std::string> known = experiment.method_names();
+  std::vector<std::string> known = experiment.method_names();
   for (const std::string& name : asked)
     if (name != all_methods && !contains(known, name))
       throw std::runtime_error("--method " + name + ": the experiment's methods are " + joined(known));

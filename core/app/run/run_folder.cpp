@@ -67,7 +67,7 @@ fs::path left_there(const RunFolder& folder) {
   for (const char* own : own_files)
     if (fs::path path = folder.file(own); fs::exists(path)) return path;
   for (const auto& [own, pattern] : own_folders) {
-    const fs::path path = folder.file(own);
+    fs::path path = folder.file(own);
     if (fs::exists(path) && !fs::is_directory(path)) return path;
     if (!fs::is_directory(path)) continue;
     for (const auto& entry : fs::directory_iterator(path))
