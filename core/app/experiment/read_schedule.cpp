@@ -134,11 +134,11 @@ class KeyReader {
     } else if (item) {
       add_target(key, part == "pins" ? LoadPart::pins : LoadPart::handles, *item, words);
     }
-    if (key.targets.empty()) refuse_path(key);
+    if (key.targets.empty()) refuse_parameter(key);
   }
 
   /// Why the path of a key leads nowhere: as of an option --set, or that it names no number.
-  void refuse_path(const ScheduleKey& key) {
+  void refuse_parameter(const ScheduleKey& key) {
     const Location& where = key.written.where;
     ConfigNode config = e_.resolved;
     ConfigErrors own;

@@ -18,7 +18,7 @@ namespace drape {
 FileLock::FileLock(const std::filesystem::path& file) : name_(file) {
   // Without O_CLOEXEC: child processes inherit the lock.
   file_ = open(file.c_str(), O_RDWR | O_CREAT, 0644);
-  if (file_ < 0) throw std::runtime_error(file.string() + ": cannot be made (" + std::strerror(errno) + ")");
+  if (file_ < 0) refuse_path(file, std::string("cannot be made (") + std::strerror(errno) + ")");
 }
 
 FileLock::~FileLock() { close(file_); }
@@ -33,7 +33,7 @@ bool FileLock::acquire(double patience) {
   gethostname(host, sizeof host - 1);
   const std::string self = "process " + std::to_string(getpid()) + " on " + host + "\n";
   if (ftruncate(file_, 0) != 0 || pwrite(file_, self.data(), self.size(), 0) < 0)
-    throw std::runtime_error(name_.string() + ": cannot write (is the disk full?)");
+    refuse_path(name_, "cannot write (is the disk full?)");
   return true;
 }
 

@@ -5,6 +5,7 @@
 #include <stdexcept>
 #include <type_traits>
 
+#include "core/kernel/files/file.h"
 #include "core/kernel/files/message_text.h"
 
 namespace drape {
@@ -45,9 +46,7 @@ std::string fault_of_file_name(const std::string& name) {
   return "has " + std::to_string(name.size()) + " bytes, and may have " + std::to_string(most);
 }
 
-void JsonFile::refuse(const std::string& fault) const {
-  throw std::runtime_error(path_.string() + ": " + fault + "; " + remedy_);
-}
+void JsonFile::refuse(const std::string& fault) const { refuse_path(path_, fault + "; " + remedy_); }
 
 template <class T>
 std::optional<T> JsonFile::find(const Json& object, const std::string& key) const {

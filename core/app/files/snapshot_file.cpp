@@ -22,10 +22,10 @@ SnapshotFile::SnapshotFile(const std::filesystem::path& file, std::size_t count,
                            std::optional<std::uint32_t> checksum)
     : bytes_(read_file(file)), count_(count), n_(n) {
   if (bytes_.size() != count * size_of(n))
-    throw std::runtime_error(file.string() + ": holds " + std::to_string(bytes_.size()) + " bytes, not " +
-                             std::to_string(count) + " snapshots of " + std::to_string(n) + " vertices");
+    refuse_path(file, "holds " + std::to_string(bytes_.size()) + " bytes, not " + std::to_string(count) +
+                          " snapshots of " + std::to_string(n) + " vertices");
   if (checksum && checksum_of(bytes_) != *checksum)
-    throw std::runtime_error(file.string() + ": is damaged: its checksum does not fit");
+    refuse_path(file, "is damaged: its checksum does not fit");
 }
 
 Positions SnapshotFile::positions(std::size_t state) const {

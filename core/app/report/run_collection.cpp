@@ -23,7 +23,7 @@ std::string read_sweep(const fs::path& folder, RunCollection& collection) {
   const fs::path path = folder / "sweep.json";
   const Json json = parse_json(read_file(path));
   if (!json.is_object() || !json.contains("runs") || !json["runs"].is_array())
-    throw std::runtime_error(path.string() + ": not a sweep's list of runs; is it cut short?");
+    refuse_path(path, "not a sweep's list of runs; is it cut short?");
   const JsonFile file(path, "run the sweep again, which writes it");
   collection.complete = collection.complete && member_of(json, "complete") == true;
   std::string name = text_member(json, "sweep");

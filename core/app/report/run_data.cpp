@@ -130,12 +130,12 @@ std::string rest_file(int level) { return "rest/l" + std::to_string(level) + ".p
 RunData read_run(const std::filesystem::path& folder) {
   const std::filesystem::path path = folder / "results.json";
   if (!std::filesystem::is_regular_file(path))
-    throw std::runtime_error(folder.string() + ": no results.json here; give the folder of a run");
+    refuse_path(folder, "no results.json here; give the folder of a run");
   RunData run;
   run.folder = folder;
   run.results = parse_json(read_file(path));
   const Json& json = run.results;
-  if (!json.is_object()) throw std::runtime_error(path.string() + ": not a JSON object; is it cut short?");
+  if (!json.is_object()) refuse_path(path, "not a JSON object; is it cut short?");
 
   run.experiment = text_member(json, "experiment");
   run.complete = member_of(json, "complete") == true;

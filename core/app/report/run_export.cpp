@@ -13,7 +13,6 @@
 #include "core/app/report/pictures.h"
 #include "core/app/report/run_data.h"
 #include "core/kernel/files/file.h"
-#include "core/kernel/files/message_text.h"
 #include "core/kernel/files/string_utils.h"
 #include "core/numerics/mesh/texture_coordinates.h"
 #include "core/numerics/mesh_files/io.h"
@@ -142,21 +141,19 @@ std::string gltf_of(const RunData& run, const MethodRecord& method,
 /// Throws std::runtime_error if a file cannot be written there, is there already and not to be replaced, or
 /// would first be written over another one.
 void refuse_target(const fs::path& file, bool overwrite) {
-  const auto refuse = [](const fs::path& path, const std::string& why) {
-    throw std::runtime_error(printable(path.string()) + ": " + why);
-  };
   std::error_code error;
   const fs::path folder = file.has_parent_path() ? file.parent_path() : fs::path(".");
-  if (!fs::is_directory(folder, error)) refuse(folder, "is no folder; make it, or name another file");
-  if (access(folder.c_str(), W_OK | X_OK) != 0) refuse(folder, "cannot be written to; name another file");
-  if (fs::is_directory(file, error)) refuse(file, "is a folder; name a file");
+  if (!fs::is_directory(folder, error)) refuse_path(folder, "is no folder; make it, or name another file");
+  if (access(folder.c_str(), W_OK | X_OK) != 0)
+    refuse_path(folder, "cannot be written to; name another file");
+  if (fs::is_directory(file, error)) refuse_path(file, "is a folder; name a file");
   if (!overwrite && fs::exists(fs::symlink_status(file, error)))
-    refuse(file, "exists already; name another file, or replace it with --overwrite");
+    refuse_path(file, "exists already; name another file, or replace it with --overwrite");
   fs::path part = file;
   part += ".part";
   if (fs::exists(fs::symlink_status(part, error)))
-    refuse(part,
-           "exists already, and a file is first written under that name; move it, or name another file");
+    refuse_path(part,
+                "exists already, and a file is first written under that name; move it, or name another file");
 }
 
 /// FILE_0000.png, FILE_0001.png, …

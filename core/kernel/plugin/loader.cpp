@@ -9,6 +9,7 @@
 #include <fstream>
 #include <stdexcept>
 
+#include "core/kernel/files/file.h"
 #include "core/kernel/files/string_utils.h"
 #include "core/kernel/plugin/abi.h"
 
@@ -113,8 +114,7 @@ std::vector<fs::path> plugin_directories() {
 void load_plugins(Registry& registry, const std::vector<fs::path>& directories) {
   std::vector<fs::path> done;
   for (const fs::path& directory : directories) {
-    if (!fs::is_directory(directory))
-      throw std::runtime_error(directory.string() + ": is not a folder of plugins");
+    if (!fs::is_directory(directory)) refuse_path(directory, "is not a folder of plugins");
     // A folder named twice is one folder, not a clash of names.
     const fs::path canonical = fs::canonical(directory);
     if (std::find(done.begin(), done.end(), canonical) != done.end()) continue;

@@ -11,6 +11,7 @@
 #include <string_view>
 #include <utility>
 
+#include "core/kernel/files/file.h"
 #include "core/kernel/files/message_text.h"
 #include "core/numerics/mesh_files/ply_header.h"
 
@@ -50,7 +51,7 @@ class PlyBody {
     if (!more) return;
     const std::string message = "the file has data after the elements that its header declares";
     if (format_ == PlyFormat::ascii) reader_.fail(message);
-    throw std::runtime_error(path_.string() + ": " + message + reader_.note());
+    refuse_path(path_, message + reader_.note());
   }
 
   double next(PlyType type) {
@@ -70,7 +71,7 @@ class PlyBody {
 
   [[noreturn]] void fail(const std::string& message) const {
     if (format_ == PlyFormat::ascii) reader_.fail(place() + ": " + message);
-    throw std::runtime_error(path_.string() + ": " + place() + ": " + message + reader_.note());
+    refuse_path(path_, place() + ": " + message + reader_.note());
   }
 
  private:

@@ -182,19 +182,17 @@ PlyContent read_content(const std::filesystem::path& path, std::string_view byte
   for (int axis = 0; axis < 3; ++axis) {
     const std::string name(1, "xyz"[axis]);
     const std::vector<double>* found = content.column(name);
-    if (!found) throw std::runtime_error(path.string() + ": vertices have no property '" + name + "'");
+    if (!found) refuse_path(path, "vertices have no property '" + name + "'");
     const std::vector<double>& column = *found;
     for (std::size_t v = 0; v < column.size(); ++v) {
       if (!std::isfinite(column[v]))
-        throw std::runtime_error(path.string() + ": vertex " + std::to_string(v) +
-                                 " (counted from 0) has a coordinate that is not finite");
+        refuse_path(path,
+                    "vertex " + std::to_string(v) + " (counted from 0) has a coordinate that is not finite");
       content.mesh.coordinates[3 * v + axis] = column[v];
     }
   }
   for (const PlyFace& face : content.faces) {
-    content.mesh.add_face(face.corners, face.uv, [&](const std::string& why) {
-      throw std::runtime_error(path.string() + ": " + why);
-    });
+    content.mesh.add_face(face.corners, face.uv, [&](const std::string& why) { refuse_path(path, why); });
     while (content.has_warp && content.warp.size() < content.mesh.corners.size())
       content.warp.insert(content.warp.end(), face.warp.begin(), face.warp.end());
   }

@@ -8,6 +8,7 @@
 #include <map>
 #include <stdexcept>
 
+#include "core/kernel/files/file.h"
 #include "core/kernel/files/message_text.h"
 #include "core/numerics/mesh/mesh_builder.h"
 #include "core/numerics/mesh_files/io_formats.h"
@@ -54,8 +55,8 @@ TriangleMesh read_binary(const std::filesystem::path& path, std::string_view byt
       const std::array<double, 3> point{numbers[3 * k], numbers[3 * k + 1], numbers[3 * k + 2]};
       for (const double x : point)
         if (!std::isfinite(x))
-          throw std::runtime_error(path.string() + ": triangle " + std::to_string(t) +
-                                   " (counted from 0) has a coordinate that is not finite");
+          refuse_path(path, "triangle " + std::to_string(t) +
+                                " (counted from 0) has a coordinate that is not finite");
       mesh.add_corner(point);
     }
   }

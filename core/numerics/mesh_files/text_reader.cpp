@@ -7,6 +7,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "core/kernel/files/file.h"
 #include "core/kernel/files/message_text.h"
 
 namespace drape {
@@ -97,7 +98,7 @@ int TextReader::count(std::string_view word, const std::string& things) const {
 }
 
 void TextReader::fail(const std::string& message) const {
-  if (text_.empty()) throw std::runtime_error(path_.string() + ": is empty");
+  if (text_.empty()) refuse_path(path_, "is empty");
   throw std::runtime_error(path_.string() + ":" + std::to_string(line_) + ": " + message + note());
 }
 
