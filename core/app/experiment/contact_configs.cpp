@@ -200,9 +200,8 @@ void make_contacts(Experiment& e, ConfigErrors& errors) {
     if (Location& where = errors[i].where; where.line == 0 && e.source.find(where.key))
       where = e.location_of(where.key);
   const bool is_one = p.contact.kind != NodeKind::list && !sections.items.empty();
-  ConfigErrors none;
-  set_path(e.resolved, "contact", is_one ? sections.items[0] : sections, {}, none);
-  set_path(e.resolved, "obstacles", obstacles, {}, none);
+  set_path(e.resolved, "contact", is_one ? sections.items[0] : sections);
+  set_path(e.resolved, "obstacles", obstacles);
 }
 
 }  // namespace drape

@@ -21,11 +21,6 @@ void take_newton(const ConfigNode& written, const NewtonParameters& common, cons
     if (written.find(p.name)) p.assign(&common, newton->section_in(solver, 0));
 }
 
-void set(Experiment& e, const std::string& key, ConfigNode value) {
-  ConfigErrors none;
-  set_path(e.resolved, key, std::move(value), {}, none);
-}
-
 /// The name that a plugin gives itself, else its type.
 std::string label_of(const ConfigNode& node) {
   const ConfigNode* name = node.find("name");
@@ -37,7 +32,7 @@ void make_refiner(Experiment& e, ConfigErrors& errors) {
   if (node.kind == ConfigNode::Kind::null) node = ConfigNode::of(default_refiner);
   ConfigNode resolved;
   e.refiner = make_from<Refiner>(*e.registry, node, errors, &resolved);
-  set(e, "refiner", resolved);
+  set_path(e.resolved, "refiner", resolved);
 }
 
 void check_metrics(const Experiment& e, ConfigErrors& errors) {
@@ -103,7 +98,7 @@ void make_methods(Experiment& e, ConfigErrors& errors) {
       e.methods.emplace_back(name, std::static_pointer_cast<Solver>(solver));
     resolved_map.add(name, resolved);
   }
-  set(e, "methods", resolved_map);
+  set_path(e.resolved, "methods", resolved_map);
   check_reference(e, names, errors);
 }
 
@@ -120,7 +115,7 @@ void make_plugins(Experiment& e, ConfigErrors& errors) {
     e.energies.push_back({label_of(node), std::move(energy)});
     e.energy_parameters.push_back(std::move(own));
   }
-  set(e, "energies", energies);
+  set_path(e.resolved, "energies", energies);
   const ConfigNode* written = e.source.find("energies");
   if (written && written->kind == ConfigNode::Kind::list && written->items.empty())
     errors.push_back({written->where,
@@ -138,7 +133,7 @@ void make_plugins(Experiment& e, ConfigErrors& errors) {
     if (auto metric = make_from<Metric>(*e.registry, node, errors, &metrics.items.emplace_back()))
       e.metrics.emplace_back(node.plugin_name(), metric);
   check_metrics(e, errors);
-  set(e, "metrics", metrics);
+  set_path(e.resolved, "metrics", metrics);
   make_methods(e, errors);
 }
 

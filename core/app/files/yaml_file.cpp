@@ -275,4 +275,9 @@ bool set_path(ConfigNode& root, const std::string& path, ConfigNode value, const
   return true;
 }
 
+void set_path(ConfigNode& resolved, const std::string& path, ConfigNode value) {
+  ConfigErrors none;
+  set_path(resolved, path, std::move(value), {}, none);
+}
+
 }  // namespace drape

@@ -33,5 +33,7 @@ void set_places(ConfigNode& node, const Location& where);
 /// Returns false, with an error appended, if the path does not exist.
 bool set_path(ConfigNode& root, const std::string& path, ConfigNode value, const Location& where,
               ConfigErrors& errors);
+/// The same in a resolved experiment, in which a path of the program's own cannot fail.
+void set_path(ConfigNode& resolved, const std::string& path, ConfigNode value);
 
 }  // namespace drape

@@ -52,13 +52,10 @@ nlohmann::ordered_json results_of(const fs::path& folder) {
 
 ConfigNode saved_config(const Experiment& experiment) {
   ConfigNode config = experiment.resolved;
-  ConfigErrors none;
-  const auto set = [&](const char* key, const char* file) {
-    set_path(config, key, ConfigNode::of(file), {}, none);
-  };
-  if (experiment.parameters.cloth.shape == "file") set("cloth.file", "rest/l0.ply");
-  if (!experiment.parameters.start.file.empty()) set("start.file", "start.ply");
-  if (!experiment.parameters.reference.file.empty()) set("reference.file", "reference.ply");
+  const ExperimentParameters& p = experiment.parameters;
+  if (p.cloth.shape == "file") set_path(config, "cloth.file", ConfigNode::of("rest/l0.ply"));
+  if (!p.start.file.empty()) set_path(config, "start.file", ConfigNode::of("start.ply"));
+  if (!p.reference.file.empty()) set_path(config, "reference.file", ConfigNode::of("reference.ply"));
   return config;
 }
 

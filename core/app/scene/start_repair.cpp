@@ -159,8 +159,7 @@ std::string hopeless_text(const Clearance& start, const TranslationSearch& searc
 void move(Experiment& experiment, const Vector3d& translation) {
   StartParameters& start = experiment.parameters.start;
   start.translate += translation;
-  ConfigErrors none;
-  set_path(experiment.resolved, "start", schema_of<StartParameters>().write(&start), {}, none);
+  set_path(experiment.resolved, "start", schema_of<StartParameters>().write(&start));
 }
 
 }  // namespace

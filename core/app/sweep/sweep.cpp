@@ -27,11 +27,10 @@ void keep_methods(ConfigNode& resolved, const std::vector<std::string>& chosen) 
   ConfigNode methods;
   for (const auto& [name, method] : resolved.find("methods")->entries)
     if (!is_left_out(name)) methods.add(name, method);
-  ConfigErrors none;
-  set_path(resolved, "methods", std::move(methods), {}, none);
+  set_path(resolved, "methods", std::move(methods));
   const std::string& reference = resolved.find("reference")->find("method")->scalar;
   if (!reference.empty() && reference != ReferenceParameters::lowest && is_left_out(reference))
-    set_path(resolved, "reference", ConfigNode::of(""), {}, none);
+    set_path(resolved, "reference", ConfigNode::of(""));
 }
 
 /// The value at a path of a resolved experiment: of a plugin its type; null if the experiment has none.
@@ -145,7 +144,7 @@ class Reader {
     std::vector<int> seeds = sweep_.parameters.seeds;
     if (seeds.empty()) seeds.push_back(e.start.seed);
     for (const int seed : seeds) {
-      set_path(resolved, "start.seed", ConfigNode::of(seed), {}, errors_);
+      set_path(resolved, "start.seed", ConfigNode::of(seed));
       run.seed = seed;
       run.folder = "runs/" + folder_name(variation.name) + "/seed_" + std::to_string(seed);
       run.config = to_yaml(resolved);
