@@ -65,7 +65,7 @@ struct FloorModel : drape::ContactModel, drape::ContactParameters {
   double height = 0;
 
   static void declare(drape::Declaration<FloorModel>& d) {
-    d.add("height", &FloorModel::height, "z of the floor").unit("m").at_least(-1e3).at_most(1e3);
+    d.add("height", &FloorModel::height, "z of the floor").unit("m").between(-1e3, 1e3);
     declare_contact_parameters(d);
   }
 

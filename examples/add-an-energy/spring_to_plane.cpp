@@ -8,7 +8,7 @@ struct SpringToPlane {
         .unit("1/s²")
         .above(0)
         .at_most(1e9);
-    d.add("height", &SpringToPlane::height, "z of the plane").unit("m").at_least(-1e3).at_most(1e3);
+    d.add("height", &SpringToPlane::height, "z of the plane").unit("m").between(-1e3, 1e3);
   }
 };
 

@@ -41,23 +41,19 @@ template <class Struct>
 void declare_material(Declaration<Struct>& d) {
   d.add("density", &Struct::density, "ρ, mass per volume")
       .unit("kg/m³")
-      .at_least(1e-6)
-      .at_most(1e6)
+      .between(1e-6, 1e6)
       .source("supplement, Table 2");
   d.add("thickness", &Struct::thickness, "d, thickness of the cloth")
       .unit("m")
-      .at_least(bounds::smallest_length)
-      .at_most(10)
+      .between(bounds::smallest_length, 10)
       .source("supplement, Table 2");
   d.add("membrane_modulus", &Struct::membrane_modulus, "E_mem, Young's modulus in stretching")
       .unit("Pa")
-      .at_least(1e-6)
-      .at_most(bounds::largest_modulus)
+      .between(1e-6, bounds::largest_modulus)
       .source("supplement, Table 2");
   d.add("bending_modulus", &Struct::bending_modulus, "E_bend, Young's modulus in bending")
       .unit("Pa")
-      .at_least(0)
-      .at_most(bounds::largest_modulus)
+      .between(0, bounds::largest_modulus)
       .source("supplement, Table 2");
   d.add("poisson_ratio", &Struct::poisson_ratio,
         "ν, of both moduli; where warp and weft differ, the geometric mean of their two Poisson's ratios")
@@ -66,7 +62,7 @@ void declare_material(Declaration<Struct>& d) {
       .source("supplement, Table 2");
   const auto measured = [&](const char* name, std::optional<double> Material::*member, const char* unit,
                             const char* description) {
-    d.add(name, member, description).unit(unit).at_least(1e-12).at_most(bounds::largest_modulus);
+    d.add(name, member, description).unit(unit).between(1e-12, bounds::largest_modulus);
   };
   measured("warp_stiffness", &Material::warp_stiffness, "N/m",
            "force per width over strain of a strip along warp, in place of `membrane_modulus`; null: that "
@@ -85,8 +81,7 @@ void declare_material(Declaration<Struct>& d) {
         "2HB, width of the loop of moment against curvature: friction between yarns, which "
         "`midedge_bending` counts as on first loading and other energies leave out")
       .unit("N")
-      .at_least(0)
-      .at_most(bounds::largest_modulus)
+      .between(0, bounds::largest_modulus)
       .source("KES-FB2");
 }
 

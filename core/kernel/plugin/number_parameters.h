@@ -21,7 +21,7 @@
 
 #define DRAPE_NUMBER_MEMBER(member, initial, si_unit, smallest, largest, text) double member = initial;
 #define DRAPE_NUMBER_DECLARATION(member, initial, si_unit, smallest, largest, text) \
-  d.add(#member, &Self::member, text).unit(si_unit).at_least(smallest).at_most(largest);
+  d.add(#member, &Self::member, text).unit(si_unit).between(smallest, largest);
 
 // DRAPE_FOR_EACH(m, (a, b), (c, d)) is m(a, b) m(c, d), for up to 64 items: macros do not recurse, but a text
 // that is scanned again may name the next step.

@@ -21,8 +21,7 @@ template <class Struct>
 ParameterHandle declare_scale(Declaration<Struct>& d) {
   return d.add("scale", &Struct::scale, "scale factor, applied before `rotate` and `translate`")
       .unit("1")
-      .at_least(1 / bounds::largest_scale)
-      .at_most(bounds::largest_scale);
+      .between(1 / bounds::largest_scale, bounds::largest_scale);
 }
 
 /// Declares `rotate`, a rotation about the origin.
@@ -31,8 +30,7 @@ ParameterHandle declare_rotate(Declaration<Struct>& d) {
   return d
       .add("rotate", &Struct::rotate, "rotation about the x, then y, then z axis, applied before `translate`")
       .unit("degree")
-      .at_least(-bounds::largest_angle)
-      .at_most(bounds::largest_angle);
+      .between(-bounds::largest_angle, bounds::largest_angle);
 }
 
 /// Declares `rotate` and `translate`, the members by which a struct places the cloth or an obstacle: scaled
@@ -42,8 +40,7 @@ ParameterHandle declare_placement(Declaration<Struct>& d) {
   declare_rotate(d);
   return d.add("translate", &Struct::translate, "translation, applied last")
       .unit("m")
-      .at_least(-bounds::largest_coordinate)
-      .at_most(bounds::largest_coordinate);
+      .between(-bounds::largest_coordinate, bounds::largest_coordinate);
 }
 
 }  // namespace drape

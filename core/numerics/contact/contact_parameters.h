@@ -33,8 +33,7 @@ ParameterHandle declare_friction(Declaration<Struct>& d) {
       .add("friction", &Struct::friction,
            "Coulomb's friction coefficient μ, where an obstacle does not have its own")
       .unit("1")
-      .at_least(0)
-      .at_most(bounds::largest_friction)
+      .between(0, bounds::largest_friction)
       .source("Li et al. 2020, section 5");
 }
 
@@ -43,27 +42,23 @@ void declare_contact_parameters(Declaration<Derived>& d) {
   declare_friction(d).from_experiment();
   d.add("dhat", &Derived::dhat, "barrier activation distance d̂: the barrier acts on smaller gaps")
       .unit("m")
-      .at_least(bounds::smallest_length)
-      .at_most(1e3)
+      .between(bounds::smallest_length, 1e3)
       .source("Li et al. 2020, eq. 6");
   d.add("stiffness", &Derived::stiffness,
         "barrier stiffness κ: the barrier's pressure is κ |b'(gap / d̂)|; null: ten times the cloth's "
         "weight per area or the loads' pressure, raised where contacts carry far more")
       .unit("Pa")
-      .at_least(1e-9)
-      .at_most(bounds::largest_modulus)
+      .between(1e-9, bounds::largest_modulus)
       .source("core/numerics/contact_forces/contact_stiffness.h");
   d.add("friction_smoothing_distance", &Derived::friction_smoothing_distance,
         "ε_v h: friction is smoothed at smaller tangential displacements, where a contact sticks")
       .unit("m")
-      .at_least(1e-12)
-      .at_most(1e3)
+      .between(1e-12, 1e3)
       .source("Li et al. 2020, eq. 14");
   d.add("min_gap_fraction", &Derived::min_gap_fraction,
         "fraction of every gap that a step must leave: s of additive CCD")
       .unit("1")
-      .at_least(1e-6)
-      .at_most(0.99)
+      .between(1e-6, 0.99)
       .source("Li et al. 2021");
 }
 

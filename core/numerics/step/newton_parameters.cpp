@@ -13,25 +13,21 @@ void NewtonParameters::declare(Declaration<NewtonParameters>& d) {
         "h of the first implicit step; in the static form the unit of the decrement and of the mass that "
         "damps a step without descent")
       .unit("s")
-      .at_least(bounds::smallest_time_step)
-      .at_most(bounds::largest_time_step)
+      .between(bounds::smallest_time_step, bounds::largest_time_step)
       .source("PCS section 4");
   d.add("step_growth", &NewtonParameters::step_growth,
         "factor on h after a full step, up to 1000 s; a step cut below a quarter divides h by it. With 1 h "
         "never grows, and stays as small as damping has made it")
-      .at_least(1)
-      .at_most(1e3)
+      .between(1, 1e3)
       .source("departure from the paper");
   d.add("iterations_per_step", &NewtonParameters::iterations_per_step,
         "maximum Newton iterations of an implicit step; at least 30 where obstacles have just moved under "
         "friction")
-      .at_least(1)
-      .at_most(1000)
+      .between(1, 1000)
       .source("PCS section 4");
   d.add("max_steps", &NewtonParameters::max_steps,
         "maximum implicit steps of a level, or of each increment of a schedule")
-      .at_least(1)
-      .at_most(1e9);
+      .between(1, 1e9);
   d.add("force_tolerance", &NewtonParameters::force_tolerance,
         "a level has converged when the net force on its free vertices is below this fraction of the load")
       .above(0)
@@ -41,8 +37,7 @@ void NewtonParameters::declare(Declaration<NewtonParameters>& d) {
         "also required of the largest of the last three decrements; 0 disables it. The decrement is "
         "‖p‖ / (h √n), p the Newton direction: a velocity, not √(gᵀH⁻¹g)")
       .unit("m/s")
-      .at_least(0)
-      .at_most(1e9)
+      .between(0, 1e9)
       .source("Li et al. 2021 (C-IPC)");
   d.add_choice("projection", &NewtonParameters::projection,
                {{"clamp", Projection::clamp}, {"absolute", Projection::absolute}, {"none", Projection::none}},
@@ -57,8 +52,7 @@ void NewtonParameters::declare(Declaration<NewtonParameters>& d) {
       .source("departure from the paper");
   d.add("hessian_update_interval", &NewtonParameters::hessian_update_interval,
         "iterations that share one Hessian and its factor")
-      .at_least(1)
-      .at_most(1e6)
+      .between(1, 1e6)
       .source("departure from the paper");
   d.add_choice(
        "linear_solver", &NewtonParameters::linear_solver,

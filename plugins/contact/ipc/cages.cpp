@@ -39,8 +39,7 @@ void CageParameters::declare(Declaration<CageParameters>& d) {
   d.add("count", &P::count,
         "number of cages: level l of the cloth collides with cage l, finer levels with the obstacle "
         "itself")
-      .at_least(0)
-      .at_most(8);
+      .between(0, 8);
   d.add("alpha", &P::alpha,
         "alpha of the innermost cage's alpha wrap, relative to the diagonal of the mesh's bounding box; "
         "sets the size of the holes that are closed, and of triangles")
@@ -55,8 +54,7 @@ void CageParameters::declare(Declaration<CageParameters>& d) {
       .source("Portaneri et al. 2022");
   d.add("growth", &P::growth, "ratio of a cage's alpha and offset to those of the next finer one")
       .unit("1")
-      .at_least(1)
-      .at_most(10);
+      .between(1, 10);
 }
 
 std::string enclosure_fault(const ValidatedMesh& outer, const ValidatedMesh& inner) {

@@ -98,18 +98,15 @@ void ObstacleParameters::declare(Declaration<ObstacleParameters>& d) {
       .identifies_item();
   d.add("size", &P::size, "edge lengths of a box")
       .unit("m")
-      .at_least(bounds::smallest_length)
-      .at_most(bounds::largest_length)
+      .between(bounds::smallest_length, bounds::largest_length)
       .only_with("meshed_shape", {"box"});
   d.add("radius", &P::radius, "radius of a sphere")
       .unit("m")
-      .at_least(bounds::smallest_length)
-      .at_most(bounds::largest_length)
+      .between(bounds::smallest_length, bounds::largest_length)
       .only_with("meshed_shape", {"sphere"});
   d.add("subdivisions", &P::subdivisions,
         "how often a sphere's icosahedron is subdivided; the sphere has 20 · 4^subdivisions triangles")
-      .at_least(0)
-      .at_most(8)
+      .between(0, 8)
       .only_with("meshed_shape", {"sphere"});
   d.add("animation", &P::animation,
         "instead of mesh: the frames of an animation, files of meshes with the same triangles")
@@ -117,8 +114,7 @@ void ObstacleParameters::declare(Declaration<ObstacleParameters>& d) {
       .identifies_item();
   d.add("frame", &P::frame, "frame of the animation, from 0, interpolated linearly; for a schedule to change")
       .unit("1")
-      .at_least(0)
-      .at_most(1e6);
+      .between(0, 1e6);
   d.add("strict", &P::strict,
         "whether a mesh that a cloth could not have is refused; otherwise it is repaired");
   d.add_section("cages", &P::cages, "closed surfaces around the obstacle that replace it on coarse levels");

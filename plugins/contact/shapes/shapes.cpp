@@ -60,23 +60,22 @@ void ShapeParameters::declare(Declaration<ShapeParameters>& d) {
       .identifies_item()
       .source("this project");
   d.declared("rotate").only_with("shape", {"sphere", "box", "capsule", "cylinder"});
-  const auto add_length = [&](const char* name, auto member, std::vector<std::string> shapes) {
-    return d.add(name, member)
+  const auto add_length = [&](const char* name, auto member, std::vector<std::string> shapes,
+                              const char* description) {
+    d.add(name, member, description)
         .unit("m")
-        .at_least(bounds::smallest_length)
-        .at_most(bounds::largest_length)
+        .between(bounds::smallest_length, bounds::largest_length)
         .only_with("shape", std::move(shapes))
         .source("this project");
   };
-  add_length("radius", &ShapeParameters::radius, {"sphere", "capsule", "cylinder"})
-      .description("radius of a sphere, capsule or cylinder");
-  add_length("size", &ShapeParameters::size, {"box"}).description("edge lengths of a box");
-  add_length("height", &ShapeParameters::height, {"capsule", "cylinder"})
-      .description("length along the local z axis of a cylinder, or of a capsule without its hemispheres");
+  add_length("radius", &ShapeParameters::radius, {"sphere", "capsule", "cylinder"},
+             "radius of a sphere, capsule or cylinder");
+  add_length("size", &ShapeParameters::size, {"box"}, "edge lengths of a box");
+  add_length("height", &ShapeParameters::height, {"capsule", "cylinder"},
+             "length along the local z axis of a cylinder, or of a capsule without its hemispheres");
   d.add("normal", &ShapeParameters::normal,
         "outward normal of a half_space, of any length, in place of `rotate`")
-      .at_least(-1e6)
-      .at_most(1e6)
+      .between(-1e6, 1e6)
       .only_with("shape", {"half_space"})
       .source("this project");
 }

@@ -18,14 +18,12 @@ class ConstantLoad final : public Energy {
     static void declare(Declaration<PointForce>& d) {
       d.add("point", &PointForce::point, "point in the rest shape; the nearest vertex receives the force")
           .unit("m")
-          .at_least(-bounds::largest_coordinate)
-          .at_most(bounds::largest_coordinate)
+          .between(-bounds::largest_coordinate, bounds::largest_coordinate)
           .required()
           .source("this project");
       d.add("force", &PointForce::force, "total force")
           .unit("N")
-          .at_least(-bounds::largest_load)
-          .at_most(bounds::largest_load)
+          .between(-bounds::largest_load, bounds::largest_load)
           .required()
           .source("this project");
     }
@@ -37,8 +35,7 @@ class ConstantLoad final : public Energy {
   static void declare(Declaration<ConstantLoad>& d) {
     d.add("force_density", &ConstantLoad::force_density, "force per rest area on the whole cloth")
         .unit("N/m²")
-        .at_least(-bounds::largest_load)
-        .at_most(bounds::largest_load)
+        .between(-bounds::largest_load, bounds::largest_load)
         .source("this project");
     d.add_sections("points", &ConstantLoad::points, "forces on single vertices").source("this project");
   }

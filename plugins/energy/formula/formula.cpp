@@ -23,8 +23,7 @@ void Parameters::declare(Declaration<Parameters>& d) {
       "element that the formula is about; decides which symbols it has");
   d.add(constants_key, &Parameters::constants,
         "numbers with names: {NAME: 2} or {NAME: {value: 2, unit: N/m}}, in SI units")
-      .at_least(-1e15)
-      .at_most(1e15);
+      .between(-1e15, 1e15);
   d.add("where", &Parameters::where,
         "sub-expressions with names: {NAME: \"…\"}; each may use those above it");
   d.add("density", &Parameters::density,

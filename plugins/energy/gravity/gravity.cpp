@@ -5,8 +5,7 @@ struct Gravity {
   static void declare(drape::Declaration<Gravity>& d) {
     d.add("acceleration", &Gravity::acceleration, "acceleration of free fall")
         .unit("m/s²")
-        .at_least(-1e7)
-        .at_most(1e7)
+        .between(-1e7, 1e7)
         .source("standard gravity, rounded; z is up");
   }
 };

@@ -135,16 +135,14 @@ class Pressure final : public Energy {
     d.add("pressure", &Pressure::pressure,
           "pressure along the normal of every triangle; negative for suction")
         .unit("Pa")
-        .at_least(-bounds::largest_load)
-        .at_most(bounds::largest_load)
+        .between(-bounds::largest_load, bounds::largest_load)
         .required()
         .source("this project");
     d.add("centre", &Pressure::centre,
           "apex of the cone that closes an open cloth; it has no effect on a pinned border or a closed "
           "mesh")
         .unit("m")
-        .at_least(-bounds::largest_coordinate)
-        .at_most(bounds::largest_coordinate)
+        .between(-bounds::largest_coordinate, bounds::largest_coordinate)
         .source("this project");
   }
 

@@ -159,13 +159,11 @@ class StrainLimit final : public Energy {
   static void declare(Declaration<StrainLimit>& d) {
     d.add("limit", &StrainLimit::limit, "largest principal stretch s of every triangle, never reached")
         .unit("1")
-        .at_least(1.0001)
-        .at_most(100)
+        .between(1.0001, 100)
         .source("our default; cotton 1.0608 and wool-lycra 1.134: Li et al. 2021");
     d.add("stiffness", &StrainLimit::stiffness, "κ_s, stiffness of the barrier: energy per volume")
         .unit("Pa")
-        .at_least(1e-9)
-        .at_most(bounds::largest_modulus)
+        .between(1e-9, bounds::largest_modulus)
         .source("Li et al. 2021, section 5");
   }
 

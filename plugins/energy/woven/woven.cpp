@@ -17,7 +17,7 @@ struct TensionCurves {
   static void declare(Declaration<Self>& d) {
     const auto curve = [&](const char* name, std::vector<double> TensionCurves::*member,
                            const char* description) {
-      d.add(name, member, description).at_least(0).at_most(bounds::largest_modulus);
+      d.add(name, member, description).between(0, bounds::largest_modulus);
     };
     curve(
         "warp_tension", &TensionCurves::warp_tension,

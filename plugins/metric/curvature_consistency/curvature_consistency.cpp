@@ -64,8 +64,7 @@ class CurvatureConsistency : public Metric {
     static void declare(Declaration<Parameters>& d) {
       d.add("rings", &Parameters::rings,
             "how many edges away from a vertex the quadric fit of its curvature reaches")
-          .at_least(1)
-          .at_most(50)
+          .between(1, 50)
           .source("Panozzo et al. 2010; libigl's default is 5");
     }
   };

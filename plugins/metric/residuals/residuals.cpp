@@ -17,8 +17,7 @@ class Residuals : public Metric {
     d.add("step_size", &Residuals::step_size,
           "h of the implicit step whose Newton direction the decrement measures")
         .unit("s")
-        .at_least(bounds::smallest_time_step)
-        .at_most(bounds::largest_time_step)
+        .between(bounds::smallest_time_step, bounds::largest_time_step)
         .source("Li et al. 2021 (C-IPC)");
   }
 

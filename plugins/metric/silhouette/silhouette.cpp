@@ -121,8 +121,7 @@ class Silhouette : public Metric {
 
   static void declare(Declaration<Silhouette>& d) {
     d.add("resolution", &Silhouette::resolution, "pixels along the diagonal of the rest shape")
-        .at_least(16)
-        .at_most(4096);
+        .between(16, 4096);
   }
 
   MetricScope scope() const override { return MetricScope::pair; }

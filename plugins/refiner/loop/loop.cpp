@@ -21,8 +21,7 @@ class LoopRefiner : public Refiner {
           "border vertices whose interior rest angle differs from 180 degrees by more than this are "
           "corners and are interpolated; others are smoothed")
         .unit("degree")
-        .at_least(0)
-        .at_most(360)
+        .between(0, 360)
         .source("docs/theory/method.md, section 4");
   }
 

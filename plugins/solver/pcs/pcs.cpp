@@ -57,8 +57,7 @@ struct PcsSolver : Progression {
     d.add("depth", &PcsSolver::depth,
           "how many levels above a coarse level the Hessian is that the Galerkin product restricts, at "
           "most the finest; for energies that are evaluated on the finest level")
-        .at_least(1)
-        .at_most(8);
+        .between(1, 8);
     d.add_choice(
          "membranes", &PcsSolver::effective, {{"plain", false}, {"effective", true}},
          "how membranes of coarse levels act, unless they are seen by the refiner: by their own laws, or "

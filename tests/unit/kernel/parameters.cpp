@@ -43,7 +43,7 @@ struct Everything {
     using E = Everything;
     d.add("step_size", &E::step_size, "step of the flow").unit("s").above(0).source("PCS eq. 2");
     d.add("fraction", &E::fraction).unit("1").at_least(0).below(1);
-    d.add("count", &E::count).at_least(1).at_most(10);
+    d.add("count", &E::count).between(1, 10);
     d.add("on", &E::on);
     d.add("label", &E::label);
     d.add("word", &E::word).choices({"left", "right", "middle"});
