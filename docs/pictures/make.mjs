@@ -40,7 +40,7 @@ function hasRun(results) {
   return complete && commit === build;
 }
 
-/// Runs what has not run yet, from the README's own experiment too.
+/// Runs every experiment that has no results of this build yet; the curtain's is the README's own.
 function runAll() {
   fs.mkdirSync(runs, {recursive: true});
   const readme = fs.readFileSync(path.join(root, 'README.md'), 'utf8');

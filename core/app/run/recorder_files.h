@@ -24,6 +24,7 @@ std::string level_file(const std::string& method, int level, const char* extensi
 /// Seconds since 1970.
 double wall_clock();
 
+// These throw WriteError.
 std::uint64_t size_of_file(const std::filesystem::path& file);  ///< [bytes]
 void truncate_file(const std::filesystem::path& file, std::uint64_t bytes);
 

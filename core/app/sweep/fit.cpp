@@ -69,14 +69,15 @@ const std::string prefix = "factor=";
 
 std::string name_of(double factor) { return prefix + ConfigNode::of(factor).scalar; }
 
-/// To six digits: what a person reads, and far finer than any fit.
-double six_digits(double value) { return parse_number(general_text(value, 6)).value(); }
+/// To so many significant digits.
+double rounded(double value, int digits) { return parse_number(general_text(value, digits)).value(); }
+
+/// What a person reads, and far finer than any fit.
+constexpr int digits_of_values = 6;
 
 const double first_step = std::log(4), last_place = std::log(1024);
 constexpr double least_step = 0.05;      ///< towards a factor that is not known
 constexpr double least_interval = 1e-3;  ///< of the logarithm
-
-double rounded(double factor) { return parse_number(general_text(factor, 4)).value(); }
 
 /// A factor's logarithm with its residual.
 struct Place {
@@ -142,7 +143,8 @@ std::optional<Sweep> FitSetup::sweep(const std::set<double>& factors, const Regi
   source.add("methods", methods);
   for (const double factor : factors) {
     ConfigNode variation, values;
-    for (const ScaledKey& key : keys) values.add(key.path, ConfigNode::of(six_digits(key.value * factor)));
+    for (const ScaledKey& key : keys)
+      values.add(key.path, ConfigNode::of(rounded(key.value * factor, digits_of_values)));
     variation.add("name", ConfigNode::of(name_of(factor)));
     variation.add("set", values);
     variations.items.push_back(variation);
@@ -156,7 +158,7 @@ double FitSample::median() const {
   return values.size() % 2 == 1 ? values[half] : (values[half - 1] + values[half]) / 2;
 }
 
-double FitSample::scaled(const ScaledKey& key) const { return six_digits(key.value * factor); }
+double FitSample::scaled(const ScaledKey& key) const { return rounded(key.value * factor, digits_of_values); }
 
 FitRuns::FitRuns(const FitSetup& setup, const SweepFolder& folder, const SweepOptions& options,
                  const Registry& registry)
@@ -219,7 +221,7 @@ FitSample FitRuns::measured(const Sweep& sweep, double factor) const {
 FitEnd find_factor(const std::function<std::optional<double>(double factor)>& residual_of, int left) {
   const auto at = [&](double x) {
     --left;
-    return residual_of(rounded(std::exp(x)));
+    return residual_of(rounded(std::exp(x), 4));
   };
   const std::optional<double> first = at(0);
   if (!first) return FitEnd::out_of_reach;
