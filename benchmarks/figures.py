@@ -106,11 +106,10 @@ def table1():
         first = next(iter(methods.values()))
         rows.append([scene, str(first["vertices_by_level"][-1]),
                      *(" / ".join(str(counts[m]) for m in methods) + f" of {rows_of}" for rows_of, counts in best[scene]),
-                     " / ".join(str(r["iterations_by_level"][-1]) for r in methods.values()),
-                     " / ".join(figure(r["seconds"] / methods["newton"]["seconds"], 2) for r in methods.values())])
+                     " / ".join(str(r["iterations_by_level"][-1]) for r in methods.values())])
     names = " / ".join(methods)
     return table(["scene", "vertices", f"best on rows of curvature: {names}", "of distance and silhouette", "of energy",
-                  "iterations on the finest level", "total time, relative to direct"], rows, [], "lr")[1:]
+                  "iterations on the finest level"], rows, [], "lr")[1:]
 
 
 def remedies():
