@@ -100,7 +100,7 @@ TEST_CASE("a fit refuses what it cannot do, before it runs anything") {
         "error: --metric: the experiment's metrics have no \"drape_coeficient\"; did you mean "
         "\"drape_coefficient\"?\n");
   CHECK(said("--to 45 --by material.bending --metric energy") ==
-        "error: --metric: the experiment's metrics have no \"energy\", only drape_coefficient, folds, "
+        "error: --metric: the experiment's metrics have no \"energy\"; they are drape_coefficient, folds, "
         "fold_amplitude, largest_stretch, smallest_stretch, mean_stretch\n");
   CHECK(said("--to 45 --by material.bending --set start.perturbation=0") ==
         "error: --starts: every seed gives the same run where \"start.perturbation\" is 0; set it, as in "

@@ -125,10 +125,8 @@ void Commands::require_command(const std::string& word) const {
     if (command->get_name() == word) return;
     if (!command->get_group().empty()) commands.push_back(command->get_name());
   }
-  const std::string near = nearest_word(word, commands);
-  throw std::runtime_error(
-      "there is no command \"" + excerpt(word) + "\"; " +
-      (near.empty() ? "the commands are " + joined(commands) : "did you mean \"" + near + "\"?"));
+  throw std::runtime_error("there is no command \"" + excerpt(word) + "\"; " +
+                           did_you_mean(word, commands, "the commands are " + joined(commands)));
 }
 
 int Commands::run(int argc, char** argv) {

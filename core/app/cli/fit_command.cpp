@@ -42,12 +42,11 @@ void choose_metric(const Experiment& experiment, std::string& metric, ConfigErro
     names.push_back(column.name);
   if (metric.empty() && !names.empty()) metric = names.front();
   if (std::find(names.begin(), names.end(), metric) != names.end()) return;
-  const std::string near = nearest_word(metric, names);
   errors.push_back({{"--metric", 0, 0},
-                    "the experiment's metrics have no \"" + excerpt(metric) + "\"" +
-                        (!near.empty()   ? "; did you mean \"" + near + "\"?"
-                         : names.empty() ? "; name one of `drape list metric` in its \"metrics\""
-                                         : ", only " + joined(names))});
+                    "the experiment's metrics have no \"" + excerpt(metric) + "\"; " +
+                        did_you_mean(metric, names,
+                                     names.empty() ? "name one of `drape list metric` in its \"metrics\""
+                                                   : "they are " + joined(names))});
 }
 
 /// Checks the request, and completes its setup and folder.

@@ -41,9 +41,8 @@ int describe_plugin(const std::string& name, const Registry& registry) {
   }
   for (std::size_t k = 0; k < found.size(); ++k) std::cout << (k > 0 ? "\n" : "") << found[k];
   if (!found.empty()) return exit_done;
-  const std::string near = nearest_word(name, names);
   throw std::runtime_error("no plugin is called \"" + excerpt(name) + "\"; " +
-                           (near.empty() ? "`drape list` names them all" : "did you mean \"" + near + "\"?"));
+                           did_you_mean(name, names, "`drape list` names them all"));
 }
 
 int print_schema(const std::string& of, const Registry& registry) {

@@ -152,9 +152,9 @@ ConfigNode material_of(const Table& table, std::size_t row, const std::string& n
 }
 
 std::string remedy(const std::string& name, const std::vector<std::string>& names) {
-  std::string nearest = nearest_word(name, names);
-  if (nearest.empty()) nearest = only_word_with(name, names);
-  return nearest.empty() ? "it has " + joined(names) : "did you mean \"" + nearest + "\"?";
+  const std::string only = only_word_with(name, names);
+  return did_you_mean(name, names,
+                      only.empty() ? "it has " + joined(names) : "did you mean \"" + only + "\"?");
 }
 
 ConfigNode row_of_file(const ConfigNode& fabric, std::optional<double> thickness, ConfigErrors& errors) {

@@ -115,12 +115,9 @@ std::map<std::string, double> parsed(const Names& bounds, const Names& known) {
     if (equals == std::string::npos || equals == 0)
       throw std::runtime_error("--bound " + text + ": write it as KEY=RATIO, as in --bound seconds=1.1");
     const std::string key = text.substr(0, equals);
-    if (std::find(known.begin(), known.end(), key) == known.end()) {
-      const std::string near = nearest_word(key, known);
-      throw std::runtime_error(
-          "--bound " + excerpt(text) + ": there is no quantity \"" + excerpt(key) + "\"; " +
-          (near.empty() ? "there are " + joined(known) : "did you mean \"" + near + "\"?"));
-    }
+    if (std::find(known.begin(), known.end(), key) == known.end())
+      throw std::runtime_error("--bound " + excerpt(text) + ": there is no quantity \"" + excerpt(key) +
+                               "\"; " + did_you_mean(key, known, "there are " + joined(known)));
     const std::optional<double> ratio = parse_number(text.substr(equals + 1));
     if (!ratio || !std::isfinite(*ratio) || *ratio <= 0)
       throw std::runtime_error("--bound " + text + ": the ratio must be a number above 0, as in --bound " +

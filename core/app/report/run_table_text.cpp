@@ -51,10 +51,8 @@ std::vector<std::string> chosen_columns(const RunTable& table, const std::vector
   for (const std::string& column : chosen) {
     if (std::find(known.begin(), known.end(), column) != known.end()) continue;
     if (!table.has_results) continue;  // a metric might declare it
-    const std::string near = nearest_word(column, known);
-    throw std::runtime_error(
-        "there is no column \"" + excerpt(column) + "\"; " +
-        (near.empty() ? "the columns are " + joined(known) : "did you mean \"" + near + "\"?"));
+    throw std::runtime_error("there is no column \"" + excerpt(column) + "\"; " +
+                             did_you_mean(column, known, "the columns are " + joined(known)));
   }
   if (!chosen.empty()) return chosen;
   std::vector<std::string> columns;

@@ -78,10 +78,10 @@ class FollowedSurface {
 std::string unknown_obstacle(const Experiment& e, const std::string& obstacle) {
   std::vector<std::string> names = e.obstacle_names();
   std::erase(names, "");
-  const std::string near = nearest_word(obstacle, names);
-  if (!near.empty()) return "does not exist; did you mean \"" + excerpt(near) + "\"?";
-  return "does not exist; " + (names.empty() ? "give an obstacle a \"name\", or follow it by its index from 0"
-                                             : "the names are " + joined(names));
+  return "does not exist; " +
+         did_you_mean(obstacle, names,
+                      names.empty() ? "give an obstacle a \"name\", or follow it by its index from 0"
+                                    : "the names are " + joined(names));
 }
 
 /// Another pin of a pin's vertices on a level that does not follow its obstacle; empty without one.

@@ -60,9 +60,8 @@ std::string fault(const ConfigNode& resolved, const std::string& path) {
   }
   std::vector<std::string> all;
   list_numbers(resolved, "", all);
-  const std::string near = nearest_word(path, all);
-  return "the experiment has no number " + name +
-         (near.empty() ? "; `drape describe experiment` lists its keys" : "; did you mean \"" + near + "\"?");
+  return "the experiment has no number " + name + "; " +
+         did_you_mean(path, all, "`drape describe experiment` lists its keys");
 }
 
 const std::string prefix = "factor=";

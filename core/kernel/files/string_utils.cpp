@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cctype>
 
+#include "core/kernel/files/message_text.h"
+
 namespace drape {
 namespace {
 
@@ -40,6 +42,12 @@ std::string nearest_word(const std::string& typed, const std::vector<std::string
     nearest = word;
   }
   return nearest;
+}
+
+std::string did_you_mean(const std::string& typed, const std::vector<std::string>& words,
+                         const std::string& otherwise) {
+  const std::string nearest = nearest_word(typed, words);
+  return nearest.empty() ? otherwise : "did you mean \"" + excerpt(nearest) + "\"?";
 }
 
 std::string only_word_with(const std::string& part, const std::vector<std::string>& words) {

@@ -8,6 +8,10 @@ namespace drape {
 /// The word closest to `typed`, or "" if none is close; ignores case and treats - as _.
 std::string nearest_word(const std::string& typed, const std::vector<std::string>& words);
 
+/// `did you mean "word"?` by nearest_word, or `otherwise` if no word is close.
+std::string did_you_mean(const std::string& typed, const std::vector<std::string>& words,
+                         const std::string& otherwise);
+
 /// The only word that contains `part`, of three letters or more, or "" without one or with several; ignores
 /// case and treats - as _.
 std::string only_word_with(const std::string& part, const std::vector<std::string>& words);

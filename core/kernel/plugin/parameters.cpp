@@ -66,9 +66,9 @@ void check_scalar(const std::string& type, const std::string& label, const Confi
                   const Parameter& p, ConfigErrors& errors) {
   const std::string fault = scalar_fault(type, node, p);
   if (fault.empty()) return;
-  const std::string nearest = node.kind == NodeKind::scalar ? nearest_word(node.scalar, p.choices) : "";
+  const std::string hint = node.kind == NodeKind::scalar ? did_you_mean(node.scalar, p.choices, "") : "";
   errors.push_back({node.where, label + " must be " + fault + ", not " + node.shown() +
-                                    (nearest.empty() ? "" : "; did you mean \"" + nearest + "\"?")});
+                                    (hint.empty() ? "" : "; " + hint)});
 }
 
 void check_list(const ConfigNode& node, const Parameter& p, ConfigErrors& errors) {

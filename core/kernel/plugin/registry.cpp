@@ -122,10 +122,10 @@ const RegistryEntry* find_plugin(const Registry& registry, const std::string& ki
   if (const RegistryEntry* entry = registry.find(kind, type->scalar)) return entry;
   std::vector<std::string> names;
   for (const RegistryEntry* entry : registry.of_kind(kind)) names.push_back(entry->name);
-  const std::string nearest = nearest_word(type->scalar, names);
+  const std::string hint = did_you_mean(type->scalar, names, "");
   errors.push_back(
       {type->where, "unknown " + kind + " \"" + excerpt(type->scalar) + "\"; " +
-                        (nearest.empty() ? "" : "did you mean \"" + nearest + "\"? ") +
+                        (hint.empty() ? "" : hint + " ") +
                         (names.empty() ? "no plugin of that kind is loaded" : "known: " + joined(names)) +
                         "; a plugin of your own is given by --plugin or found by DRAPE_PLUGIN_PATH"});
   return nullptr;

@@ -33,10 +33,9 @@ std::string hint_for(const std::string& key, const Schema& schema, const ConfigN
     if (const ConfigNode* written = p.type == "map of numbers" ? map.find(p.name) : nullptr)
       for (const auto& [name, value] : written->entries) constants.push_back(name);
   }
-  std::string nearest = nearest_word(key, known);
-  if (nearest.empty()) nearest = nearest_word(key, constants);
-  if (!nearest.empty()) return "; did you mean \"" + nearest + "\"?";
-  return known.empty() ? "; it takes no keys" : "; known keys are " + joined(known);
+  return did_you_mean(
+      key, known,
+      did_you_mean(key, constants, known.empty() ? "it takes no keys" : "known keys are " + joined(known)));
 }
 
 }  // namespace
@@ -59,8 +58,8 @@ void Schema::read(void* object, const ConfigNode& map, ConfigErrors& errors) con
       errors.push_back({map.key_locations[i], "repeated key \"" + excerpt(key) + "\"" + in +
                                                   "; it is first set at " + map.key_locations[first].text()});
     } else if (known == parameters.end()) {
-      errors.push_back(
-          {map.key_locations[i], "unknown key \"" + excerpt(key) + "\"" + in + hint_for(key, *this, map)});
+      errors.push_back({map.key_locations[i],
+                        "unknown key \"" + excerpt(key) + "\"" + in + "; " + hint_for(key, *this, map)});
     } else {
       const size_t before = errors.size();
       read_parameter(*known, object, node, errors);

@@ -66,9 +66,8 @@ class Checker {
     std::vector<std::string> known = std::move(constants);
     for (const auto& names : {names_of(law_.parts), symbols})
       known.insert(known.end(), names.begin(), names.end());
-    const std::string nearest = nearest_word(node.word, known);
-    throw Fault(node.at, "unknown name " + in_quotes(node.word) + "; " +
-                             (nearest.empty() ? offered : "did you mean \"" + nearest + "\"?"));
+    throw Fault(node.at,
+                "unknown name " + in_quotes(node.word) + "; " + did_you_mean(node.word, known, offered));
   }
 
   Quantity type_of_call(const Node& node) const {
@@ -95,10 +94,8 @@ class Checker {
     std::vector<std::string> known;
     for (const Function& other : functions())
       if (!other.description.empty()) known.push_back(other.name);
-    const std::string nearest = nearest_word(node.word, known);
-    throw Fault(node.at,
-                "unknown function " + in_quotes(node.word) + "; " +
-                    (nearest.empty() ? "known: " + joined(known) : "did you mean \"" + nearest + "\"?"));
+    throw Fault(node.at, "unknown function " + in_quotes(node.word) + "; " +
+                             did_you_mean(node.word, known, "known: " + joined(known)));
   }
 
   const Quantity& argument(const Node& node, std::size_t i) const { return types_[node.arguments[i]]; }
