@@ -33,15 +33,22 @@ std::string said_of_mesh(const std::string& mesh, const std::string& mesh_name =
 }  // namespace
 
 TEST_CASE("a valid mesh file runs, and its results can be run again from their own config") {
-  const Scratch folder;
-  folder.write("cloth.obj", sheet);
-  folder.write("e.yaml", experiment_with("cloth.obj"));
-  const std::string options = " --quiet --no-report --threads 1 --method pcs --out ";
-  drape_ends("run e.yaml" + options + "first", folder);
-  std::filesystem::remove(folder / "cloth.obj");
-  drape_ends("run first/config.yaml" + options + "second", folder);
-  for (const std::string file : {"config.yaml", "rest/l0.ply", "levels/pcs_l0.ply", "levels/pcs_l1.ply"})
-    CHECK((text_of(folder / ("first/" + file)) == text_of(folder / ("second/" + file))));
+  // Coordinates are converted once, though both results folders name a file.
+  for (const std::string coordinates : {"", ", unit: inch, up: y, scale: 20, rotate: [0, 0, 90]"}) {
+    const Scratch folder;
+    folder.write("cloth.obj", sheet);
+    folder.write("e.yaml",
+                 replaced(replaced(experiment_with("cloth.obj"), "cloth.obj", "cloth.obj" + coordinates),
+                          "start: {scale: [0.9, 0.9, 1]",
+                          coordinates.empty() ? "start: {scale: [0.9, 0.9, 1]"
+                                              : "start: {file: cloth.obj, scale: [19, 20, 19]"));
+    const std::string options = " --quiet --no-report --threads 1 --method pcs --out ";
+    drape_ends("run e.yaml" + options + "first", folder);
+    std::filesystem::remove(folder / "cloth.obj");
+    drape_ends("run first/config.yaml" + options + "second", folder);
+    for (const std::string file : {"config.yaml", "rest/l0.ply", "levels/pcs_l0.ply", "levels/pcs_l1.ply"})
+      CHECK((text_of(folder / ("first/" + file)) == text_of(folder / ("second/" + file))));
+  }
 }
 
 TEST_CASE("a missing or unreadable mesh file") {

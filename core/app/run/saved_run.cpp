@@ -53,8 +53,23 @@ nlohmann::ordered_json results_of(const fs::path& folder) {
 ConfigNode saved_config(const Experiment& experiment) {
   ConfigNode config = experiment.resolved;
   const ExperimentParameters& p = experiment.parameters;
-  if (p.cloth.shape == "file") set_path(config, "cloth.file", ConfigNode::of("rest/l0.ply"));
-  if (!p.start.file.empty()) set_path(config, "start.file", ConfigNode::of("start.ply"));
+  if (!p.start.file.empty()) {
+    StartParameters start = p.start;  // of a copy of the file as it was
+    start.unit = start.unit.value_or(p.cloth.unit);
+    start.up = start.up.value_or(p.cloth.up);
+    set_path(config, "start", schema_of<StartParameters>().write(&start));
+    set_path(config, "start.file", ConfigNode::of("start.ply"));
+  }
+  if (p.cloth.shape == "file") {
+    ClothParameters cloth = p.cloth;
+    const ClothParameters as_written;  // in metres, with z up, and transformed
+    cloth.unit = as_written.unit;
+    cloth.up = as_written.up;
+    cloth.scale = as_written.scale;
+    cloth.rotate = as_written.rotate;
+    set_path(config, "cloth", schema_of<ClothParameters>().write(&cloth));
+    set_path(config, "cloth.file", ConfigNode::of("rest/l0.ply"));
+  }
   if (!p.reference.file.empty()) set_path(config, "reference.file", ConfigNode::of("reference.ply"));
   return config;
 }
