@@ -65,7 +65,7 @@ TEST_CASE("a run writes snapshots and errors, against its own end and a tighter 
   const Csv rows(folder / "out/errors.csv");
   std::size_t row = 0;
   for (const std::string method : {"pcs", "cascadic", "newton"}) {
-    double flops = 0;
+    double flops = 0, cost = 0;
     int iterations = 0;
     for (int l = 0; l < 2; ++l) {
       const Json& level = all["methods"][method]["levels"][l];
@@ -80,7 +80,8 @@ TEST_CASE("a run writes snapshots and errors, against its own end and a tighter 
       const TriangleMesh last = read_mesh(folder / ("out/" + level["mesh"].get<std::string>()));
       CHECK((states.positions(count - 1) - last.vertices).norm() < 1e-5);
       CHECK(snapshots["iterations"].back() == level["iterations"]);
-      if (method == "newton") flops = 0, iterations = 0;  // every level begins afresh
+      if (method == "newton") flops = 0, iterations = 0, cost = 0;  // every level begins afresh
+      cost += level["seconds"].get<double>();
       flops += level["flops"].get<double>();
       iterations += level["iterations"].get<int>();
       double seconds = 0;
@@ -89,7 +90,7 @@ TEST_CASE("a run writes snapshots and errors, against its own end and a tighter 
         const auto number = [&](const char* column) { return rows.number(row, column).value(); };
         CHECK(rows.text(row, "method") == method);
         CHECK(number("level") == l);
-        CHECK(number("iteration") == snapshots["iterations"][k]);
+        CHECK(number("level_iterations") == snapshots["iterations"][k]);
         CHECK(number("vertices") == vertices);
         CHECK(number("seconds") >= seconds);
         seconds = number("seconds");
@@ -99,6 +100,7 @@ TEST_CASE("a run writes snapshots and errors, against its own end and a tighter 
           CHECK(number(column) >= 0);
         if (k + 1 < count) continue;
         CHECK(number("flops") == Approx(flops));
+        CHECK(number("seconds") == Approx(cost));
         CHECK(number("iterations") == iterations);
         const bool end = l == 1;
         CHECK((number("own_rms") == 0) == end);

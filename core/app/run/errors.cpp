@@ -109,7 +109,7 @@ nlohmann::ordered_json ErrorTable::add(const std::string& method, const LevelRes
 void ErrorTable::write(const Positions* reference, const std::function<bool()>& stop,
                        const std::function<void(const std::string&)>& fault) {
   const int finest = scene_.finest();
-  std::string text = "method,level,iteration,seconds,iterations,flops,vertices";
+  std::string text = "method,level,level_iterations,seconds,iterations,flops,vertices";
   for (const char* target : error_targets)
     for (const ErrorMeasure& measure : measures_) text += "," + std::string(target) + "_" + measure.name;
   text += "\n";

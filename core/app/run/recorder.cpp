@@ -145,6 +145,7 @@ void Recorder::method_started(const std::string& method) {
 void Recorder::level_started(int level) {
   snapshots_.begin_level();
   s_.last = Cost();
+  s_.overhead_before = s_.overhead;
   log({{"event", "level_started"}, {"method", s_.method}, {"level", level}});
 }
 
@@ -181,7 +182,7 @@ void Recorder::iteration(const IterationRow& r, const Positions& x) {
   require_written(iterations_, "iterations.csv");
 }
 
-Recorder::Json Recorder::state_entry(const LevelResult& r) {
+Recorder::Json Recorder::state_entry(const LevelResult& r, const Cost& cost) {
   const Level& level = scene_.hierarchy.levels[r.level];
   const LevelModel model = scene_.model(r.level)->with_stiffness(r.contact_stiffness);
   const double energy = model.energy(r.x);
@@ -205,7 +206,7 @@ Recorder::Json Recorder::state_entry(const LevelResult& r) {
           {"factorisations", r.factorisations},
           {"flops", r.flops},
           {"analyses", r.analyses},
-          {"seconds", r.seconds},
+          {"seconds", cost.seconds},
           {"seconds_by_phase", r.seconds_by_phase},
           {"energy", finite_or_null(energy)},
           {"energy_parts", parts},
@@ -242,17 +243,18 @@ void Recorder::level_finished(const LevelResult& r) {
   const std::string ply = ply_of(state);
   write_state(state, ply);
   Json& entry = method_entry();
-  entry["levels"].push_back(state_entry(r));
-  entry["levels"].back()["mesh_checksum"] = checksum_of(ply);
   // By the clock of the rows, which includes the setup of the objective; a level's own seconds exclude it.
-  const Cost cost = {std::max(r.seconds, s_.last.seconds), r.iterations, r.flops};
+  const double own = r.seconds - (s_.overhead - s_.overhead_before);
+  const Cost cost = {std::max(own, s_.last.seconds), r.iterations, r.flops};
+  entry["levels"].push_back(state_entry(r, cost));
+  entry["levels"].back()["mesh_checksum"] = checksum_of(ply);
   if (snapshots_.any())
     entry["levels"].back()["snapshots"] = errors_.add(s_.method, r, snapshots_.end_level(cost, r.x),
                                                       r.from_initial_state ? Cost() : s_.spent, s_.spent);
   s_.states.push_back(state);
   s_.spent = s_.spent + cost;
   follow_schedule();
-  entry["seconds"] = entry["seconds"].get<double>() + r.seconds;
+  entry["seconds"] = entry["seconds"].get<double>() + cost.seconds;
   entry["peak_memory_bytes"] = std::max(entry["peak_memory_bytes"].get<std::int64_t>(), peak_memory_bytes());
   save();
   log({{"event", "level_finished"},
@@ -260,8 +262,8 @@ void Recorder::level_finished(const LevelResult& r) {
        {"level", r.level},
        {"status", to_string(r.outcome)},
        {"message", r.message},
-       {"seconds", r.seconds}});
-  s_.overhead += watch.seconds();
+       {"seconds", cost.seconds}});
+  exclude(watch.seconds());
 }
 
 void Recorder::run_finished(bool complete) {

@@ -38,8 +38,9 @@ class Recorder : public Observer {
     std::vector<RecordedState> states;     ///< all levels so far, in order
     SnapshotRecorder::State snapshots;
     ErrorTable::State measured;
-    Cost spent, last;     ///< of the method's levels before this one; of this level so far
-    double overhead = 0;  ///< time that recording took between the levels of the method [s]
+    Cost spent, last;            ///< of the method's levels before this one; of this level so far
+    double overhead = 0;         ///< time of the method that recording took [s]
+    double overhead_before = 0;  ///< the same before this level
     std::uint64_t iterations_bytes = 0, log_bytes = 0;  ///< sizes of its files
     /// The furthest that a level has come to, that of the obstacles' files; without values at the start.
     LoadSteppingState last_load;
@@ -58,6 +59,8 @@ class Recorder : public Observer {
   void warm_started_from(const std::string& where);
 
   void method_started(const std::string& method);
+  /// Does not count the time as the method's [s].
+  void exclude(double seconds) { s_.overhead += seconds; }
   /// Evaluates the metrics on all finished levels and pairs of them, and writes results.json. A failed method
   /// keeps the results of its earlier levels.
   void method_finished(const std::vector<LevelResult>& results,
@@ -100,7 +103,7 @@ class Recorder : public Observer {
   /// Throws WriteError if the last write to iterations.csv or log.jsonl failed.
   void require_written(const std::ofstream& stream, const char* name) const;
   Json& method_entry() { return results_["methods"][s_.method]; }
-  Json state_entry(const LevelResult& result);
+  Json state_entry(const LevelResult& result, const Cost& cost);
   /// Counts intersecting pairs and logs the first ones; nothing without contact.
   std::optional<int> intersections(int level, const Positions& x);
   /// A metric's result; the error of a metric that throws goes to `entry`.
