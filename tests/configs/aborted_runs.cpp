@@ -80,6 +80,40 @@ TEST_CASE("A method that throws has failed, with level and cause, and the others
   }
 }
 
+TEST_CASE("A method's result does not rest on its word") {
+  const std::pair<std::string, std::string> causes[] = {
+      {"no_level", "the method solved no level"},
+      {"level_nine", "the method reported level 9; the experiment's finest is level 1"},
+      {"no_vertices", "the method reported a state of level 1 with 0 vertices; the level has 121"},
+      {"not_a_number", "the method reported a state of level 1 that is not finite"},
+      {"to_nobody", "the method returned the results of 2 levels and reported 1 to its observer"}};
+  for (const auto& [reports, cause] : causes) {
+    INFO(reports);
+    const Scratch folder;
+    write_experiment(folder, "{type: failing, level: 1, reports: " + reports + "}");
+    CHECK(drape_with("run e.yaml --out out --no-report --quiet --method odd", folder.path, with_failing)
+              .exit_code == drape::exit_not_converged);
+    const Json odd = results_in(folder)["methods"]["odd"];
+    CHECK(odd["status"] == "failed");
+    CHECK(odd["levels"].back()["message"] == cause);
+  }
+  const Scratch folder;
+  const std::string run =
+      "run e.yaml --out out --no-report --quiet --method odd --set reference=lowest --overwrite";
+  write_experiment(folder, "{type: failing, level: 9}");
+  CHECK(drape_with(run, folder.path, with_failing).exit_code == drape::exit_not_converged);
+  const Json all = results_in(folder), levels = all["methods"]["odd"]["levels"];
+  CHECK(levels[0]["status"] == "converged");  // by its own objective, which the run does not know
+  CHECK(levels[1]["status"] == "stalled");
+  CHECK_THAT(levels[1]["message"].get<std::string>(),
+             StartsWith("the method says that it converged; the force residual is "));
+  CHECK_FALSE(all.contains("reference"));
+  write_experiment(folder, "{type: failing, level: 0, reports: moved_pins}");
+  CHECK(drape_with(run, folder.path, with_failing).exit_code == drape::exit_not_converged);
+  CHECK(results_in(folder)["methods"]["odd"]["levels"][0]["message"] ==
+        "the method says that it converged; a pin is 0.173 m off its target");
+}
+
 TEST_CASE("An energy that throws fails every method that evaluates it, where it does") {
   const Scratch folder;
   SECTION("while a level is solved") {

@@ -1,6 +1,7 @@
-// An energy and a method that fail in the middle of a run.
+// An energy and a method that fail in the middle of a run, or report what is not so.
 
 #include <atomic>
+#include <cmath>
 #include <cstdlib>
 #include <new>
 #include <stdexcept>
@@ -55,12 +56,15 @@ struct FailingEnergy final : drape::Energy {
 };
 
 enum class Throws { nothing, error, memory, other };
+enum class Reports { starts, no_level, level_nine, no_vertices, not_a_number, to_nobody, moved_pins };
 
-/// Takes every level's start for its result. On one level it first has a command run, and throws.
+/// Takes every level's start for a converged result. On one level it first has a command run, and throws, or
+/// reports something else.
 struct FailingSolver final : drape::Solver {
   int level = 0;
   std::string command;
   Throws throws = Throws::nothing;
+  Reports reports = Reports::starts;
   drape::NewtonParameters newton;  // which every method is given
   static void declare(drape::Declaration<FailingSolver>& d) {
     using S = FailingSolver;
@@ -73,20 +77,34 @@ struct FailingSolver final : drape::Solver {
                   {"other", Throws::other}},
                  "what it throws after that")
         .source("test");
+    d.add_choice("reports", &S::reports,
+                 {{"starts", Reports::starts},
+                  {"no_level", Reports::no_level},
+                  {"level_nine", Reports::level_nine},
+                  {"no_vertices", Reports::no_vertices},
+                  {"not_a_number", Reports::not_a_number},
+                  {"to_nobody", Reports::to_nobody},
+                  {"moved_pins", Reports::moved_pins}},
+                 "what it reports there")
+        .source("test");
     d.add_section("newton", &S::newton, "not used");
   }
 
   std::vector<drape::LevelResult> solve(const drape::Problem& problem,
                                         drape::Observer& observer) const override {
     std::vector<drape::LevelResult> results;
-    for (int l = 0; l <= problem.finest(); ++l) {
+    for (int l = 0; l <= problem.finest() && reports != Reports::no_level; ++l) {
       observer.level_started(l);
       if (l == level) fail();
       drape::LevelResult result;
       result.level = l;
       result.x = problem.starts[l];
+      if (l == level && reports == Reports::level_nine) result.level = 9;
+      if (l == level && reports == Reports::no_vertices) result.x.resize(0, 3);
+      if (l == level && reports == Reports::not_a_number) result.x(0, 0) = std::nan("");
+      if (l == level && reports == Reports::moved_pins) result.x.array() += 0.1;
       results.push_back(result);
-      observer.level_finished(result);
+      if (l != level || reports != Reports::to_nobody) observer.level_finished(result);
     }
     return results;
   }

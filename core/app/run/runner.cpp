@@ -7,6 +7,7 @@
 #include "core/app/files/yaml_file.h"
 #include "core/app/report/report.h"
 #include "core/app/run/recorder_files.h"
+#include "core/app/run/run_observer.h"
 #include "core/app/scene/scene.h"
 #include "core/app/view/live_view.h"
 #include "core/kernel/files/file.h"
@@ -18,103 +19,6 @@
 namespace drape {
 
 namespace {
-
-/// The interval of checkpoints is at least this many times the time to save one.
-constexpr double save_time_ratio = 100;
-
-/// Passes everything on to the recorder, the progress bar and other observers. Saves checkpoints: at the
-/// beginning of every method and level, on a stop request, and from time to time. Results do not depend on
-/// it.
-class RunObserver : public Observer {
- public:
-  /// `begun` is the run's state at its beginning.
-  RunObserver(const RunFolder& folder, Recorder& recorder, Progress& progress, const RunOptions& options,
-              Checkpoint begun)
-      : folder_(folder.path()),
-        recorder_(recorder),
-        options_(options),
-        now_(std::move(begun)),
-        method_clock_(now_.state.seconds),
-        viewers_{&progress} {
-    for (Observer* viewer : {static_cast<Observer*>(options.view), options.observer})
-      if (viewer) viewers_.push_back(viewer);
-  }
-
-  /// The state at this point; its method is the current one.
-  const Checkpoint& now() const { return now_; }
-  int level() const { return level_; }
-
-  /// An interrupted method goes on from the present state.
-  void method_started(int method, bool resumable, bool interrupted) {
-    resumable_ = resumable;
-    if (!interrupted) {
-      now_.method = method;
-      now_.state = {};
-      now_.state.level = now_.first_level;
-      method_clock_ = Stopwatch();
-      save();
-    }
-    level_ = now_.state.level;
-  }
-  void method_finished(bool converged) { now_.all_converged = now_.all_converged && converged; }
-
-  void level_started(int level) override {
-    level_ = level;
-    recorder_.level_started(level);
-    for (Observer* viewer : viewers_) viewer->level_started(level);
-  }
-  void iteration(const IterationRow& row, const Positions& x) override {
-    recorder_.iteration(row, x);
-    for (Observer* viewer : viewers_) viewer->iteration(row, x);
-  }
-  void increment_finished(const IncrementRow& row, const Positions& x) override {
-    recorder_.increment_finished(row, x);
-    for (Observer* viewer : viewers_) viewer->increment_finished(row, x);
-  }
-  void level_finished(const LevelResult& result) override {
-    recorder_.level_finished(result);
-    now_.state.finished.push_back(result);
-    if (resumable_ && result.outcome != Outcome::cancelled) {
-      now_.state.level = result.level + 1;
-      now_.state.under_way.reset();
-      save();
-    }
-    for (Observer* viewer : viewers_) viewer->level_finished(result);
-  }
-  bool checkpoint_due() override {
-    const double interval = std::max(options_.checkpoint, save_time_ratio * cost_);
-    return resumable_ && (stop_requested() || options_.checkpoint == 0 || since_.seconds() > interval);
-  }
-  void checkpoint(const NewtonState& state) override {
-    now_.state.level = state.so_far.level;
-    now_.state.under_way = state;
-    save();
-  }
-  bool stop_requested() override {
-    return (options_.stop && options_.stop()) || std::ranges::any_of(viewers_, &Observer::stop_requested);
-  }
-  bool refine_requested() override { return std::ranges::any_of(viewers_, &Observer::refine_requested); }
-
- private:
-  void save() {
-    const Stopwatch watch;
-    now_.state.seconds = method_clock_.seconds();
-    now_.recorder = recorder_.state();
-    save_checkpoint(folder_, now_);
-    cost_ = watch.seconds();
-    since_ = Stopwatch();
-  }
-
-  const std::filesystem::path folder_;
-  Recorder& recorder_;
-  const RunOptions& options_;
-  Checkpoint now_;
-  Stopwatch method_clock_, since_;
-  double cost_ = 0;  // of the last checkpoint [s]
-  std::vector<Observer*> viewers_;
-  bool resumable_ = false;
-  int level_ = 0;
-};
 
 /// Shows the results that a method had when the run was interrupted.
 void catch_up(const MethodState& state, Progress& progress, LiveView* view) {
@@ -198,7 +102,7 @@ bool run(const Experiment& experiment, const Scene& scene, const RunOptions& opt
   for (const ScheduleKey& key : experiment.parameters.schedule.keys) changing.push_back(key.parameter);
   Progress progress(experiment.parameters.newton.force_tolerance, experiment.parameters.levels,
                     options.verbosity, scene.load_stepping.get(), changing);
-  RunObserver observer(folder, recorder, progress, options, begun);
+  RunObserver observer(experiment, scene, folder, recorder, progress, options, begun);
 
   bool cancelled = false;
   for (int m = begun.method; m < static_cast<int>(begun.methods.size()) && !cancelled; ++m) {
@@ -214,17 +118,21 @@ bool run(const Experiment& experiment, const Scene& scene, const RunOptions& opt
       recorder.method_started(name);
     observer.method_started(m, solver.can_resume(), interrupted);
     const MethodState state = observer.now().state;
-    std::vector<LevelResult> results;
     std::optional<MethodFailure> failure;
     try {
-      results = solver.resume(scene, state, observer);
+      const std::size_t returned = solver.resume(scene, state, observer).size(),
+                        reported = observer.now().state.finished.size();
+      if (returned == 0) throw std::runtime_error("the method solved no level");
+      if (returned != reported)
+        throw std::runtime_error("the method returned the results of " + std::to_string(returned) +
+                                 " levels and reported " + std::to_string(reported) + " to its observer");
     } catch (const WriteError&) {
       throw;  // concerns the whole run
     } catch (...) {
       failure = {std::min(observer.level(), scene.finest()), message_in_flight()};
-      results = observer.now().state.finished;
       progress.method_failed(failure->level, failure->cause);
     }
+    const std::vector<LevelResult>& results = observer.now().state.finished;
     recorder.method_finished(results, failure);
     bool converged = !failure;
     for (const LevelResult& r : results) {

@@ -107,7 +107,10 @@ class Observer {
   virtual void checkpoint(const NewtonState& state) { (void)state; }
 };
 
-/// A method: a schedule of Newton solves over the levels of a problem.
+/// A method: a schedule of Newton solves over the levels of a problem. Every level that it solves must have
+/// been reported to the observer. A run fails a method that reports a state which is not finite or not of its
+/// level, and does not believe that a level has converged whose pins are off their targets or, on the finest
+/// level, whose forces are not in balance.
 class Solver {
  public:
   static constexpr const char* kind = "solver";  ///< in the registry
