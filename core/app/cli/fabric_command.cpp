@@ -74,7 +74,10 @@ struct FabricOptions {
 
 int print_fabric(const FabricOptions& options) {
   if (options.name.empty()) {
-    if (!options.file.empty()) throw std::runtime_error("--file needs the name or number of a row");
+    if (!options.file.empty()) {
+      for (const std::string& name : fabric_names(options.file)) std::cout << name << "\n";
+      return exit_done;
+    }
     for (const std::string& name : fabric_names()) {
       ConfigErrors none;
       std::cout << padded(name, 22)

@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 #include <optional>
 #include <sstream>
+#include <string_view>
 
 #include "core/app/files/csv.h"
 #include "core/kernel/files/file.h"
@@ -72,10 +72,13 @@ struct Table {
   std::vector<std::vector<std::string>> rows;
 
   Table(std::string name, const std::string& text) : file(std::move(name)) {
-    std::istringstream lines(text);
+    constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
+    std::istringstream lines(text.starts_with(byte_order_mark) ? text.substr(byte_order_mark.size()) : text);
+    char separator = ',';
     for (std::string line; std::getline(lines, line);) {
       if (line.find_first_not_of(" \t\r") == std::string::npos) continue;
-      std::vector<std::string> cells = split(line, ',');
+      if (header.empty() && line.find(',') == std::string::npos) separator = ';';
+      std::vector<std::string> cells = split(line, separator);
       for (std::string& cell : cells) {
         const std::size_t first = cell.find_first_not_of(" \t\r"), last = cell.find_last_not_of(" \t\r");
         cell = first == std::string::npos ? "" : cell.substr(first, last - first + 1);
@@ -226,6 +229,10 @@ void add_fabric(ConfigNode& material, const ConfigNode& fabric, ConfigErrors& er
 }  // namespace
 
 std::vector<std::string> fabric_names() { return own_table().names(); }
+
+std::vector<std::string> fabric_names(const std::filesystem::path& file) {
+  return Table(file.string(), read_file(file)).names();
+}
 
 ConfigNode fabric_row(const ConfigNode& fabric, std::optional<double> thickness, ConfigErrors& errors) {
   if (fabric.kind != ConfigNode::Kind::scalar) return row_of_file(fabric, thickness, errors);

@@ -177,6 +177,15 @@ TEST_CASE("fabrics: a row of a file, whose faults are named") {
   CHECK(m.weft_bending == 9e-6);
   CHECK_FALSE(m.bias_bending);
   CHECK(material_of(row("1")) == m);
+  // As spreadsheets save it.
+  const std::string saved = "\xEF\xBB\xBF" + text_of(file);
+  std::string by_semicolons = saved;
+  std::ranges::replace(by_semicolons, ',', ';');
+  for (const std::string& text : {by_semicolons, saved}) {
+    folder.write("own.csv", text);
+    CHECK(material_of(row("twill")) == m);
+    CHECK(drape_ends("fabric --file own.csv", folder).out == "twill\nlight\nworse\nbare\n");
+  }
   const Experiment e = experiment_from(experiment(row("twill")));
   CHECK(e.parameters.material.from_fabric == "{file: " + file + ", row: twill}");
   CHECK(to_yaml(experiment_from(to_yaml(e.resolved)).resolved) == to_yaml(e.resolved));
