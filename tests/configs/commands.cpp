@@ -99,6 +99,10 @@ TEST_CASE("check of a sweep says so, and checks every variation") {
       flat,
       StartsWith(
           "error: s.yaml: variation \"two\": energy or forces at the start of level 0 are not finite: "));
+  for (const char* command : {"run s.yaml", "fit s.yaml --to 1 --by material.density"})
+    CHECK(refused_by(command, folder.path) ==
+          "error: s.yaml: is a sweep: `drape sweep` runs it, `drape check` checks it\n");
+  CHECK(refused_by("sweep e.yaml", folder.path) == "error: e.yaml: is an experiment: `drape run` runs it\n");
   CHECK_THAT(drape_with("check s.yaml --levels 2", folder.path).err,
              StartsWith("error: s.yaml is a sweep: leave out --set, --levels "));
 }

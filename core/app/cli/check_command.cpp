@@ -17,13 +17,6 @@ namespace drape {
 
 namespace {
 
-/// Whether the file has a key that only sweeps have.
-bool is_sweep_file(const std::string& file) {
-  ConfigErrors unread;
-  const ConfigNode root = read_yaml(file, unread);
-  return root.find("base") || root.find("experiments") || root.find("ablation");
-}
-
 int check_experiment(const ConfigArguments& arguments, const Registry& registry) {
   const LoadedExperiment loaded(arguments, registry);
   ConfigErrors errors;
@@ -100,8 +93,9 @@ void add_check_commands(Commands& commands) {
   arguments->add_to(commands.add_with_plugins(
       "check", "check an experiment or a sweep without running it",
       "drape check configs/sphere.yaml --set newton.step_size=0.1", [arguments](const Registry& registry) {
-        return is_sweep_file(arguments->config) ? check_sweep(*arguments, registry)
-                                                : check_experiment(*arguments, registry);
+        ConfigErrors unread;
+        return is_sweep_source(read_yaml(arguments->config, unread)) ? check_sweep(*arguments, registry)
+                                                                     : check_experiment(*arguments, registry);
       }));
   const auto energy = std::make_shared<std::string>();
   commands

@@ -98,9 +98,15 @@ void sort_by_place(ConfigErrors& errors, const std::string& file) {
   });
 }
 
+bool is_sweep_source(const ConfigNode& source) {
+  return source.find("base") || source.find("experiments") || source.find("ablation");
+}
+
 std::optional<Experiment> read_experiment(const std::filesystem::path& file, const Overrides& overrides,
                                           const Registry& registry, ConfigErrors& errors) {
   ConfigNode source = read_yaml(file, errors);
+  if (errors.empty() && is_sweep_source(source))
+    errors.push_back({{file.string(), 0, 0}, "is a sweep: `drape sweep` runs it, `drape check` checks it"});
   if (!errors.empty()) return std::nullopt;
   for (const Override& o : overrides) set_parameter(source, o.key, o.value, o.option, errors);
   return read_experiment(std::move(source), registry, errors);

@@ -70,6 +70,9 @@ struct Override {
 };
 using Overrides = std::vector<Override>;  ///< in order
 
+/// Whether a file has a key that only sweeps have.
+bool is_sweep_source(const ConfigNode& source);
+
 /// Reads and validates an experiment; empty, with every error appended, if it is not valid.
 std::optional<Experiment> read_experiment(const std::filesystem::path& file, const Overrides& overrides,
                                           const Registry& registry, ConfigErrors& errors);

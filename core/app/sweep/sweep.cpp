@@ -209,6 +209,8 @@ class Reader {
 std::optional<Sweep> read_sweep(const std::filesystem::path& file, const Registry& registry,
                                 ConfigErrors& errors, std::optional<int> most_levels) {
   ConfigNode source = read_yaml(file, errors);
+  if (errors.empty() && source.find("cloth") && !is_sweep_source(source))
+    errors.push_back({{file.string(), 0, 0}, "is an experiment: `drape run` runs it"});
   if (!errors.empty()) return std::nullopt;
   return read_sweep(std::move(source), registry, errors, most_levels);
 }
