@@ -3,6 +3,7 @@
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 
+#include "core/app/experiment/exit_codes.h"
 #include "core/numerics/mesh_files/io.h"
 #include "tests/support/command.h"
 
@@ -127,6 +128,9 @@ TEST_CASE("SIGKILL at any moment leaves complete files, sufficient for a report"
 
     const Json all = json_in(folder / "out/results.json");
     CHECK(all["complete"] == false);
+    if (!all["methods"].empty() && all["methods"].back()["status"] == "running")
+      CHECK_THAT(drape_ends("table out --columns status,message", folder, drape::exit_not_converged).out,
+                 Catch::Contains("unfinished") && Catch::Contains("drape run --resume out goes on with it"));
     for (const auto& [name, method] : all["methods"].items())
       for (const Json& level : method["levels"])
         CHECK(fs::exists(folder / ("out/" + level["mesh"].get<std::string>())));

@@ -29,7 +29,9 @@ struct IterationSummary {
     double rows = 0;
     for (std::size_t k = 0; k < csv.size(); ++k) {
       if (csv.text(k, "method") != method.name) continue;
-      const bool counts = csv.number(k, "level").value_or(0) >= method.first_level();
+      const double level = csv.number(k, "level").value_or(0);
+      const bool counts =
+          level >= method.first_level() && !method.levels.empty() && level <= method.levels.back().level;
       rows += counts;
       *shortened_steps += counts && csv.number(k, "step_length").value_or(1) < 1;
       note(csv.number(k, "smallest_gap"), csv.number(k, "intersections"));
@@ -59,10 +61,14 @@ OptionalNumber last_error(const RunData& run, const MethodRecord& method, bool p
 
 std::string error_name(const ErrorMeasure& m) { return m.name == energy_gap ? m.name : "error_" + m.name; }
 
+/// Whether the method is under way, or was when its run was interrupted.
+bool is_unfinished(const MethodRecord& method) { return method.status == "running"; }
+
 /// The statuses of the levels, or the one that all have.
 std::string statuses(const MethodRecord& method) {
   std::vector<std::string> words;
   for (const LevelRecord& level : method.levels) words.push_back(level.status);
+  if (is_unfinished(method)) words.emplace_back("unfinished");
   const bool same =
       std::all_of(words.begin(), words.end(), [&](const auto& w) { return w == method.status; });
   return same ? method.status : joined(words);
@@ -128,6 +134,8 @@ TableRow row_of(const RunData& run, const MethodRecord& method) {
   const Values none, &first = several ? method.levels.front().values : none,
                      &last = method.levels.empty() ? none : method.levels.back().values;
   std::string fault, remark;
+  if (is_unfinished(method))
+    fault = "if the run has ended, drape run --resume " + run.folder.string() + " goes on with it\n";
   for (const LevelRecord& level : method.levels)
     if (!level.message.empty())
       (has_converged(level.status) ? remark : fault) +=
