@@ -256,7 +256,9 @@ TEST_CASE("pins that select no vertex, or one that does not exist") {
   const std::string corner = "{region: nearest, point: [1, 0, 0]}";
   check_refused({
       {corner, "{region: ball, point: [5, 5, 5]}",
-       "7:5: pin 1 (ball) selects no vertex of the coarsest level; widen its region"},
+       "7:5: pin 1 (ball) selects no vertex of the coarsest level; widen its region; the rest shape, in "
+       "which it counts, "
+       "spans (0, 0, 0) to (1, 1, 0) m"},
       {corner, "{region: vertices}",
        "7:5: pin 1 (vertices) selects no vertex of the coarsest level; list some under \"vertices\""},
       {corner, "{region: vertices, vertices: [0, 36]}",

@@ -4,6 +4,7 @@
 #include <iterator>
 #include <stdexcept>
 
+#include "core/app/scene/scene_summary.h"
 #include "core/kernel/files/number_text.h"
 #include "core/numerics/mesh/rotation.h"
 #include "core/numerics/model/position_penalty.h"
@@ -198,8 +199,12 @@ void check_selection(const ExperimentParameters& parameters, LoadPart part, std:
   const std::string name = name_of(parameters, part, k);
   const bool by_index = p.region == "vertices";
   if (by_index ? p.vertices.empty() : selected_vertices(p, coarsest, coarsest).empty())
-    errors.push_back({where, name + " selects no vertex of the coarsest level; " +
-                                 (by_index ? "list some under \"vertices\"" : "widen its region")});
+    errors.push_back(
+        {where, name + " selects no vertex of the coarsest level; " +
+                    (by_index ? "list some under \"vertices\""
+                              : "widen its region; the rest shape, in which it counts, spans " +
+                                    point_text(coarsest.rest.vertices.colwise().minCoeff()) + " to " +
+                                    point_text(coarsest.rest.vertices.colwise().maxCoeff()) + " m")});
   else if (!by_index)
     for (const Level& level : levels)
       if (selected_vertices(p, level, coarsest).empty()) {

@@ -36,10 +36,6 @@ class Warnings {
   ConfigErrors& all_;
 };
 
-std::string point_text(const Eigen::Vector3d& p) {
-  return "(" + rounded_text(p.x(), 3) + ", " + rounded_text(p.y(), 3) + ", " + rounded_text(p.z(), 3) + ")";
-}
-
 /// The units in which the numbers of a cloth with this longest extent [m] would be those of a garment, each
 /// with what to do; "" if there is none.
 std::string other_units(const ClothParameters& cloth, double longest) {
@@ -222,6 +218,15 @@ double start_stretch(const Level& level, const Positions& start) {
   return *middle;
 }
 
+void check_membrane(const Experiment& e, Warnings& warnings) {
+  const auto is_membrane = [](const NamedEnergy& named) {
+    return named.energy->role() == EnergyRole::membrane;
+  };
+  if (std::ranges::none_of(e.energies, is_membrane))
+    warnings.add("energies",
+                 "no energy resists stretching, so that the cloth may stretch without end; add neo_hookean");
+}
+
 void check_start(const Experiment& e, const Scene& scene, Warnings& warnings) {
   const double stretch = start_stretch(scene.hierarchy.levels[0], scene.placed[0]);
   if (stretch <= largest_stretch && stretch >= 1 / largest_stretch) return;
@@ -273,6 +278,7 @@ ConfigErrors plausibility_warnings(const Experiment& e, const Scene& scene, cons
   check_size(e.parameters, s, warnings);
   check_welded(e, scene.hierarchy.levels[0], s.median_edge, warnings);
   check_material(e.parameters, s, warnings);
+  check_membrane(e, warnings);
   check_measured(e, s.median_edge, warnings);
   const double coarse_edge = std::ldexp(s.median_edge, s.level);
   check_nearest(e, "pins", e.parameters.pins, scene.hierarchy.levels[0], coarse_edge, warnings);

@@ -123,6 +123,10 @@ std::string length_text(double length) {
   return length < 0.1 ? rounded_text(1e3 * length, 2) + " mm" : rounded_text(length, 2) + " m";
 }
 
+std::string point_text(const Eigen::Vector3d& p) {
+  return "(" + rounded_text(p.x(), 3) + ", " + rounded_text(p.y(), 3) + ", " + rounded_text(p.z(), 3) + ")";
+}
+
 std::string rounded_text(double value, int digits) {
   const double size = std::abs(value);
   if (!(size >= std::pow(10.0, digits - 0.5)) || size > 1e15) return general_text(value, digits);

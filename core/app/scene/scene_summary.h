@@ -34,6 +34,8 @@ std::string length_text(double length);
 
 /// A number with so many significant digits and without exponent, from 1e-4 to 1e15.
 std::string rounded_text(double value, int digits);
+/// "(0.5, 0, 1)"
+std::string point_text(const Eigen::Vector3d& p);
 
 /// A warning for every quantity of a scene that is outside any fabric's range, as after a mistake with a
 /// unit: where it is set, what is usual, and what to do. None of them keeps an experiment from running.
