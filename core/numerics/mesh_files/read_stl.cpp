@@ -63,6 +63,14 @@ TriangleMesh read_binary(const std::filesystem::path& path, std::string_view byt
   return mesh.mesh();
 }
 
+[[noreturn]] void refuse_size(const std::filesystem::path& path, std::string_view bytes) {
+  throw std::runtime_error(
+      path.string() +
+      ": is no STL file: text begins with 'solid', and a binary file has 84 bytes and 50 "
+      "for each of the triangles that it declares; this one has " +
+      std::to_string(bytes.size()) + " bytes");
+}
+
 TriangleMesh read_text(const std::filesystem::path& path, std::string_view bytes) {
   TextReader reader(path, bytes, '\0');
   WeldedMesh mesh;
@@ -89,6 +97,7 @@ TriangleMesh read_text(const std::filesystem::path& path, std::string_view bytes
     }
   }
   if (is_open) reader.fail("the file ends within a facet");
+  if (mesh.empty() && bytes.find('\0') != std::string_view::npos) refuse_size(path, bytes);
   if (mesh.empty()) reader.fail("the file ends without a facet");
   return mesh.mesh();
 }
@@ -99,11 +108,7 @@ TriangleMesh read_stl(const std::filesystem::path& path, std::string_view bytes)
   if (const std::int64_t count = binary_count(bytes); count >= 0) return read_binary(path, bytes, count);
   const std::size_t begin = std::min(bytes.find_first_not_of(" \t\r\n"), bytes.size());
   if (bytes.empty() || bytes.substr(begin).starts_with("solid")) return read_text(path, bytes);
-  throw std::runtime_error(
-      path.string() +
-      ": is no STL file: text begins with 'solid', and a binary file has 84 bytes and 50 "
-      "for each of the triangles that it declares; this one has " +
-      std::to_string(bytes.size()) + " bytes");
+  refuse_size(path, bytes);
 }
 
 }  // namespace drape

@@ -60,6 +60,8 @@ std::vector<Ring> checked_rings(const std::vector<Polygon>& loops) {
       if (!p.allFinite()) refuse("has a coordinate that is not finite");
       ring.emplace_back(p.x(), p.y());
     }
+    if (loops[i].front() == loops[i].back())
+      refuse("ends with its first point again; leave the last one out");
     if (!is_simple(ring) || area(ring) == 0) refuse("crosses or touches itself");
     for (std::size_t j = 0; j < i; ++j) {
       if (cross(ring, rings[j])) refuse("crosses or touches loop " + std::to_string(j));

@@ -250,6 +250,9 @@ TEST_CASE("patterns refuse what cannot be meshed, naming the loop", "[generate]"
                     "polygon: loop 0 (the outer border) has fewer than three points");
   CHECK_THROWS_WITH(mesh({{{0, 0}, {1, 1}, {1, 0}, {0, 1}}}),
                     "polygon: loop 0 (the outer border) crosses or touches itself");
+  CHECK_THROWS_WITH(
+      mesh({{{0, 0}, {1, 0}, {1, 1}, {0, 0}}}),
+      "polygon: loop 0 (the outer border) ends with its first point again; leave the last one out");
   CHECK_THROWS_WITH(mesh({{{0, 0}, {1, 0}, {2, 0}}}),
                     "polygon: loop 0 (the outer border) crosses or touches itself");
   CHECK_THROWS_WITH(mesh({{{0, 0}, {1, NAN}, {2, 0}}}),

@@ -508,6 +508,9 @@ TEST_CASE("malformed STL texts are refused with their line", "[io]") {
       {"solid\nfacet\nfacet\n", ":3: the facet before has no endfacet"},
       {"solid\nhello\n", ":2: no line of an STL file begins with 'hello'"},
       {"solid\nendsolid\n", ":2: the file ends without a facet"},
+      {std::string("solid of a binary file\0\0\0", 25),
+       ": is no STL file: text begins with 'solid', and a binary file has 84 bytes and 50 for each of the "
+       "triangles that it declares; this one has 25 bytes"},
       {"", ": is empty"},
   }));
   const fs::path path = scratch.file("a.stl", text);
