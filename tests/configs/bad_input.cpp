@@ -192,7 +192,9 @@ TEST_CASE("errors of the file system are sentences") {
 }
 
 TEST_CASE("each fault of a key, a value or a plugin is named where it stands") {
-  const std::string own = "; a plugin of your own is given by --plugin or found by DRAPE_PLUGIN_PATH";
+  const std::string own =
+      "; a plugin of your own is given by --plugin or found by DRAPE_PLUGIN_PATH; one registered in Python "
+      "is known to that program alone";
   const std::string energies =
       "known: constant_load, formula, gravity, hinge, midedge_bending, neo_hookean, pressure, "
       "quadratic_bending, strain_limit, stvk, woven";
@@ -290,7 +292,7 @@ TEST_CASE("all errors of a config are listed in file order, those of --set last"
         "error: e.yaml:8:25: unknown energy \"hinje\"; did you mean \"hinge\"? known: constant_load, "
         "formula, gravity, hinge, midedge_bending, "
         "neo_hookean, pressure, quadratic_bending, strain_limit, stvk, woven; a plugin of your own is given "
-        "by --plugin or found by DRAPE_PLUGIN_PATH\n"
+        "by --plugin or found by DRAPE_PLUGIN_PATH; one registered in Python is known to that program alone\n"
         "error: e.yaml:12:28: \"prolongation\" must be \"midpoint\" or \"refiner\", not \"linear\"\n"
         "error: --set newton.max_steps: \"max_steps\" must be an integer, not \"few\"\n");
 }

@@ -127,7 +127,9 @@ const RegistryEntry* find_plugin(const Registry& registry, const std::string& ki
       {type->where, "unknown " + kind + " \"" + excerpt(type->scalar) + "\"; " +
                         (hint.empty() ? "" : hint + " ") +
                         (names.empty() ? "no plugin of that kind is loaded" : "known: " + joined(names)) +
-                        "; a plugin of your own is given by --plugin or found by DRAPE_PLUGIN_PATH"});
+                        "; a plugin of your own is given by --plugin or found by DRAPE_PLUGIN_PATH; one "
+                        "registered in Python "
+                        "is known to that program alone"});
   return nullptr;
 }
 

@@ -185,10 +185,12 @@ TEST_CASE("faults of a node are reported with their location") {
   CHECK(refiner_fault("lopo") ==
         "a.yaml:1:4: unknown refiner \"lopo\"; did you mean \"loop\"? known: linear, loop; a plugin of your "
         "own "
-        "is given by --plugin or found by DRAPE_PLUGIN_PATH");
+        "is given by --plugin or found by DRAPE_PLUGIN_PATH; one registered in Python is known to that "
+        "program alone");
   CHECK(refiner_fault("butterfly") ==
         "a.yaml:1:4: unknown refiner \"butterfly\"; known: linear, loop; a plugin of your own is "
-        "given by --plugin or found by DRAPE_PLUGIN_PATH");
+        "given by --plugin or found by DRAPE_PLUGIN_PATH; one registered in Python is known to that program "
+        "alone");
   CHECK(refiner_fault("{corner_angle: 3}") ==
         "a.yaml:1:4: expected the name of a plugin of kind refiner, or a map with its name as \"type\"");
   CHECK(refiner_fault("[loop]") ==
@@ -209,7 +211,8 @@ TEST_CASE("faults of a node are reported with their location") {
   REQUIRE(errors.size() == 1);
   CHECK(errors[0].text() ==
         "a.yaml:1:4: unknown refiner \"loop\"; no plugin of that kind is loaded; a plugin of your own "
-        "is given by --plugin or found by DRAPE_PLUGIN_PATH");
+        "is given by --plugin or found by DRAPE_PLUGIN_PATH; one registered in Python is known to that "
+        "program alone");
 }
 
 TEST_CASE("an entry describes itself for the terminal and for the reference page") {
