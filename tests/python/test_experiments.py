@@ -130,7 +130,7 @@ def test_results_in_a_folder_are_kept_and_not_overwritten(experiment, tmp_path):
     folder = tmp_path / "r"
     result = experiment.run(out=folder, report=False, progress=False)
     assert result.folder == str(folder) and result.complete
-    with pytest.raises(RuntimeError):
+    with pytest.raises(RuntimeError, match="name another folder with out, or replace them with overwrite=True$"):
         experiment.run(out=folder, report=False, progress=False)
     experiment.run(out=folder, report=False, progress=False, overwrite=True)
     del result

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <vector>
 
+#include "core/app/python/values.h"
 #include "core/app/run/runner.h"
 #include "core/kernel/files/string_utils.h"
 #include "core/kernel/plugin/abi.h"
@@ -56,6 +57,12 @@ void bind_errors(py::module_& m) {
       if (error) std::rethrow_exception(error);
     } catch (const std::logic_error& fault) {
       PyErr_SetString(PyExc_ValueError, fault.what());
+    } catch (const py::builtin_exception&) {
+      throw;
+    } catch (const RunAborted&) {
+      throw;
+    } catch (const std::runtime_error& fault) {
+      PyErr_SetString(PyExc_RuntimeError, in_python(fault.what()).c_str());
     }
   });
 }

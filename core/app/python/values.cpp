@@ -1,6 +1,8 @@
 #include "core/app/python/values.h"
 
 #include <limits>
+#include <regex>
+#include <utility>
 
 #include "core/app/experiment/describe.h"
 #include "core/app/experiment/experiment_path.h"
@@ -163,12 +165,23 @@ ConfigNode with_value(ConfigNode experiment, const std::string& key, const py::o
   return experiment;
 }
 
+std::string in_python(std::string message) {
+  static constexpr std::pair<const char*, const char*> terms[] = {{"--method all", "methods=\"all\""},
+                                                                  {"--method", "methods"},
+                                                                  {"--overwrite", "overwrite=True"},
+                                                                  {"--allow-memory", "allow_memory=True"},
+                                                                  {"--out", "out"}};
+  for (const auto& [option, argument] : terms)
+    message = std::regex_replace(message, std::regex(std::string(option) + "\\b"), argument);
+  return message;
+}
+
 void throw_errors(const ConfigErrors& errors) {
   if (errors.empty()) return;
   const py::module_ types = py::module_::import("drape.experiment");
   py::list faults;
   for (const ConfigError& error : errors)
-    faults.append(types.attr("ConfigFault")(error.message, error.where.file, error.where.line,
+    faults.append(types.attr("ConfigFault")(in_python(error.message), error.where.file, error.where.line,
                                             error.where.column, error.where.key));
   const py::object type = types.attr("ConfigError");
   PyErr_SetObject(type.ptr(), type(faults).ptr());

@@ -51,6 +51,9 @@ std::string option_of(const std::string& key);
 /// Throws drape.ConfigError for a path that is none.
 ConfigNode with_value(ConfigNode experiment, const std::string& key, const py::object& value);
 
+/// A message with the arguments of Experiment.run in place of the command's options.
+std::string in_python(std::string message);
+
 /// Throws a Python exception drape.ConfigError unless the list is empty.
 void throw_errors(const ConfigErrors& errors);
 
