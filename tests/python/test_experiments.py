@@ -5,6 +5,7 @@ import json
 import locale
 import os
 import pathlib
+import pickle
 import re
 import shutil
 import subprocess
@@ -154,6 +155,20 @@ def test_a_temporary_folder_goes_away_and_its_arrays_stay(experiment):
     gc.collect()
     assert not folder.exists()
     assert numpy.array_equal(x, copy)
+
+
+def test_a_result_is_pickled_if_its_folder_stays(experiment, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    kept, temporary = experiment.run(out="r", report=False, progress=False), experiment.run(progress=False)
+    text = pickle.dumps((kept, kept["pcs"].levels[-1]))
+    monkeypatch.chdir("/")
+    result, level = pickle.loads(text)
+    x = drape.read_run(tmp_path / "r")["pcs"].levels[-1].x
+    assert numpy.array_equal(result["pcs"].levels[-1].x, x) and numpy.array_equal(level.x, x)
+    assert result.levels.equals(kept.levels)
+    for part in (temporary, temporary["pcs"].levels[0]):
+        with pytest.raises(TypeError, match="its folder is temporary; give run a folder, as in out="):
+            pickle.dumps(part)
 
 
 def test_tables(experiment):

@@ -87,5 +87,6 @@ class Experiment(_core.ExperimentBase):
                 shutil.rmtree(temporary, ignore_errors=True)
             raise
         if temporary:
+            result._temporary = True
             weakref.finalize(result, shutil.rmtree, temporary, ignore_errors=True)
         return result

@@ -103,8 +103,11 @@ def _read_csv(file: pathlib.Path) -> pandas.DataFrame:
 class Result:
     """A run's results: result["pcs"].levels[-1].x is the finest state of a method.
 
-    A notebook shows the report's 3D viewer of all methods side by side. Tables are pandas.DataFrames.
+    A notebook shows the report's 3D viewer of all methods side by side. Tables are pandas.DataFrames. A result can be
+    pickled, as for another process, unless its folder is temporary: its states are read from there.
     """
+
+    _temporary = False
 
     def __init__(self, folder: Union[str, os.PathLike]):
         self.folder = os.fspath(folder)
@@ -129,6 +132,12 @@ class Result:
         """errors.csv, one row for each snapshot: its cost, and its errors against the method's own end and the
         reference."""
         self._meshes: Dict[str, Tuple[numpy.ndarray, numpy.ndarray]] = {}
+
+    def __getstate__(self) -> Dict[str, Any]:
+        if self._temporary:
+            raise TypeError("this result cannot be pickled or copied, because its folder is temporary; give run a folder, as "
+                            "in out=\"results/mine\"")
+        return {**vars(self), "folder": os.path.abspath(self.folder), "_meshes": {}}
 
     def __getitem__(self, method: str) -> MethodRecord:
         if method not in self._methods:
