@@ -134,6 +134,30 @@ def test_arrays_outlive_their_owners(experiment):
         rest[0, 0] = 1
 
 
+def test_what_would_change_nothing_is_refused(scene, experiment):
+    for array in (scene[0].masses, scene[0].fixed, scene.start(0), scene.prolongations[0].data, scene.midpoints[0].indices,
+                  scene.linear[0].indptr):
+        with pytest.raises(ValueError, match="read-only"):
+            array[:] = 0
+    for owner, name in ((scene[0].material, "density"), (scene[0], "material"), (scene, "levels"), (experiment, "levels")):
+        with pytest.raises(AttributeError):
+            setattr(owner, name, 1)
+    with pytest.raises(TypeError):
+        scene.prolongations[0] = scene.linear[0]
+    record = experiment.run(progress=False)["pcs"]
+    for owner in (record, record.levels[0]):
+        with pytest.raises(AttributeError, match="status cannot be set"):
+            owner.status = "converged"
+
+
+def test_a_material_of_ones_own():
+    assert drape.Material(density=300).density == 300
+    with pytest.raises(drape.ConfigError, match="did you mean \"density\""):
+        drape.Material(densty=300)
+    with pytest.raises(drape.ConfigError, match="density: "):
+        drape.Material(density=-1)
+
+
 def test_wrong_shapes_and_types(scene):
     model = scene[0]
     x = numpy.array(scene.start(0))

@@ -81,7 +81,7 @@ void bind_experiment(py::module_& m) {
           "does.")
       .def_property_readonly(
           "resolved", [](const ExperimentHandle& e) { return value_of(e.read()->resolved); },
-          "The experiment as a dict with every parameter of every plugin.")
+          "A copy of the experiment as a dict with every parameter of every plugin; `set` changes one.")
       .def_property_readonly("methods",
                              [](const ExperimentHandle& e) {
                                std::vector<std::string> names;

@@ -1,3 +1,9 @@
+#include <algorithm>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
 #include "core/app/python/module.h"
 #include "core/app/python/values.h"
 #include "core/kernel/plugin/bounds.h"
@@ -107,10 +113,12 @@ Positions set_dirichlet(const ModelHandle& m, const State& state) {
   return x;
 }
 
-Eigen::Array<bool, Eigen::Dynamic, 1> fixed(const ModelHandle& m) {
+py::array_t<bool> fixed(const ModelHandle& m) {
   const std::vector<char>& flags = m.model().fixed();
-  return Eigen::Map<const Eigen::Array<char, Eigen::Dynamic, 1>>(
-             flags.data(), static_cast<Eigen::Index>(flags.size())) != char{0};
+  py::array_t<bool> fixed(static_cast<py::ssize_t>(flags.size()));
+  std::ranges::transform(flags, fixed.mutable_data(), [](char flag) { return flag != 0; });
+  fixed.attr("setflags")(py::arg("write") = false);
+  return fixed;
 }
 
 }  // namespace
@@ -124,9 +132,10 @@ void bind_model(py::module_& m) {
       .def_property_readonly("level", &ModelHandle::level)
       .def_property_readonly("material", [](const ModelHandle& h) { return h.model().material(); })
       .def_property_readonly(
-          "masses", [](const ModelHandle& h) { return Eigen::VectorXd(h.model().masses()); },
-          "n lumped masses [kg].")
-      .def_property_readonly("fixed", &fixed, "Whether each of n vertices has a Dirichlet condition.")
+          "masses", [](const ModelHandle& h) -> const Eigen::VectorXd& { return h.model().masses(); },
+          "n lumped masses [kg], read-only.")
+      .def_property_readonly("fixed", &fixed,
+                             "Whether each of n vertices has a Dirichlet condition, read-only.")
       .def("set_dirichlet", &set_dirichlet, py::arg("x"),
            "A copy of x (n×3) [m] with the Dirichlet vertices at their targets.")
       .def("energy", at_state(&LevelModel::energy), py::arg("x"), "E(x) [J]; +inf outside its domain.")

@@ -1,6 +1,13 @@
+#include <algorithm>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
 #include "core/app/python/module.h"
 #include "core/app/python/values.h"
 #include "core/app/report/report.h"
+#include "core/kernel/plugin/parameters.h"
 #include "core/numerics/mesh/check.h"
 
 namespace drape::python {
@@ -17,14 +24,39 @@ std::shared_ptr<Level> make_level(const State& rest, const py::object& triangles
   return std::make_shared<Level>(Level::of(0, std::move(mesh)));
 }
 
+Material make_material(const py::kwargs& values) {
+  Material material;
+  ConfigErrors errors;
+  ConfigNode node = node_of(values);
+  node.name_keys();
+  schema_of<Material>("material").read(&material, node, errors);
+  throw_errors(errors);
+  return material;
+}
+
+/// Matrices that Python cannot change, since they are copies.
+py::tuple read_only(const std::vector<ProlongationMatrix>& matrices) {
+  py::tuple all(matrices.size());
+  for (std::size_t k = 0; k < matrices.size(); ++k) {
+    const py::object matrix = py::cast(matrices[k]);
+    for (const char* part : {"data", "indices", "indptr"})
+      matrix.attr(part).attr("setflags")(py::arg("write") = false);
+    all[k] = matrix;
+  }
+  return all;
+}
+
 void bind_level(py::module_& m) {
-  py::class_<Material>(m, "Material", "An isotropic cloth material. Moduli are Young's moduli of the bulk.")
-      .def(py::init<>())
-      .def_readwrite("density", &Material::density, "ρ [kg/m³]")
-      .def_readwrite("thickness", &Material::thickness, "d [m]")
-      .def_readwrite("membrane_modulus", &Material::membrane_modulus, "E_mem [Pa]")
-      .def_readwrite("bending_modulus", &Material::bending_modulus, "E_bend [Pa]")
-      .def_readwrite("poisson_ratio", &Material::poisson_ratio, "ν [1]")
+  py::class_<Material>(m, "Material",
+                       "A cloth material. Moduli are Young's moduli of the bulk. It cannot be changed: a "
+                       "scene's is that of its experiment, which `set` changes.")
+      .def(py::init(&make_material),
+           "Material(density=300.0): the keys of an experiment's `material`. Raises ConfigError.")
+      .def_readonly("density", &Material::density, "ρ [kg/m³]")
+      .def_readonly("thickness", &Material::thickness, "d [m]")
+      .def_readonly("membrane_modulus", &Material::membrane_modulus, "E_mem [Pa]")
+      .def_readonly("bending_modulus", &Material::bending_modulus, "E_bend [Pa]")
+      .def_readonly("poisson_ratio", &Material::poisson_ratio, "ν [1]")
       .def_property_readonly("area_density", &Material::area_density, "Mass per area, ρ d [kg/m²].");
 
   py::class_<Level, std::shared_ptr<Level>>(
@@ -83,7 +115,6 @@ std::string page(const SceneHandle& s, const State& state, int level) {
 
 void bind_scene(py::module_& m) {
   bind_level(m);
-  using Matrices = std::vector<ProlongationMatrix>;
   py::class_<SceneHandle>(m, "Scene",
                           "The levels, models and initial states of an experiment, at its start. scene[l] is "
                           "the model of level l; negative indices count from the finest.")
@@ -103,14 +134,13 @@ void bind_scene(py::module_& m) {
           },
           shared_view, py::arg("level"), "The initial state of a level, n×3 [m], read-only.")
       .def_property_readonly(
-          "prolongations",
-          [](const SceneHandle& s) -> const Matrices& { return s.scene->hierarchy.prolongations; },
-          "n_{l+1}×n_l weights of the refiner from level l to the next, scipy.sparse.csr_matrix.")
+          "prolongations", [](const SceneHandle& s) { return read_only(s.scene->hierarchy.prolongations); },
+          "n_{l+1}×n_l weights of the refiner from level l to the next, scipy.sparse.csr_matrix, read-only.")
       .def_property_readonly(
-          "midpoints", [](const SceneHandle& s) -> const Matrices& { return s.scene->hierarchy.midpoints; },
+          "midpoints", [](const SceneHandle& s) { return read_only(s.scene->hierarchy.midpoints); },
           "Likewise the weights of the midpoint split, which does not move the surface.")
       .def_property_readonly(
-          "linear", [](const SceneHandle& s) -> const Matrices& { return s.scene->hierarchy.linear; },
+          "linear", [](const SceneHandle& s) { return read_only(s.scene->hierarchy.linear); },
           "Likewise linear interpolation over the coarse rest shape.")
       .def_property_readonly("metrics",
                              [](const SceneHandle& s) {

@@ -48,6 +48,8 @@ class Experiment(_core.ExperimentBase):
     a file that cannot be read.
     """
 
+    __slots__ = ()  # `experiment.levels = 2` is an error: it would change nothing
+
     def run(
         self,
         methods: Union[str, Sequence[str], None] = None,

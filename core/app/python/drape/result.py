@@ -46,8 +46,10 @@ class _Record:
     """Its attributes are the values of results.json, by their names there; None where one is absent."""
 
     def __init__(self, run: Result, values: Mapping[str, Any]):
-        self._run = run
-        vars(self).update(values)
+        vars(self).update({**values, "_run": run})
+
+    def __setattr__(self, name: str, value: Any) -> None:
+        raise AttributeError(f"{name} cannot be set: a record is what the run has written")
 
     if TYPE_CHECKING:
 
@@ -73,10 +75,12 @@ class LevelRecord(_Record):
 class MethodRecord(_Record):
     """One method of a run: `status`, `solver`, `seconds`, `peak_memory_bytes`, and `levels`, coarse to fine."""
 
+    name: str
+    levels: List[LevelRecord]
+
     def __init__(self, run: Result, name: str, values: Mapping[str, Any]):
-        super().__init__(run, values)
-        self.name = name
-        self.levels = [LevelRecord(run, {k: v for k, v in level.items() if k != "triangles"}) for level in values["levels"]]
+        levels = [LevelRecord(run, {k: v for k, v in level.items() if k != "triangles"}) for level in values["levels"]]
+        super().__init__(run, {**values, "name": name, "levels": levels})
 
 
 def _tidy(frame: pandas.DataFrame) -> pandas.DataFrame:
