@@ -272,6 +272,29 @@ def whole(problem, level):
     problem.end(problem.start(level))
 
 
+def test_the_end_of_a_level_has_the_plain_models_residual(small):
+    given = 0.125
+
+    class Ends(drape.Solver):
+        def solve(self, problem):
+            for level, ends_where_it_was in enumerate((False, True)):
+                problem.begin(level)
+                x = problem.start(level)
+                if level == 1:
+                    problem.iteration(x, force_residual=given)
+                problem.end(x if ends_where_it_was else x + [0, 0, 0.01], "stalled")
+
+    drape.register("ends", Ends)
+    small.update(methods={"ends": {}}, reference={}, contact="shapes",
+                 obstacles=[{"shape": "sphere", "radius": 0.1, "translate": [0.5, 0.5, -0.1005]}])
+    experiment = drape.Experiment(small)
+    levels = experiment.run(progress=False)["ends"].levels
+    model = experiment.scene()[0]
+    assert levels[0].force_residual == pytest.approx(model.force_residual(levels[0].x), rel=1e-12) != 0
+    assert levels[1].force_residual == given
+    assert levels[1].smallest_gap == experiment.scene()[1].contacts(levels[1].x)[0]["smallest_gap"]
+
+
 def test_a_solver_may_skip_levels_and_recover(small):
     class Skips(drape.Solver):
         def solve(self, problem):

@@ -1,8 +1,16 @@
+#include <memory>
+#include <optional>
 #include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "core/app/python/module.h"
 #include "core/app/python/values.h"
+#include "core/kernel/plugin/bounds.h"
 #include "core/kernel/threads/stopwatch.h"
+#include "core/numerics/mesh/same_entries.h"
+#include "core/numerics/model/active_contacts.h"
 
 namespace drape::python {
 
@@ -45,6 +53,7 @@ class SolverProblem {
     under_way_.emplace();
     under_way_->level = level;
     under_way_->from_initial_state = results_.empty();
+    iterated_.resize(0, 3);
     began_ = clock_.seconds();
     without_gil([&] { observer_->level_started(level); });
   }
@@ -53,6 +62,7 @@ class SolverProblem {
                  double step_length) {
     const Positions& x = reported(state);
     const LevelModel& model = *problem().models[under_way_->level];
+    iterated_ = x;
     return without_gil([&] {
       IterationRow row;
       row.level = under_way_->level;
@@ -74,6 +84,14 @@ class SolverProblem {
     under_way_->message = message;
     under_way_->x = x;
     under_way_->seconds = clock_.seconds() - began_;
+    const LevelModel& model = *problem().models[under_way_->level];
+    without_gil([&] {
+      if (!same_entries(x, iterated_)) under_way_->force_residual = model.force_residual(x);
+      ActiveContacts contacts(model.contacts());
+      if (!contacts.any()) return;
+      contacts.barrier(x);  // evaluates the contacts for smallest_gap()
+      under_way_->smallest_gap = contacts.smallest_gap();
+    });
     results_.push_back(std::move(*under_way_));
     under_way_.reset();
     without_gil([&] { observer_->level_finished(results_.back()); });
@@ -104,12 +122,13 @@ class SolverProblem {
       throw py::index_error("the problem has the levels 0 … " + std::to_string(level_count() - 1));
     return level;
   }
-  /// A state of the level that has begun: finite, because a run measures and compares the states that it is
-  /// given, and searches them for contacts.
+  /// A state of the level that has begun: within bounds, because a run measures and compares the states that
+  /// it is given, and searches them for contacts.
   const Positions& reported(const State& state) const {
     if (!under_way_) throw std::runtime_error("begin a level before its iterations and its end");
     const Positions& x = state.of(problem().models[under_way_->level]->level().vertex_count());
-    if (!x.allFinite()) throw py::value_error("x must be finite; end the level with the last state that is");
+    if (!(x.array().abs() <= bounds::largest_coordinate).all())
+      throw py::value_error("x must be finite and within 1e9 m; end the level with the last state that is");
     return x;
   }
 
@@ -118,6 +137,7 @@ class SolverProblem {
   std::shared_ptr<bool> alive_ = std::make_shared<bool>(true);
   const Stopwatch clock_;
   std::optional<LevelResult> under_way_;
+  Positions iterated_;  // the level's last iteration; without rows before the first
   double began_ = 0;
   std::vector<LevelResult> results_;
 };
@@ -165,9 +185,11 @@ void bind_prototype_problem(py::module_& m) {
       .def("iteration", &SolverProblem::iteration, py::arg("x"), py::arg("energy") = py::none(),
            py::arg("force_residual") = py::none(), py::arg("step_length") = 1.0,
            "Report an iteration's state. Returns False after a request to stop: end the level as cancelled. "
-           "Energy and residual are computed if they are not given.")
-      .def("end", &SolverProblem::end, py::arg("x"), py::arg("status") = "converged", py::arg("message") = "",
-           "End the level.");
+           "Energy and residual are those of the plain model at x if they are not given.")
+      .def(
+          "end", &SolverProblem::end, py::arg("x"), py::arg("status") = "converged", py::arg("message") = "",
+          "End the level: converged, max_steps_reached, stalled, cancelled or infeasible. Its force residual "
+          "is that of the last iteration; of another x, that of the plain model.");
 }
 
 }  // namespace drape::python
