@@ -185,8 +185,44 @@ def test_elements_are_checked(small):
     for elements in ([[0, 36]], [[-1, 0]], [0, 1], numpy.zeros((0, 2), int), [[0.5, 1]]):
         drape.register("bad", type("Bad", (prototypes.Springs,), {"elements": lambda self, level: elements}))
         small["energies"][0] = "bad"
-        with pytest.raises(drape.ConfigError, match="elements"):
+        with pytest.raises(drape.ConfigError, match="what Bad.elements returns must"):
             drape.Experiment(small).check()
+
+
+@pytest.mark.parametrize("attribute, value, error, message", [
+    ("role", 7, TypeError, "Faulty.role must be membrane, .*, not 7"),
+    ("role", "load", ValueError, "Faulty.role must be membrane, .*, not \"load\""),
+    *(("midpoint_factor", value, error, "Faulty.midpoint_factor must be a finite number above 0, or None, not")
+      for value, error in (("x", TypeError), (-1, ValueError), (0, ValueError), (numpy.nan, ValueError),
+                           (numpy.inf, ValueError))),
+])
+def test_attributes_are_checked(scene, attribute, value, error, message):
+    with pytest.raises(error, match=message):
+        drape.bind_energy(type("Faulty", (prototypes.Springs,), {attribute: value})(), scene.levels[0])
+
+
+@pytest.mark.parametrize("parameters, error, message", [
+    ({"role": 1.0}, ValueError, "Faulty.parameters: \"role\" needs another name: drape.Energy has an attribute \"role\""),
+    (["k"], TypeError, r"Faulty.parameters must be a dict .*, not \['k'\]"),
+    ({1: 2.0}, TypeError, "Faulty.parameters: a name must be a str, not 1"),
+    ({"k": [1]}, TypeError, r'Faulty.parameters\["k"\] must default to a bool, int, float or str, not \[1\]'),
+    ({"k": drape.Parameter(1.0, unit=3)}, TypeError, r'Faulty.parameters\["k"\].unit must be a str, not 3'),
+    ({"k": drape.Parameter(1.0, minimum="0")}, TypeError, r'Faulty.parameters\["k"\].minimum must be a number or None'),
+])
+def test_parameters_are_declared_properly(parameters, error, message):
+    with pytest.raises(error, match=message):
+        drape.register("faulty", type("Faulty", (drape.Energy,), {"parameters": parameters}))
+
+
+def test_what_is_forgotten_is_named(scene):
+    with pytest.raises(TypeError, match="an energy is a drape.Energy object, .*; make an object of the class by calling it"):
+        drape.check_energy(prototypes.Springs)
+    for kind, method in ((drape.Energy, "elements(scene.levels[0])"), (drape.Energy, "value(None, None)"),
+                         (drape.Energy, "gradient(None, None)"), (drape.Energy, "hessian(None, None)"),
+                         (drape.Metric, "measure(None, None, None)"), (drape.Refiner, "weights(None)"),
+                         (drape.Solver, "solve(None)")):
+        with pytest.raises(NotImplementedError, match=rf"Empty must define {method.split('(')[0]}\(self, "):
+            eval("empty." + method, {"empty": type("Empty", (kind,), {})(), "scene": scene})
 
 
 def test_a_metric_or_refiner_that_fails(small):
@@ -209,6 +245,10 @@ def test_a_metric_or_refiner_that_fails(small):
         drape.Experiment({**small, "metrics": [{"type": "broken", "fails": True}]}).run(progress=False)
     with pytest.raises(drape.ConfigError, match="a row for each vertex, then one for each edge"):
         drape.Experiment({**small, "refiner": "thin"}).check()
+    for answer in (None, "all", numpy.ones((2, 2), complex), numpy.ones((2, 2, 2))):
+        drape.register("thin", type("Thin", (drape.Refiner,), {"weights": lambda self, level: answer}))
+        with pytest.raises(drape.ConfigError, match="Thin.weights must return a sparse .* matrix of real numbers, not"):
+            drape.Experiment({**small, "refiner": "thin"}).check()
 
 
 def test_what_a_solver_keeps_is_not_used_after_its_end(small):

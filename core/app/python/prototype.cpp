@@ -1,4 +1,9 @@
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
 #include <variant>
+#include <vector>
 
 #include "core/app/python/module.h"
 #include "core/app/python/values.h"
@@ -7,20 +12,33 @@ namespace drape::python {
 
 namespace {
 
-Better better_of(const std::string& word) {
+/// The attribute `name` of what a prototype declares, a drape.Column or drape.Parameter, as a T. Throws
+/// TypeError.
+template <class T>
+T declared_as(const py::handle& declared, const std::string& where, const char* name,
+              const std::string& wanted) {
+  return cast_to<T>(declared.attr(name), where + "." + name, wanted);
+}
+std::string declared_text(const py::handle& declared, const std::string& where, const char* name) {
+  return declared_as<std::string>(declared, where, name, "a str");
+}
+
+Better better_of(const std::string& word, const std::string& where) {
   if (word == "lower") return Better::lower;
   if (word == "higher") return Better::higher;
   if (word == "neither") return Better::neither;
-  throw py::value_error("better must be lower, higher or neither, not \"" + word + "\"");
+  throw py::value_error(where + ".better must be lower, higher or neither, not \"" + word + "\"");
 }
 
-MetricColumn column_of(const std::string& name, const py::handle& declared) {
+MetricColumn column_of(const std::string& owner, const std::string& name, const py::handle& declared) {
+  const std::string where = owner + ".columns[\"" + name + "\"]";
   MetricColumn column;
   column.name = name;
-  column.label = declared.attr("label").cast<std::optional<std::string>>().value_or(name);
-  column.unit = declared.attr("unit").cast<std::string>();
-  column.better = better_of(declared.attr("better").cast<std::string>());
-  column.error = declared.attr("error").cast<std::string>();
+  column.label =
+      declared_as<std::optional<std::string>>(declared, where, "label", "a str or None").value_or(name);
+  column.unit = declared_text(declared, where, "unit");
+  column.better = better_of(declared_text(declared, where, "better"), where);
+  column.error = declared_text(declared, where, "error");
   return column;
 }
 
@@ -28,12 +46,13 @@ MetricColumn column_of(const std::string& name, const py::handle& declared) {
 class PythonMetric final : public Metric {
  public:
   explicit PythonMetric(const py::object& prototype) : prototype_(share(prototype)) {
-    const auto scope = prototype.attr("scope").cast<std::string>();
+    const std::string owner = class_of(prototype);
+    const auto scope = declared_text(prototype, owner, "scope");
     if (scope != "state" && scope != "pair")
-      throw py::value_error("scope must be state or pair, not \"" + scope + "\"");
+      throw py::value_error(owner + ".scope must be state or pair, not \"" + scope + "\"");
     scope_ = scope == "pair" ? MetricScope::pair : MetricScope::state;
     for (const auto& [name, column] : prototype.attr("_declared")().cast<py::dict>())
-      declaration_.columns.push_back(column_of(py::str(name), column));
+      declaration_.columns.push_back(column_of(owner, py::str(name), column));
   }
 
   MetricScope scope() const override { return scope_; }
@@ -65,9 +84,7 @@ class PythonRefiner final : public Refiner {
 
   ProlongationMatrix weights(const Level& coarse) const override {
     return with_python([&] {
-      const py::object answer = prototype_->attr("weights")(std::make_shared<Level>(coarse));
-      const py::object to_csr = py::module_::import("scipy.sparse").attr("csr_matrix");
-      return to_csr(answer).cast<ProlongationMatrix>();
+      return prototype_->attr("_matrix")(std::make_shared<Level>(coarse)).cast<ProlongationMatrix>();
     });
   }
 
@@ -87,28 +104,29 @@ std::shared_ptr<Refiner> prototype_refiner(const py::object& prototype) {
 using Value = std::variant<bool, int, double, std::string>;
 using Values = std::vector<Value>;
 
-Value default_of(const std::string& name, const py::object& initial) {
+Value default_of(const std::string& where, const py::object& initial) {
   py::detail::make_caster<Value> caster;
   if (!caster.load(initial, false))
-    throw py::type_error("the parameter " + name + " must default to a bool, int, float or str, not " +
-                         shown(initial));
+    throw py::type_error(where + " must default to a bool, int, float or str, not " + shown(initial));
   return py::detail::cast_op<Value>(caster);
 }
 
-/// The parameter `name` of a class, a drape.Parameter or a plain default, whose value is the k-th.
-Parameter parameter_of(const std::string& name, const py::object& declared, std::size_t k, Value& initial) {
-  const bool plain = !py::hasattr(declared, "default");
-  initial = default_of(name, plain ? declared : py::object(declared.attr("default")));
+/// The parameter `name` of the class `owner`, a drape.Parameter, whose value is the k-th.
+Parameter parameter_of(const std::string& owner, const std::string& name, const py::handle& declared,
+                       std::size_t k, Value& initial) {
+  const std::string where = owner + ".parameters[\"" + name + "\"]";
+  initial = default_of(where, declared.attr("default"));
   Parameter p;
   p.name = name;
   p.type = std::visit([](const auto& value) { return parameter_detail::type_of(&value); }, initial);
-  if (!plain) {
-    p.description = declared.attr("description").cast<std::string>();
-    p.unit = declared.attr("unit").cast<std::string>();
-    p.source = declared.attr("source").cast<std::string>();
-    p.minimum = declared.attr("minimum").cast<std::optional<double>>().value_or(p.minimum);
-    p.maximum = declared.attr("maximum").cast<std::optional<double>>().value_or(p.maximum);
-  }
+  p.description = declared_text(declared, where, "description");
+  p.unit = declared_text(declared, where, "unit");
+  p.source = declared_text(declared, where, "source");
+  const auto bound = [&](const char* which, double none) {
+    return declared_as<std::optional<double>>(declared, where, which, "a number or None").value_or(none);
+  };
+  p.minimum = bound("minimum", p.minimum);
+  p.maximum = bound("maximum", p.maximum);
   p.read = [k](void* values, const ConfigNode& node, ConfigErrors&) {
     std::visit([&](auto& own) { parameter_detail::convert(node, own); }, static_cast<Values*>(values)->at(k));
   };
@@ -128,10 +146,10 @@ Schema schema_of_class(const py::object& type, const std::string& name) {
   Schema schema;
   schema.name = name;
   Values defaults;
-  for (const auto& [key, declared] : type.attr("parameters").cast<py::dict>()) {
+  const std::string owner = py::str(type.attr("__name__"));
+  for (const auto& [key, declared] : type.attr("_declared_parameters")().cast<py::dict>()) {
     Value value;
-    schema.parameters.push_back(parameter_of(
-        key.cast<std::string>(), py::reinterpret_borrow<py::object>(declared), defaults.size(), value));
+    schema.parameters.push_back(parameter_of(owner, py::str(key), declared, defaults.size(), value));
     defaults.push_back(std::move(value));
   }
   schema.fresh = [defaults] { return std::make_shared<Values>(defaults); };
@@ -157,7 +175,8 @@ void register_class(const std::string& name, const py::object& type,
   entry->name = name;
   const py::object summary = type.attr("__doc__");
   if (!summary.is_none())
-    entry->summary = py::str(py::module_::import("inspect").attr("cleandoc")(summary)).cast<std::string>();
+    entry->summary = cast_to<std::string>(py::module_::import("inspect").attr("cleandoc")(summary),
+                                          name + ": the docstring", "text that UTF-8 can hold");
   entry->summary = entry->summary.substr(0, entry->summary.find('\n'));
   entry->schema = schema_of_class(type, name);
   entry->make_parameters = entry->schema.fresh;

@@ -1,6 +1,12 @@
 #include <Eigen/Eigenvalues>
+#include <algorithm>
 #include <cmath>
 #include <limits>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "core/app/python/module.h"
 #include "core/app/python/values.h"
@@ -15,20 +21,39 @@ namespace {
 
 using Shape = std::vector<py::ssize_t>;
 
-EnergyRole role_of(const std::string& word) {
+EnergyRole role_of(const py::object& prototype) {
+  const std::string what = class_of(prototype) + ".role", wanted = "membrane, bending, external or position";
+  const auto word = cast_to<std::string>(prototype.attr("role"), what, wanted);
   if (word == "membrane") return EnergyRole::membrane;
   if (word == "bending") return EnergyRole::bending;
   if (word == "external") return EnergyRole::external;
   if (word == "position") return EnergyRole::position;
-  throw py::value_error("role must be membrane, bending, external or position, not \"" + word + "\"");
+  throw py::value_error(what + " must be " + wanted + ", not \"" + word + "\"");
+}
+
+std::optional<double> midpoint_factor_of(const py::object& prototype) {
+  const std::string what = class_of(prototype) + ".midpoint_factor",
+                    wanted = "a finite number above 0, or None";
+  const py::object given = prototype.attr("midpoint_factor");
+  const auto factor = cast_to<std::optional<double>>(given, what, wanted);
+  if (factor && !(std::isfinite(*factor) && *factor > 0))
+    throw py::value_error(what + " must be " + wanted + ", not " + shown(given));
+  return factor;
+}
+
+/// What a prototype's function returns, for messages.
+std::string answer_of(const py::object& prototype, const char* function) {
+  return "what " + class_of(prototype) + "." + function + " returns";
 }
 
 /// m×k vertices, all of the level.
-Stencils stencils_of(const py::object& elements, int vertex_count) {
-  Stencils stencils = integer_rows(elements, -1, "elements");
-  if (stencils.size() == 0) throw py::value_error("elements must have at least one row and one column");
-  if (stencils.minCoeff() < 0 || stencils.maxCoeff() >= vertex_count)
-    throw py::value_error("elements must be vertices of the level, 0 … " + std::to_string(vertex_count - 1));
+Stencils stencils_of(const py::object& prototype, const std::shared_ptr<Level>& level) {
+  const std::string what = answer_of(prototype, "elements");
+  Stencils stencils = integer_rows(prototype.attr("elements")(level), -1, what);
+  if (stencils.size() == 0) throw py::value_error(what + " must have at least one row and one column");
+  if (stencils.minCoeff() < 0 || stencils.maxCoeff() >= level->vertex_count())
+    throw py::value_error(what + " must be vertices of the level, 0 … " +
+                          std::to_string(level->vertex_count() - 1));
   return stencils;
 }
 
@@ -109,12 +134,13 @@ class BoundPythonEnergy final : public BoundEnergy {
 
   /// What the prototype's function returns for the elements' positions; it must have this shape.
   py::array_t<double> evaluate(const char* function, const py::object& corners, const Shape& shape) const {
-    py::array_t<double> values = real_array(prototype_->attr(function)(corners, *rest_), function);
+    py::array_t<double> values =
+        real_array(prototype_->attr(function)(corners, *rest_), answer_of(*prototype_, function));
     if (!std::equal(shape.begin(), shape.end(), values.shape(), values.shape() + values.ndim())) {
       std::string wanted;
       for (const py::ssize_t n : shape) wanted += (wanted.empty() ? "" : ", ") + std::to_string(n);
-      throw py::value_error(std::string(py::str(py::type::of(*prototype_))) + "." + function +
-                            " must return the shape (" + wanted + "), not " + shown(values.attr("shape")));
+      throw py::value_error(answer_of(*prototype_, function) + " must have the shape (" + wanted + "), not " +
+                            shown(values.attr("shape")));
     }
     return values;
   }
@@ -138,15 +164,15 @@ class PythonEnergy final : public Energy {
  public:
   explicit PythonEnergy(const py::object& prototype)
       : prototype_(share(prototype)),
-        role_(role_of(prototype.attr("role").cast<std::string>())),
-        midpoint_factor_(prototype.attr("midpoint_factor").cast<std::optional<double>>()) {}
+        role_(role_of(prototype)),
+        midpoint_factor_(midpoint_factor_of(prototype)) {}
 
   EnergyRole role() const override { return role_; }
   std::optional<double> midpoint_factor() const override { return midpoint_factor_; }
   std::unique_ptr<BoundEnergy> bind(const Level& level, const Material& material) const override {
     return with_python([&]() -> std::unique_ptr<BoundEnergy> {
       const auto kept = std::make_shared<Level>(level);  // Python may store it
-      Stencils stencils = stencils_of(prototype_->attr("elements")(kept), level.vertex_count());
+      Stencils stencils = stencils_of(*prototype_, kept);
       SharedObject rest = share(prototype_->attr("rest")(kept, material));
       return std::make_unique<BoundPythonEnergy>(prototype_, std::move(rest), std::move(stencils));
     });
@@ -181,6 +207,11 @@ BoundEnergyHandle bind_energy(const py::object& source, const std::shared_ptr<Le
     energy = make_from<Energy>(registry(), node_of(source), errors);
     throw_errors(errors);
   } else {
+    if (!py::isinstance(source, py::module_::import("drape.prototypes").attr("Energy")))
+      throw py::type_error(
+          "an energy is a drape.Energy object, a plugin's name or a dict with its parameters, "
+          "not " +
+          shown(source) + (PyType_Check(source.ptr()) ? "; make an object of the class by calling it" : ""));
     energy = prototype_energy(source);
   }
   return {energy->bind(*level, material), level};

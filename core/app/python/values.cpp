@@ -154,7 +154,7 @@ std::string option_of(const std::string& key) { return "--set " + key; }
 ConfigNode with_value(ConfigNode experiment, const std::string& key, const py::object& value) {
   ConfigErrors errors;
   if (py::isinstance<py::str>(value)) {
-    set_parameter(experiment, key, value.cast<std::string>(), option_of(key), errors);
+    set_parameter(experiment, key, text_of(value), option_of(key), errors);
   } else {
     const Location where{option_of(key)};
     ConfigNode node = node_of(value);

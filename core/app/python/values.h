@@ -16,6 +16,20 @@ namespace py = pybind11;
 
 /// Python's repr() of a value, for messages.
 inline std::string shown(const py::handle& value) { return py::repr(value); }
+/// The name of the value's class.
+inline std::string class_of(const py::handle& value) {
+  return py::str(py::type::handle_of(value).attr("__name__"));
+}
+
+/// The value as a T. Throws TypeError, which says that `what` must be `wanted`.
+template <class T>
+T cast_to(const py::handle& value, const std::string& what, const std::string& wanted) {
+  try {
+    return value.cast<T>();
+  } catch (const py::cast_error&) {
+    throw py::type_error(what + " must be " + wanted + ", not " + shown(value));
+  }
+}
 
 /// An array of doubles, in any order in memory. Throws TypeError for what is not made of real numbers.
 py::array_t<double> real_array(const py::handle& values, const std::string& name);

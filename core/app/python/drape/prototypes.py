@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Optional, Union
 
 import numpy
+import scipy.sparse
 
 from . import _core
 
@@ -37,17 +38,44 @@ class Column:
     error: str = ""
 
 
+def _shown(value: Any) -> str:
+    """For messages, which an array's numbers would fill."""
+    return f"an array of the shape {value.shape}" if isinstance(value, numpy.ndarray) else repr(value)
+
+
+def _is_number(value: Any) -> bool:
+    return hasattr(value, "__float__") and numpy.ndim(value) == 0 and not numpy.iscomplexobj(value)
+
+
 class _Prototype:
     parameters: dict = {}
     """From a name to a Parameter or a plain default."""
 
     def __init__(self, **parameters: Any):
-        for name, declared in self.parameters.items():
-            setattr(self, name, declared.default if isinstance(declared, Parameter) else declared)
-        for name, value in parameters.items():
-            if name not in self.parameters:
+        declared = self._declared_parameters()
+        for name in parameters:
+            if name not in declared:
                 raise TypeError(f"{type(self).__name__} has no parameter \"{name}\"")
-            setattr(self, name, value)
+        for name, parameter in declared.items():
+            setattr(self, name, parameters.get(name, parameter.default))
+
+    @classmethod
+    def _declared_parameters(cls) -> dict:
+        owner, parameters = cls.__name__, cls.parameters
+        if not isinstance(parameters, dict):
+            raise TypeError(f"{owner}.parameters must be a dict from names to defaults or drape.Parameters, "
+                            f"not {_shown(parameters)}")
+        base = next(base for base in cls.__mro__ if base.__module__ == __name__)
+        for name in parameters:
+            if not isinstance(name, str):
+                raise TypeError(f"{owner}.parameters: a name must be a str, not {name!r}")
+            if hasattr(base, name):
+                raise ValueError(f"{owner}.parameters: \"{name}\" needs another name: drape.{base.__name__} has an "
+                                 f"attribute \"{name}\"")
+        return {name: value if isinstance(value, Parameter) else Parameter(value) for name, value in parameters.items()}
+
+    def _undefined(self, method: str) -> NotImplementedError:
+        return NotImplementedError(f"{type(self).__name__} must define {method}")
 
     if TYPE_CHECKING:
 
@@ -68,7 +96,7 @@ class Energy(_Prototype):
 
     def elements(self, level: _core.Level) -> numpy.ndarray:
         """m×k vertex indices, such as level.triangles, level.edges or level.hinges."""
-        raise NotImplementedError
+        raise self._undefined("elements(self, level)")
 
     def rest(self, level: _core.Level, material: _core.Material) -> Any:
         """What the evaluation needs beside x: computed once for a level, passed to each call."""
@@ -76,15 +104,15 @@ class Energy(_Prototype):
 
     def value(self, x: numpy.ndarray, rest: Any) -> numpy.ndarray:
         """m energies [J]; inf outside the domain."""
-        raise NotImplementedError
+        raise self._undefined("value(self, x, rest)")
 
     def gradient(self, x: numpy.ndarray, rest: Any) -> numpy.ndarray:
         """m×k×3 derivatives [N]."""
-        raise NotImplementedError
+        raise self._undefined("gradient(self, x, rest)")
 
     def hessian(self, x: numpy.ndarray, rest: Any) -> numpy.ndarray:
         """m×3k×3k second derivatives [N/m], symmetric, not projected: drape does that."""
-        raise NotImplementedError
+        raise self._undefined("hessian(self, x, rest)")
 
 
 class Metric(_Prototype):
@@ -97,7 +125,7 @@ class Metric(_Prototype):
 
     def measure(self, level: _core.Level, x: numpy.ndarray, other: Optional[numpy.ndarray]) -> dict:
         """Values by the names in `columns`. x is n×3 [m], of a pair the fine state; `other` is the coarse one."""
-        raise NotImplementedError
+        raise self._undefined("measure(self, level, x, other)")
 
     def _declared(self) -> dict:
         owner, columns = type(self).__name__, self.columns
@@ -105,6 +133,8 @@ class Metric(_Prototype):
             raise TypeError(f"{owner}.columns must be a dict with a drape.Column for every value that measure returns, "
                             f"such as {{\"height\": drape.Column(\"m\")}}, not {columns!r}")
         for name, column in columns.items():
+            if not isinstance(name, str):
+                raise TypeError(f"{owner}.columns: a name must be a str, not {name!r}")
             if not isinstance(column, Column):
                 raise TypeError(f"{owner}.columns: \"{name}\" must be a drape.Column, such as drape.Column(\"m\"), "
                                 f"not {column!r}")
@@ -114,13 +144,13 @@ class Metric(_Prototype):
         owner, values = type(self).__name__, self.measure(level, x, other)
         if not isinstance(values, dict):
             raise TypeError(f"{owner}.measure must return a dict from the names in {owner}.columns to numbers, "
-                            f"not {values!r}")
+                            f"not {_shown(values)}")
         for name, value in values.items():
             if name not in self.columns:
                 raise ValueError(f"{owner}.measure returned \"{name}\", which is not in {owner}.columns; "
                                  "add it there with its drape.Column")
-            if not hasattr(value, "__float__"):
-                raise TypeError(f"{owner}.measure must return a number for \"{name}\", not {value!r}")
+            if not _is_number(value):
+                raise TypeError(f"{owner}.measure must return a number for \"{name}\", not {_shown(value)}")
         return values
 
 
@@ -130,7 +160,18 @@ class Refiner(_Prototype):
     def weights(self, level: _core.Level):
         """A sparse (n + e)×n matrix whose rows sum to 1: of the vertices first, then of a new vertex for each of
         level.edges."""
-        raise NotImplementedError
+        raise self._undefined("weights(self, level)")
+
+    def _matrix(self, level: _core.Level) -> scipy.sparse.csr_matrix:
+        answer = self.weights(level)
+        try:
+            matrix = scipy.sparse.csr_matrix(answer)
+            if matrix.dtype.kind in "biuf":
+                return matrix
+        except (TypeError, ValueError):
+            pass
+        raise TypeError(f"{type(self).__name__}.weights must return a sparse (n + e)×n matrix of real numbers, "
+                        f"not {_shown(answer)}")
 
 
 class Solver(_Prototype):
@@ -139,14 +180,15 @@ class Solver(_Prototype):
     def solve(self, problem: _core.Problem) -> None:
         """For each level, from coarse to fine: problem.begin(l), problem.iteration(x) as it goes,
         problem.end(x, status)."""
-        raise NotImplementedError
+        raise self._undefined("solve(self, problem)")
 
 
 def register(name: str, prototype: type) -> type:
     """Register a prototype under the name that experiments use; it replaces an earlier one of that name.
 
-    Raises TypeError for a class that is not derived from Energy, Metric, Refiner or Solver and for a metric whose
-    columns are missing or not Columns, RuntimeError if a plugin's library has the name. Call it while no experiment is being read in another thread.
+    Raises TypeError for a class that is not derived from Energy, Metric, Refiner or Solver, and for parameters or a
+    metric's columns of a wrong type; ValueError for a parameter that has the name of an attribute, a metric's `scope` or
+    a column's `better` that does not exist; RuntimeError if a plugin's library has the name. Call it while no experiment is being read in another thread.
     """
     for kind in (Energy, Metric, Refiner, Solver):
         if isinstance(prototype, type) and issubclass(prototype, kind):
