@@ -182,11 +182,29 @@ def test_what_a_prototype_raises_is_raised(small, function, answer, error):
 
 
 def test_elements_are_checked(small):
-    for elements in ([[0, 36]], [[-1, 0]], [0, 1], numpy.zeros((0, 2), int), [[0.5, 1]]):
+    for elements in ([[0, 36]], [[-1, 0]], [0, 1], numpy.zeros((3, 0), int), [[0.5, 1]]):
         drape.register("bad", type("Bad", (prototypes.Springs,), {"elements": lambda self, level: elements}))
         small["energies"][0] = "bad"
         with pytest.raises(drape.ConfigError, match="what Bad.elements returns must"):
             drape.Experiment(small).check()
+
+
+@pytest.mark.parametrize("none", [[], numpy.zeros((0, 2), int)])
+def test_a_level_may_have_no_elements(small, none):
+    class Seam(prototypes.Springs):
+        def elements(self, level):
+            return level.edges[:3] if level.index == 1 else none
+
+        def rest(self, level, material):
+            return super().rest(level, material)[:3]
+
+    drape.register("seam", Seam)
+    small["energies"].append("seam")
+    experiment = drape.Experiment(small)
+    assert experiment.scene()[0].energy_parts(experiment.scene().start(0))["seam"] == 0
+    assert experiment.run(progress=False)["pcs"].levels[-1].energy_parts["seam"] > 0
+    bound = drape.bind_energy(Seam(), experiment.scene().levels[0])
+    assert not bound.gradient(numpy.zeros((36, 3))).any() and bound.hessian(numpy.zeros((36, 3))).count_nonzero() == 0
 
 
 @pytest.mark.parametrize("attribute, value, error, message", [

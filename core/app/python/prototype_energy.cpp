@@ -46,11 +46,14 @@ std::string answer_of(const py::object& prototype, const char* function) {
   return "what " + class_of(prototype) + "." + function + " returns";
 }
 
-/// m×k vertices, all of the level.
+/// m×k vertices, all of the level. No rows: an array of any type, as of an empty list.
 Stencils stencils_of(const py::object& prototype, const std::shared_ptr<Level>& level) {
   const std::string what = answer_of(prototype, "elements");
-  Stencils stencils = integer_rows(prototype.attr("elements")(level), -1, what);
-  if (stencils.size() == 0) throw py::value_error(what + " must have at least one row and one column");
+  const py::object elements = prototype.attr("elements")(level);
+  if (const auto any = py::array::ensure(elements); any && any.ndim() > 0 && any.shape(0) == 0)
+    return Stencils(0, 1);
+  Stencils stencils = integer_rows(elements, -1, what);
+  if (stencils.cols() == 0) throw py::value_error(what + " must have at least one column");
   if (stencils.minCoeff() < 0 || stencils.maxCoeff() >= level->vertex_count())
     throw py::value_error(what + " must be vertices of the level, 0 … " +
                           std::to_string(level->vertex_count() - 1));
@@ -63,10 +66,12 @@ class BoundPythonEnergy final : public BoundEnergy {
       : prototype_(std::move(prototype)), rest_(std::move(rest)), stencils_(std::move(stencils)) {}
 
   double value(const Positions& x) const override {
+    if (m() == 0) return 0;
     return with_python([&] { return value_at(corners_of(x)); });
   }
 
   double add_gradient(const Positions& x, Positions& g) const override {
+    if (m() == 0) return 0;
     return with_python([&] {
       const py::object corners = corners_of(x);
       const py::array_t<double> gradients = evaluate("gradient", corners, {m(), k(), 3});
@@ -81,6 +86,7 @@ class BoundPythonEnergy final : public BoundEnergy {
   Stencils stencils() const override { return stencils_; }
 
   void add_hessian(const Positions& x, Projection projection, BlockSink& sink) const override {
+    if (m() == 0) return;
     const auto size = static_cast<int>(3 * k());
     std::vector<double> hessians(static_cast<std::size_t>(m()) * size * size);
     with_python([&] {
@@ -173,7 +179,9 @@ class PythonEnergy final : public Energy {
     return with_python([&]() -> std::unique_ptr<BoundEnergy> {
       const auto kept = std::make_shared<Level>(level);  // Python may store it
       Stencils stencils = stencils_of(*prototype_, kept);
-      SharedObject rest = share(prototype_->attr("rest")(kept, material));
+      // Of no elements nothing is evaluated.
+      SharedObject rest =
+          share(stencils.rows() > 0 ? prototype_->attr("rest")(kept, material) : py::object(py::none()));
       return std::make_unique<BoundPythonEnergy>(prototype_, std::move(rest), std::move(stencils));
     });
   }

@@ -95,7 +95,8 @@ class Energy(_Prototype):
     """Factor on the energy if every triangle is split into four at its midpoints; None if there is none."""
 
     def elements(self, level: _core.Level) -> numpy.ndarray:
-        """m×k vertex indices, such as level.triangles, level.edges or level.hinges."""
+        """m×k vertex indices, such as level.triangles, level.edges or level.hinges; no rows where a level has no
+        elements, of which nothing else is called then."""
         raise self._undefined("elements(self, level)")
 
     def rest(self, level: _core.Level, material: _core.Material) -> Any:
