@@ -243,6 +243,15 @@ def test_what_is_forgotten_is_named(scene):
             eval("empty." + method, {"empty": type("Empty", (kind,), {})(), "scene": scene})
 
 
+def test_a_midpoint_factor_is_checked(capsys):
+    assert drape.check_energy("hinge") and drape.check_energy(prototypes.NumpyStvk())
+    assert "midpoint_factor: error" in capsys.readouterr().out
+    assert not drape.check_energy(type("Seven", (prototypes.NumpyStvk,), {"midpoint_factor": 7})())
+    square = drape.Level([[-1, -1, 0], [1, -1, 0], [1, 1, 0], [-1, 1, 0]], [[0, 1, 2], [0, 2, 3]])
+    tilted = square.rest @ [[1, 0, 0.3], [0, 1, 0.1], [0, 0, 1]]
+    assert drape.check_energy("gravity", square, x=tilted)  # its energy is 0 up to round-off
+
+
 def test_a_metric_or_refiner_that_fails(small):
     class Broken(drape.Metric):
         parameters = {"fails": False}  # experiments that name no metrics have this one too

@@ -10,8 +10,10 @@
 
 #include "core/app/python/module.h"
 #include "core/app/python/values.h"
+#include "core/kernel/files/number_text.h"
 #include "core/kernel/plugin/make.h"
 #include "core/kernel/threads/parallel.h"
+#include "core/numerics/hierarchy/midpoint.h"
 #include "core/numerics/model/derivative_check.h"
 #include "core/numerics/model/hessian_assembler.h"
 
@@ -196,6 +198,8 @@ class PythonEnergy final : public Energy {
 struct BoundEnergyHandle {
   std::shared_ptr<const BoundEnergy> energy;
   std::shared_ptr<const Level> level;
+  std::shared_ptr<const Energy> kind;  ///< the energy that was bound
+  Material material;
   int vertices = level->vertex_count();
 
   double value(const State& x) const { return energy->value(x.of(vertices)); }
@@ -222,7 +226,26 @@ BoundEnergyHandle bind_energy(const py::object& source, const std::shared_ptr<Le
           shown(source) + (PyType_Check(source.ptr()) ? "; make an object of the class by calling it" : ""));
     energy = prototype_energy(source);
   }
-  return {energy->bind(*level, material), level};
+  return {energy->bind(*level, material), level, energy, material};
+}
+
+/// The largest errors of the derivatives and of the midpoint factor at x, and what they are.
+std::pair<double, std::string> check_energy(const BoundEnergyHandle& h, const std::optional<State>& given,
+                                            double step) {
+  const Positions x = given ? given->of(h.vertices) : checked_state(*h.level);
+  const DerivativeCheck found = check_derivatives(*h.energy, x, step);
+  const std::optional<double> factor = h.kind->midpoint_factor();
+  if (!factor) return {found.worst(), found.text()};
+  const ProlongationMatrix midpoints = midpoint_weights(*h.level);
+  const Level fine = Level::of(h.level->index + 1, refined_rest(*h.level, midpoints));
+  const double expected = *factor * h.value({x}),
+               split = h.kind->bind(fine, h.material)->value(midpoints * x);
+  // An energy far below its terms, as where weights balance each other, is round-off.
+  const double terms = (h.gradient({x}).array() * x.array()).abs().sum(),
+               scale = std::max({std::abs(expected), std::abs(split), 1e-6 * terms}),
+               error = scale > 0 ? std::abs(split - expected) / scale : 0;
+  return {error <= found.worst() ? found.worst() : error,  // a NaN counts
+          found.text() + "midpoint_factor: error " + scientific_text(error, 2) + "\n"};
 }
 
 }  // namespace
@@ -237,14 +260,7 @@ void bind_bound_energy(py::module_& m) {
       .def("gradient", &BoundEnergyHandle::gradient, py::arg("x"), "n×3 [N]")
       .def("hessian", &BoundEnergyHandle::hessian, py::arg("x"),
            "3n×3n scipy.sparse.bsr_matrix [N/m], without projection.");
-  m.def(
-      "_check_energy",
-      [](const BoundEnergyHandle& h, const std::optional<State>& x, double step) {
-        const DerivativeCheck found =
-            check_derivatives(*h.energy, x ? x->of(h.vertices) : checked_state(*h.level), step);
-        return std::pair(found.worst(), found.text());
-      },
-      py::arg("bound"), py::arg("x"), py::arg("step"));
+  m.def("_check_energy", &check_energy, py::arg("bound"), py::arg("x"), py::arg("step"));
   m.def("_checked_level", [] { return std::make_shared<Level>(checked_level()); });
   m.def(
       "bind_energy", &bind_energy, py::arg("energy"), py::arg("level"), py::arg("material") = Material(),

@@ -200,7 +200,8 @@ def register(name: str, prototype: type) -> type:
 
 def check_energy(energy, level: Optional[_core.Level] = None, material: Optional[_core.Material] = None, x=None,
                  step: float = 1e-5, tolerance: float = 1e-5) -> bool:
-    """Compare an energy's derivatives with finite differences; print the largest errors, and where they are.
+    """Compare an energy's derivatives with finite differences, and its midpoint_factor, if it has one, with the energy of
+    the mesh split at midpoints; print the largest errors, and where they are.
 
     energy: a drape.Energy object, a plugin's name, or a dict with its parameters.
     level: a small one; by default that of `drape check-energy`, four square cells of 1 cm.
