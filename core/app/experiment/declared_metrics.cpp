@@ -62,6 +62,13 @@ void add_new(std::vector<Named>& all, const std::vector<Named>& more) {
 
 }  // namespace
 
+std::vector<std::string> default_metrics(const Registry& registry) {
+  std::vector<std::string> names;
+  for (const RegistryEntry* entry : registry.of_kind(Metric::kind))
+    if (std::ranges::none_of(entry->schema.parameters, &Parameter::required)) names.push_back(entry->name);
+  return names;
+}
+
 std::vector<DeclaredMetric> declared_metrics(
     const std::vector<std::pair<std::string, std::shared_ptr<Metric>>>& metrics) {
   std::vector<DeclaredMetric> declared;

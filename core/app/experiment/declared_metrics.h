@@ -9,6 +9,7 @@
 
 #include "core/kernel/interfaces/metric.h"
 #include "core/kernel/plugin/config_node.h"
+#include "core/kernel/plugin/registry.h"
 
 namespace drape {
 
@@ -18,6 +19,9 @@ struct DeclaredMetric {
   MetricScope scope = MetricScope::pair;
   MetricDeclaration declaration;
 };
+
+/// The metrics of an experiment that names none: all that need no parameter.
+std::vector<std::string> default_metrics(const Registry& registry);
 
 /// The declarations of an experiment's metrics. Of two metrics with one name, the first counts.
 std::vector<DeclaredMetric> declared_metrics(

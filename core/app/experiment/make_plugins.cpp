@@ -126,9 +126,8 @@ void make_plugins(Experiment& e, ConfigErrors& errors) {
   make_contacts(e, errors);
 
   if (!e.source.find("metrics"))
-    for (const RegistryEntry* entry : e.registry->of_kind("metric"))
-      if (std::ranges::none_of(entry->schema.parameters, &Parameter::required))
-        e.parameters.metrics.push_back(ConfigNode::of(entry->name));
+    for (const std::string& name : default_metrics(*e.registry))
+      e.parameters.metrics.push_back(ConfigNode::of(name));
   for (const ConfigNode& node : e.parameters.metrics)
     if (auto metric = make_from<Metric>(*e.registry, node, errors, &metrics.items.emplace_back()))
       e.metrics.emplace_back(node.plugin_name(), metric);

@@ -5,8 +5,10 @@
 #include <variant>
 #include <vector>
 
+#include "core/app/experiment/declared_metrics.h"
 #include "core/app/python/module.h"
 #include "core/app/python/values.h"
+#include "core/kernel/plugin/make.h"
 
 namespace drape::python {
 
@@ -188,11 +190,23 @@ void register_class(const std::string& name, const py::object& type,
   register_prototype(std::move(entry));
 }
 
+/// Refuses a metric that is faulty, or whose columns are others' already: every experiment that names no
+/// metrics would have it.
+void check_metric(const std::string& name, const py::object& type) {
+  std::vector<std::pair<std::string, std::shared_ptr<Metric>>> metrics;
+  ConfigErrors errors;
+  for (const std::string& other : default_metrics(registry()))
+    if (other != name)
+      metrics.emplace_back(other, make_from<Metric>(registry(), ConfigNode::of(other), errors));
+  metrics.emplace_back(name, prototype_metric(type()));
+  if (errors.empty()) check_declarations(declared_metrics(metrics), {}, errors);
+  throw_errors(errors);
+}
+
 void register_of_kind(const std::string& kind, const std::string& name, const py::object& type) {
   if (kind == Energy::kind) return register_class(name, type, &prototype_energy);
   if (kind == Metric::kind) {
-    prototype_metric(
-        type());  // refuses a faulty one, which every experiment that names no metrics would have
+    check_metric(name, type);
     return register_class(name, type, &prototype_metric);
   }
   if (kind == Refiner::kind) return register_class(name, type, &prototype_refiner);

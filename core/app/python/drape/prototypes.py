@@ -189,7 +189,8 @@ def register(name: str, prototype: type) -> type:
 
     Raises TypeError for a class that is not derived from Energy, Metric, Refiner or Solver, and for parameters or a
     metric's columns of a wrong type; ValueError for a parameter that has the name of an attribute, a metric's `scope` or
-    a column's `better` that does not exist; RuntimeError if a plugin's library has the name. Call it while no experiment is being read in another thread.
+    a column's `better` that does not exist, and a column that results.json or another metric has already; RuntimeError if
+    a plugin's library has the name. Call it while no experiment is being read in another thread.
     """
     for kind in (Energy, Metric, Refiner, Solver):
         if isinstance(prototype, type) and issubclass(prototype, kind):
