@@ -179,6 +179,7 @@ def test_tables(experiment):
     parts = sum(result.levels[c] for c in result.levels if c.startswith("energy_parts."))
     assert numpy.allclose(parts, result.levels["energy"], rtol=1e-12)
     assert len(result.iterations) == sum(result.levels["iterations"])
+    assert list(drape.read_sweep(result.folder)["method"]) == result.methods
     assert len(result.consistency) == 3 and "d_H_fit" in result.consistency
     assert result.levels["level"].dtype == result.iterations["level"].dtype == int
     assert result.levels["smallest_gap"].dtype == float  # of a run without contact

@@ -190,7 +190,7 @@ class Result:
 
 def read_sweep(folder) -> pandas.DataFrame:
     """A sweep as one table, that of `drape table`: a row for each method of each run, with a column for every
-    varied key and one for the seed.
+    varied key and one for the seed. Of the folder of a run: a row for each of its methods.
 
     Raises RuntimeError for a folder without a sweep.
     """
