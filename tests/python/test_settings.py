@@ -22,3 +22,8 @@ def test_values_that_need_each_other_are_set_one_after_another(experiment):
         experiment.check()
     experiment.set("reference", "pcs")
     experiment.check()
+
+
+def test_a_text_that_a_config_cannot_hold_is_refused(experiment):
+    with pytest.raises(ValueError, match="is no text that UTF-8 can hold"):
+        experiment.set("name", "\ud800")
