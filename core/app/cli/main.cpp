@@ -84,7 +84,7 @@ int main(int argc, char** argv) {
     return end(std::string("a results file is not as drape writes it (") + error.what() +
                    "); run the experiment again",
                exit_bad_input);
-  } catch (const std::exception& error) {
-    return end(reason_of(error), exit_bad_input);
+  } catch (...) {
+    return end(message_in_flight(), exit_bad_input);
   }
 }

@@ -39,8 +39,8 @@ void check_metrics(const Experiment& e, ConfigErrors& errors) {
   const Location where = e.location_of("metrics");
   try {
     check_declarations(declared_metrics(e.metrics), where, errors);
-  } catch (const std::exception& error) {
-    errors.push_back({where, "a metric's declaration: " + reason_of(error)});
+  } catch (...) {
+    errors.push_back({where, "a metric's declaration: " + message_in_flight()});
   }
 }
 

@@ -72,8 +72,8 @@ StateError state_error(const std::vector<ErrorMeasure>& measures, const Experime
         for (std::size_t k = 0; k < measures.size(); ++k)
           if (v.name == measures[k].value)
             error[k] = measures[k].better == Better::higher ? 1 - v.value : v.value;
-    } catch (const std::exception& problem) {
-      fault(name + ": " + reason_of(problem));
+    } catch (...) {
+      fault(name + ": " + message_in_flight());
     }
   }
   if (target.released > 0) error.back() = (energy - target.energy) / target.released;

@@ -30,10 +30,8 @@ MetricResult Recorder::measure(const std::string& name, const Metric& metric, co
   std::string cause;
   try {
     return metric.evaluate(input);
-  } catch (const std::exception& error) {
-    cause = error.what();
   } catch (...) {
-    cause = "an exception that is no std::exception";
+    cause = message_in_flight();
   }
   not_measured_.emplace(name, cause);
   entry["not_measured"][name] = cause;

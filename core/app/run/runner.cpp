@@ -47,16 +47,6 @@ class UnrecordedObserver : public Observer {
   RunObserver& run_;
 };
 
-std::string message_in_flight() {
-  try {
-    throw;
-  } catch (const std::exception& error) {
-    return *error.what() ? reason_of(error) : "an exception without a message";
-  } catch (...) {
-    return "an exception that is no std::exception";
-  }
-}
-
 /// Performs an action of a run that has begun; errors abort the run.
 template <class Action>
 bool with_folder(const RunFolder& folder, const RunOptions& options, const Action& action) {

@@ -149,8 +149,8 @@ std::unique_ptr<Scene> build_scene(const Experiment& e, ConfigErrors& errors,
   std::unique_ptr<Scene> scene;
   try {
     scene = std::make_unique<Scene>(Hierarchy::of(std::move(*cloth), *e.refiner, p.levels));
-  } catch (const std::exception& error) {
-    errors.push_back({e.location_of("cloth"), reason_of(error)});
+  } catch (...) {
+    errors.push_back({e.location_of("cloth"), message_in_flight()});
     return nullptr;
   }
   const Level& coarsest = scene->hierarchy.levels[0];
@@ -178,8 +178,8 @@ std::unique_ptr<Scene> build_scene(const Experiment& e, ConfigErrors& errors,
     try {
       scene->models.push_back(std::make_shared<const LevelModel>(level, p.material, scene->energies,
                                                                  std::move(dirichlet), e.contacts));
-    } catch (const std::exception& error) {
-      errors.push_back({e.location_of("energies"), reason_of(error)});
+    } catch (...) {
+      errors.push_back({e.location_of("energies"), message_in_flight()});
       return nullptr;
     }
     if (intersecting == IntersectingStart::refused)

@@ -116,4 +116,14 @@ std::string reason_of(const std::exception& error) {
   return error.what();
 }
 
+std::string message_in_flight() {
+  try {
+    throw;
+  } catch (const std::exception& error) {
+    return *error.what() ? reason_of(error) : "an exception without a message";
+  } catch (...) {
+    return "an exception that is no std::exception";
+  }
+}
+
 }  // namespace drape

@@ -26,4 +26,7 @@ std::string three_digits(double value);
 /// An exception as a sentence: file system errors name the file, lack of memory suggests a remedy.
 std::string reason_of(const std::exception& error);
 
+/// The same of the exception that is being handled, whatever it is: plugins throw anything.
+std::string message_in_flight();
+
 }  // namespace drape

@@ -169,8 +169,8 @@ std::shared_ptr<void> make_plugin(const PluginParameters& parameters, const Loca
   } catch (const RefusedParameters& refused) {
     for (const ParameterFault& fault : refused.faults)
       errors.push_back({locate(fault.path, fault.at), plugin + fault.message, fault.shown});
-  } catch (const std::exception& error) {
-    errors.push_back({locate("", std::nullopt), plugin + reason_of(error)});
+  } catch (...) {
+    errors.push_back({locate("", std::nullopt), plugin + message_in_flight()});
   }
   return nullptr;
 }

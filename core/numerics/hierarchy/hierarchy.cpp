@@ -6,6 +6,7 @@
 #include <string>
 #include <utility>
 
+#include "core/kernel/files/message_text.h"
 #include "core/numerics/hierarchy/midpoint.h"
 #include "core/numerics/hierarchy/rest_interpolation.h"
 #include "core/numerics/mesh/check.h"
@@ -28,6 +29,10 @@ ProlongationMatrix weights_of(const Refiner& refiner, const Level& coarse) {
     return refiner.weights(coarse);
   } catch (const std::runtime_error& error) {
     throw std::runtime_error(std::string("the refiner: ") + error.what());
+  } catch (const std::exception&) {
+    throw;
+  } catch (...) {
+    throw std::runtime_error("the refiner: " + message_in_flight());
   }
 }
 

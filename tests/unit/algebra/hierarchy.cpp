@@ -55,6 +55,8 @@ TEST_CASE("what a faulty refiner returns is refused before anything is computed 
              Catch::Matchers::StartsWith(of_level + "row 5"));
   CHECK(refusal([](ProlongationMatrix&) { throw std::runtime_error("cannot refine"); }) ==
         "the refiner: cannot refine");
+  CHECK(refusal([](ProlongationMatrix&) { throw "text"; }) ==
+        "the refiner: an exception that is no std::exception");
 }
 
 TEST_CASE("a level is split into children of its vertices and edges", "[hierarchy]") {
