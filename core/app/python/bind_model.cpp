@@ -8,6 +8,7 @@
 #include "core/app/python/values.h"
 #include "core/kernel/plugin/bounds.h"
 #include "core/numerics/model/objective.h"
+#include "core/numerics/model/required.h"
 
 namespace drape::python {
 
@@ -66,12 +67,10 @@ std::vector<py::dict> contacts(const ModelHandle& m, const State& state) {
   const Positions& x = state_of_model(m, state);
   std::vector<py::dict> all;
   for (const auto& contact : m.model().contacts()) {
-    std::unique_ptr<CollisionCandidates> candidates;
     std::unique_ptr<Collisions> collisions;
     Positions g = Positions::Zero(x.rows(), 3);
     const double energy = without_gil([&] {
-      candidates = contact->build_candidates(x, x);
-      collisions = candidates->build_collisions(x);
+      collisions = collisions_at(*contact, x);
       return collisions->add_gradient(x, g);
     });
     py::dict& one = all.emplace_back();

@@ -7,6 +7,7 @@
 #include "core/app/scene/scene_summary.h"
 #include "core/kernel/files/string_utils.h"
 #include "core/numerics/mesh/coincident_border.h"
+#include "core/numerics/model/required.h"
 #include "core/numerics/patterns/generate.h"
 #include "core/numerics/solve/start_fault.h"
 
@@ -115,7 +116,7 @@ std::optional<std::vector<double>> energies_of_a_piece(const Experiment& e, cons
   try {
     for (const NamedEnergy& named : e.energies)
       if (Roles{EnergyRole::membrane, EnergyRole::bending}.has(named.energy->role()))
-        values.push_back(named.energy->bind(piece, material)->value(x));
+        values.push_back(bound_energy(*named.energy, piece, material)->value(x));
   } catch (const std::runtime_error&) {
     return std::nullopt;
   }

@@ -6,6 +6,7 @@
 #include "core/kernel/files/number_text.h"
 #include "core/kernel/interfaces/gaps.h"
 #include "core/numerics/elements/orthotropic_stiffness.h"
+#include "core/numerics/model/required.h"
 
 namespace drape {
 
@@ -19,7 +20,7 @@ double gravity_of(const LevelModel& model, const std::vector<NamedEnergy>& energ
   double gravity = 0;
   for (const NamedEnergy& named : energies) {
     if (named.energy->role() != EnergyRole::external) continue;
-    const auto energy = named.energy->bind(model.level(), model.material());
+    const auto energy = bound_energy(*named.energy, model.level(), model.material());
     if (energy->stencils().rows() > 0) continue;  // it depends on the state
     Positions force = Positions::Zero(origin.rows(), 3);
     energy->add_gradient(origin, force);

@@ -6,6 +6,7 @@
 #include "core/app/files/yaml_file.h"
 #include "core/app/scene/scene.h"
 #include "core/kernel/files/message_text.h"
+#include "core/numerics/model/required.h"
 
 namespace drape {
 
@@ -59,7 +60,7 @@ class StartProbe {
       for (const auto& contact : scene_.model(static_cast<int>(l))->contacts()) {
         clearance.intersections = contact->intersections(x);
         if (!clearance.intersections.empty()) return clearance;
-        const auto near = contact->build_candidates(x, x)->build_collisions(x);
+        const auto near = collisions_at(*contact, x);
         clearance.contacts += near->contact_count();
         clearance.smallest_gap = std::min(clearance.smallest_gap, near->smallest_gap());
       }

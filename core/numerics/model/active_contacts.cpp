@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <limits>
-#include <stdexcept>
 #include <utility>
 
 #include "core/numerics/contact_forces/contact_stiffness.h"
+#include "core/numerics/model/required.h"
 
 namespace drape {
 
@@ -15,20 +15,11 @@ namespace {
 /// friction thirty times as strongly.
 constexpr double smallest_lag_fraction = 1.0 / 16;
 
-template <class T>
-std::unique_ptr<T> required(std::unique_ptr<T> made, const char* by) {
-  if (!made)
-    throw std::runtime_error(std::string("a contact model's ") + by +
-                             " returned null; return an object, which may have no contacts");
-  return made;
-}
-
 }  // namespace
 
 void ActiveContacts::build_candidates(const Positions& x0, const Positions& x1) {
   candidates_.clear();
-  for (const auto& model : models_)
-    candidates_.push_back(required(model->build_candidates(x0, x1), "build_candidates"));
+  for (const auto& model : models_) candidates_.push_back(candidates_of(*model, x0, x1));
   candidates_motion_ = std::make_shared<const PositionPair>(PositionPair{x0, x1});
 }
 
@@ -37,8 +28,7 @@ void ActiveContacts::build_collisions(const Positions& x) {
   if (candidates_.empty()) build_candidates(x, x);
   const Stopwatch watch;
   collisions_.clear();
-  for (const auto& candidates : candidates_)
-    collisions_.push_back(required(candidates->build_collisions(x), "build_collisions"));
+  for (const auto& candidates : candidates_) collisions_.push_back(collisions_of(*candidates, x));
   seconds_building_ += watch.seconds();
   state_ = x;
   collisions_motion_ = candidates_motion_;

@@ -5,8 +5,10 @@
 #include <limits>
 #include <stdexcept>
 
+#include "core/kernel/files/message_text.h"
 #include "core/numerics/contact_forces/contact_stiffness.h"
 #include "core/numerics/mesh/same_entries.h"
+#include "core/numerics/model/required.h"
 
 namespace drape {
 
@@ -21,8 +23,8 @@ double norm_where(const Positions& g, const std::vector<char>& flags, char flag)
   return std::sqrt(sum);
 }
 
-/// What `bind` returns. The message of a runtime_error begins with the name of what was bound; other
-/// exceptions, as of memory or of Python, pass.
+/// What `bind` returns. The message of a runtime_error, and of what is no std::exception, begins with the
+/// name of what was bound; other exceptions, as of memory or of Python, pass.
 template <class Bind>
 auto bound(const std::string& name, const Bind& bind)
     -> std::shared_ptr<const typename decltype(bind())::element_type> {
@@ -32,6 +34,10 @@ auto bound(const std::string& name, const Bind& bind)
     const std::string message = error.what();
     const bool named = message.starts_with(name.substr(name.find(' ') + 1));
     throw std::runtime_error(named ? message : name + ": " + message);
+  } catch (const std::exception&) {
+    throw;
+  } catch (...) {
+    throw std::runtime_error(name + ": " + message_in_flight());
   }
 }
 
@@ -97,10 +103,7 @@ void LevelModel::bind_energies(const std::vector<NamedEnergy>& energies, const L
       terms_.push_back(*old);
     } else {
       Term term{unused_name(e.name), e.energy->role(), e.energy, nullptr, nullptr};
-      term.energy = bound("energy " + term.name, [&] { return e.energy->bind(*level_, material_); });
-      if (!term.energy)
-        throw std::runtime_error("energy " + term.name +
-                                 ": bind returned null; return an object, which may have no elements");
+      term.energy = bound("energy " + term.name, [&] { return bound_energy(*e.energy, *level_, material_); });
       Stencils own = term.energy->stencils();
       if (old && !same_entries(own, old->energy->stencils()))
         throw std::runtime_error("energy " + term.name +
@@ -149,7 +152,7 @@ void LevelModel::add_up_linear_energies() {
       auto sum = std::find_if(linear_.begin(), linear_.end(),
                               [&](const LinearSum& s) { return s.role == term.role; });
       if (sum == linear_.end()) sum = linear_.insert(sum, {term.role, origin, 0});
-      sum->at_origin += term.energy->add_gradient(origin, sum->gradient);
+      sum->at_origin += add_gradient_of(*term.energy, term.name, origin, sum->gradient);
       if (!std::isfinite(sum->at_origin) || !sum->gradient.allFinite())
         throw std::runtime_error(
             "energy " + term.name +
@@ -189,7 +192,7 @@ std::optional<double> LevelModel::midpoint_factor(EnergyRole role) const {
 
 double LevelModel::barrier(const Positions& x) const {
   double sum = 0;
-  for (const auto& contact : contacts_) sum += contact->build_candidates(x, x)->build_collisions(x)->value(x);
+  for (const auto& contact : contacts_) sum += collisions_at(*contact, x)->value(x);
   return sum;
 }
 
@@ -217,7 +220,7 @@ double LevelModel::external_force_norm(const Positions& x) const {
   for (const Term& term : terms_)
     if (term.role == EnergyRole::external) {
       Positions g = Positions::Zero(x.rows(), 3);
-      term.energy->add_gradient(x, g);
+      add_gradient_of(*term.energy, term.name, x, g);
       sum += free_norm(g, fixed_);
     }
   return sum;

@@ -5,6 +5,7 @@
 #include "core/kernel/threads/parallel.h"
 #include "core/numerics/model/hessian_assembler.h"
 #include "core/numerics/model/level_model.h"
+#include "core/numerics/model/required.h"
 
 namespace drape {
 
@@ -44,7 +45,7 @@ double LevelModel::gradient(const Positions& x, Positions& g, Roles roles) const
   double sum = linear_value(x, &g, roles);
   for (const Term& term : terms_) {
     if (!term.slots || !roles.has(term.role)) continue;
-    sum += term.energy->add_gradient(x, g);
+    sum += add_gradient_of(*term.energy, term.name, x, g);
     if (!std::isfinite(sum)) return sum;
   }
   return sum;
@@ -66,14 +67,14 @@ void LevelModel::add_hessian(const Positions& x, Projection projection, BlockMat
 
 double LevelModel::energy_gradient(const Positions& x, Positions& g) const {
   double sum = gradient(x, g);
-  for (const BoundEnergy* limit : limits_) sum += limit->add_gradient(x, g);
+  for (const Term& term : terms_)
+    if (term.role == EnergyRole::limit) sum += add_gradient_of(*term.energy, term.name, x, g);
   return sum + add_barrier_gradient(x, g);
 }
 
 double LevelModel::add_barrier_gradient(const Positions& x, Positions& g) const {
   double sum = 0;
-  for (const auto& contact : contacts_)
-    sum += contact->build_candidates(x, x)->build_collisions(x)->add_gradient(x, g);
+  for (const auto& contact : contacts_) sum += add_gradient_of(*collisions_at(*contact, x), "contact", x, g);
   return sum;
 }
 
@@ -90,7 +91,7 @@ BlockMatrix LevelModel::energy_hessian(const Positions& x, Projection projection
   for (const Term& term : terms_)
     if (!term.is_linear()) energies.push_back(term.energy.get());
   for (const auto& contact : contacts_) {
-    collisions.push_back(contact->build_candidates(x, x)->build_collisions(x));
+    collisions.push_back(collisions_at(*contact, x));
     energies.push_back(collisions.back().get());
   }
   return hessian_of(energies, x, projection);

@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "core/numerics/model/required.h"
+
 namespace drape {
 
 double Objective::cached_smooth_gradient(const Positions& x, Positions& g) {
@@ -16,7 +18,7 @@ double Objective::cached_smooth_gradient(const Positions& x, Positions& g) {
 double Objective::gradient(const Positions& x, Positions& g) {
   double sum = cached_smooth_gradient(x, g);
   for (std::size_t k = 0; k < limits_.size() && std::isfinite(sum); ++k)
-    sum += limits_[k]->add_gradient(x, g);
+    sum += add_gradient_of(*limits_[k], "of role limit", x, g);
   if (penalty_) sum += penalty_->add_gradient(x, g);
   return std::isfinite(sum) ? sum + contacts_.add_gradient(x, g) : sum;
 }

@@ -71,6 +71,27 @@ TEST_CASE("an energy that cannot be bound, or is not what it says, is refused by
                return std::make_unique<OriginSprings>(Stencils(0, 1));
              }),
              Catch::Matchers::StartsWith("energy wind has no elements, so it counts as linear, but"));
+  CHECK(refusal([]() -> std::unique_ptr<BoundEnergy> { throw 42; }) ==
+        "energy wind: an exception that is no std::exception");
+}
+
+TEST_CASE("an energy that replaces the gradient is refused by name, before another one writes to it") {
+  struct Replacing : OriginSprings {
+    using OriginSprings::OriginSprings;
+    double add_gradient(const Positions&, Positions& g) const override {
+      g = Positions::Zero(3, 3);
+      return 0;
+    }
+  };
+  const Level level = Level::of(0, grid({2, 1}, 4, 3, Diagonals::one_way));
+  for (const EnergyRole role : {EnergyRole::membrane, EnergyRole::limit}) {
+    const LevelModel model(level, Material(),
+                           {{"short", energy_of(Replacing(each_vertex(12)), role)},
+                            {"springs", energy_of(OriginSprings(each_vertex(12)))}},
+                           {});
+    CHECK(refusal_of([&] { model.force_residual(level.rest.vertices); }) ==
+          "energy short: add_gradient has changed the size of g to 3 rows, not 12; add to its rows");
+  }
 }
 
 TEST_CASE("linear energies are evaluated together, and limits apart", "[level_model]") {
