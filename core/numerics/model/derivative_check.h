@@ -8,7 +8,7 @@ namespace drape {
 
 /// The largest difference between a derivative and its finite difference, and where it is.
 struct DerivativeError {
-  double error = 0;  ///< relative to the largest entry of the finite differences [1]
+  double error = 0;  ///< relative to the largest entry of the finite differences [1]; +∞ where not finite
   int row = 0;       ///< 3 i + c: coordinate c of vertex i
   int column = 0;    ///< likewise; of Hessians alone
 };
@@ -16,7 +16,7 @@ struct DerivativeError {
 struct DerivativeCheck {
   DerivativeError gradient;  ///< against differences of value()
   DerivativeError hessian;   ///< against differences of add_gradient(), without projection
-  double asymmetry = 0;      ///< of the Hessian's diagonal blocks, relative to its largest entry [1]
+  double asymmetry = 0;      ///< of a finite Hessian's diagonal blocks, relative to its largest entry [1]
 
   /// The largest of the three.
   double worst() const;
@@ -33,8 +33,9 @@ Positions checked_state(const Level& level);
 inline constexpr double difference_step = 1e-5;
 
 /// Compares an energy's derivatives at x (n×3) [m] with central differences of fourth order, step h [m].
-/// Takes 24 n evaluations and (3n)² numbers: for small meshes. Throws std::runtime_error if the energy is not
-/// finite near x, if add_gradient does not add, or if it returns another number than value().
+/// Takes 24 n evaluations and (3n)² numbers: for small meshes. A gradient that is not finite at x differs,
+/// and leaves the Hessian unchecked. Throws std::runtime_error if the energy is not finite at x or near it,
+/// if add_gradient does not add, or if it returns another number than value().
 DerivativeCheck check_derivatives(const BoundEnergy& energy, const Positions& x, double h);
 
 /// Checks the energy on the checked level. Where the derivatives do not agree, repeats that with a tenth and

@@ -80,6 +80,43 @@ TEST_CASE("the largest error of a derivative is found where it is") {
   CHECK(check.asymmetry > 0.1);
 }
 
+TEST_CASE("what is not finite differs, and is named") {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  Quartic energy;
+  energy.hessian_error = nan;
+  DerivativeCheck check = check_derivatives(energy, state, 1e-3);
+  CHECK_FALSE(check.agrees());
+  CHECK_THAT(check.text(), Catch::EndsWith("hessian: NOT FINITE at vertices 2, x and 2, y\n"));
+  energy = {};
+  energy.gradient_error = nan;
+  check = check_derivatives(energy, state, 1e-3);
+  CHECK_FALSE(check.agrees());
+  CHECK(check.text() ==
+        "gradient: NOT FINITE at vertex 1, z\nhessian: not checked, since it takes finite gradients\n");
+  energy = {};
+  energy.limit = -1;
+  CHECK_THROWS_WITH(check_derivatives(energy, state, 1e-3),
+                    Catch::Matchers::StartsWith("the energy is not finite at this state: value is inf"));
+}
+
+TEST_CASE("the round-off of a constant energy is no error of its gradient") {
+  struct Constant : NoEnergy {
+    double value(const Positions&) const override { return 5; }
+  };
+  CHECK(check_derivatives(Constant(), state, 1e-5).agrees());
+}
+
+TEST_CASE("a gradient that replaces g is refused") {
+  struct Replacing : NoEnergy {
+    double add_gradient(const Positions&, Positions& g) const override {
+      g = Positions::Zero(2, 3);
+      return 0;
+    }
+  };
+  CHECK_THROWS_WITH(check_derivatives(Replacing(), state, 1e-3),
+                    Catch::Contains("add_gradient has changed the size of g to 2 rows, not 3"));
+}
+
 TEST_CASE("a state at the border of the domain is refused") {
   Quartic energy;
   energy.limit = 0.3;
