@@ -83,7 +83,32 @@ TEST_CASE("check-energy finds an energy or a force that jumps, and passes a law 
     CHECK_THAT(ended.out, Contains("\nNOT SMOOTH: ") && Contains(jump) && Contains(", at strains g11 = "));
   }
   CHECK_THAT(check("if(g11 > 0.01, 1, 0)").out, Contains("at strains g11 = 0.01, "));
+  for (const char* term :
+       {"9*(s1 - 1)^2 + 5*(s2 - 1)^2", "9*max(s1 - 1, 0)^2", "9*max(1 - s2, 0)^2", "s1 - s2"}) {
+    INFO(term);
+    const Ended ended = check(term);
+    CHECK(ended.exit_code == 1);
+    CHECK_THAT(ended.out, Contains("NOT SMOOTH: the force jumps by ") &&
+                              Contains("let the law be a smooth function that is symmetric in s1 and s2"));
+  }
+  CHECK(check("9*(s1 - 1)^2 + 9*(s2 - 1)^2 + s1*s2").exit_code == 0);
+  CHECK(drape_with("check-energy '{type: formula, density: \"5\"}'", folders::source()).exit_code == 0);
   CHECK(check("5*max(g11, 0)^2").exit_code == 0);
+}
+
+TEST_CASE("check finds laws with jumps or with forces at rest, of those that have neither it says nothing") {
+  const Scratch folder(small_experiment());
+  const auto lines = [&](const std::string& density) {
+    return shown_by("check e.yaml --set 'energies=[{type: formula, density: \"" + density + "\"}, hinge]'",
+                    folder.path);
+  };
+  CHECK_THAT(lines("100*(abs(g11) + g11^2 + g22^2 + g12^2)"),
+             Contains("\nformula: NOT SMOOTH: the force jumps by ") && !Contains("forces on the rest"));
+  CHECK_THAT(
+      lines("100*(g11^2 + g22^2 + g12^2) + 3*g12"),
+      Contains("\nformula: its forces on the rest shape are not zero, but ") && !Contains("NOT SMOOTH"));
+  CHECK_THAT(lines("100*(g11^2 + g22^2 + g12^2)"),
+             !Contains("NOT SMOOTH") && !Contains("forces on the rest"));
 }
 
 TEST_CASE("check of a sweep says so, and checks every variation") {

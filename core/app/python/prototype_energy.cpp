@@ -5,6 +5,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -16,6 +17,8 @@
 #include "core/numerics/hierarchy/midpoint.h"
 #include "core/numerics/model/derivative_check.h"
 #include "core/numerics/model/hessian_assembler.h"
+#include "core/numerics/model/required.h"
+#include "core/numerics/model/smoothness_check.h"
 
 namespace drape::python {
 
@@ -226,26 +229,27 @@ BoundEnergyHandle bind_energy(const py::object& source, const std::shared_ptr<Le
           shown(source) + (PyType_Check(source.ptr()) ? "; make an object of the class by calling it" : ""));
     energy = prototype_energy(source);
   }
-  return {energy->bind(*level, material), level, energy, material};
+  return {bound_energy(*energy, *level, material), level, energy, material};
 }
 
-/// The largest errors of the derivatives and of the midpoint factor at x, and what they are.
-std::pair<double, std::string> check_energy(const BoundEnergyHandle& h, const std::optional<State>& given,
-                                            double step) {
+/// The largest error of the derivatives and of the midpoint factor at x, what the errors are, and what jumps.
+std::tuple<double, std::string, std::string> check_energy(const BoundEnergyHandle& h,
+                                                          const std::optional<State>& given, double step) {
   const Positions x = given ? given->of(h.vertices) : checked_state(*h.level);
   const DerivativeCheck found = check_derivatives(*h.energy, x, step);
   const std::optional<double> factor = h.kind->midpoint_factor();
-  if (!factor) return {found.worst(), found.text()};
+  const std::string jump = jump_of(*h.energy, *h.level);
+  if (!factor) return {found.worst(), found.text(), jump};
   const ProlongationMatrix midpoints = midpoint_weights(*h.level);
   const Level fine = Level::of(h.level->index + 1, refined_rest(*h.level, midpoints));
   const double expected = *factor * h.value({x}),
-               split = h.kind->bind(fine, h.material)->value(midpoints * x);
+               split = bound_energy(*h.kind, fine, h.material)->value(midpoints * x);
   // An energy far below its terms, as where weights balance each other, is round-off.
   const double terms = (h.gradient({x}).array() * x.array()).abs().sum(),
                scale = std::max({std::abs(expected), std::abs(split), 1e-6 * terms}),
                error = scale > 0 ? std::abs(split - expected) / scale : 0;
   return {error <= found.worst() ? found.worst() : error,  // a NaN counts
-          found.text() + "midpoint_factor: error " + scientific_text(error, 2) + "\n"};
+          found.text() + "midpoint_factor: error " + scientific_text(error, 2) + "\n", jump};
 }
 
 }  // namespace

@@ -158,4 +158,16 @@ DerivativeCheck check_derivatives(const Energy& energy, const Material& material
   return best;
 }
 
+double relative_force_at_rest(const Energy& energy, const Material& material) {
+  const Level level = checked_level();
+  const auto bound = bound_energy(energy, level, material);
+  const auto largest_force = [&](const Positions& x) {
+    Positions g = Positions::Zero(x.rows(), 3);
+    add_gradient_of(*bound, "that is checked", x, g);
+    return g.cwiseAbs().maxCoeff();
+  };
+  const double strained = largest_force(checked_state(level));
+  return strained > 0 ? largest_force(level.rest.vertices) / strained : 0;
+}
+
 }  // namespace drape

@@ -43,4 +43,8 @@ DerivativeCheck check_derivatives(const BoundEnergy& energy, const Positions& x,
 /// returns the best. Throws as the function above does.
 DerivativeCheck check_derivatives(const Energy& energy, const Material& material);
 
+/// The largest force of the energy at the checked level's rest shape, over that at the checked state [1]; 0
+/// but for round-off of an energy that the rest shape is an equilibrium of.
+double relative_force_at_rest(const Energy& energy, const Material& material);
+
 }  // namespace drape

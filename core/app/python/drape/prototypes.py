@@ -202,14 +202,17 @@ def register(name: str, prototype: type) -> type:
 def check_energy(energy, level: Optional[_core.Level] = None, material: Optional[_core.Material] = None, x=None,
                  step: float = 1e-5, tolerance: float = 1e-5) -> bool:
     """Compare an energy's derivatives with finite differences, and its midpoint_factor, if it has one, with the energy of
-    the mesh split at midpoints; print the largest errors, and where they are.
+    the mesh split at midpoints; walk through strains and bends in search of jumps of energy and force; print the
+    largest errors, and where they are.
 
     energy: a drape.Energy object, a plugin's name, or a dict with its parameters.
     level: a small one; by default that of `drape check-energy`, four square cells of 1 cm.
     x: n×3 [m]; by default the rest shape stretched, sheared and bent.
-    step: of the differences [m]. Returns whether every relative error is within the tolerance.
+    step: of the differences [m]. Returns whether every relative error is within the tolerance and nothing jumps.
     """
     bound = _core.bind_energy(energy, level or _core._checked_level(), material or _core.Material())
-    worst, text = _core._check_energy(bound, x, step)
+    worst, text, jump = _core._check_energy(bound, x, step)
     print(text, end="")
-    return worst <= tolerance
+    if jump:
+        print("NOT SMOOTH: " + jump)
+    return worst <= tolerance and not jump
