@@ -10,6 +10,12 @@ namespace {
 
 std::string in_quotes(const std::string& word) { return "\"" + excerpt(word) + "\""; }
 
+/// How a number gets a unit: a literal has none.
+std::string constant_hint(const Dimension& unit) {
+  return "; a number that has this unit is a constant, as in constants: {c: {value: 1, unit: " + unit.text() +
+         "}}";
+}
+
 template <class Named>
 std::vector<std::string> names_of(const std::vector<Named>& all) {
   std::vector<std::string> names;
@@ -175,7 +181,10 @@ class Checker {
       if (*dimension == *q.dimension) continue;
       const bool named = node.word[0] >= 'a' && node.word[0] <= 'z';
       throw Fault(node.at, "\"" + node.word + "\" " + (named ? "takes " : "joins ") + dimension->text() +
-                               " and " + q.dimension->text() + "; both must have one unit");
+                               " and " + q.dimension->text() + "; both must have one unit" +
+                               (dimension->is_none()     ? constant_hint(*q.dimension)
+                                : q.dimension->is_none() ? constant_hint(*dimension)
+                                                         : std::string()));
     }
     return dimension;
   }
@@ -197,7 +206,7 @@ void require_energy(const Law& law, const Part& part) {
                      type.dimension->text() + " and must be in " + wanted.text() +
                      (missing == *dimension_of("m") && law.kind == ElementKind::triangle
                           ? "; a modulus in Pa times \"thickness\" is one of the surface"
-                          : "; a factor in " + missing.text() + " is missing"));
+                          : "; a factor in " + missing.text() + " is missing" + constant_hint(missing)));
 }
 
 }  // namespace

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cctype>
+#include <optional>
 
 #include "core/kernel/files/message_text.h"
 #include "core/kernel/plugin/refused_parameters.h"
@@ -103,18 +104,25 @@ class LawReader {
     try {
       append_part(law_, name, text, is_energy);
     } catch (const Fault& fault) {
-      faults_.push_back(
-          {path, std::string(fault.what()) + later(fault, text), fault.at, with_caret(text, fault)});
+      if (const auto message = message_of(fault, name))
+        faults_.push_back({path, *message, fault.at, with_caret(text, fault)});
     }
   }
 
-  /// A remark if the fault is a name that "where" defines further down.
-  std::string later(const Fault& fault, const std::string& text) const {
-    for (const auto& [name, node] : p_.where.entries)
-      if (text.compare(fault.at, name.size(), name) == 0 &&
-          std::string(fault.what()).starts_with("unknown name \"" + name + "\""))
-        return "; \"where\" defines it further down: move it up";
-    return "";
+  /// The message for a fault of a formula in the order of "where"; none for a name that stands above it and
+  /// is not known because of a fault of its own.
+  std::optional<std::string> message_of(const Fault& fault, const std::string& own) const {
+    const std::string message = fault.what();
+    bool is_above = true;
+    for (const auto& [name, node] : p_.where.entries) {
+      const std::string unknown = "unknown name \"" + name + "\"";
+      if (name == own) is_above = false;
+      if (!message.starts_with(unknown)) continue;
+      if (name == own) return unknown + ": a sub-expression cannot use itself";
+      if (is_above) return std::nullopt;
+      return unknown + ": \"where\" defines it further down: move it up";
+    }
+    return message;
   }
 
   const Parameters& p_;

@@ -133,10 +133,16 @@ TEST_CASE("dimensions that do not fit are refused where constants have units") {
   taken("sqrt(warp*stiff*thickness)*g11^2");
   taken("max(warp*g11, 0)*g11");
   taken("warp*(g11^2)^(2/3)");
+  taken("(warp + 0)*g11^2");
   const std::vector<std::tuple<std::string, std::size_t, std::string>> faults = {
       {"stiff*g11^2", 0,
        "the density is in Pa and must be in J/m²; a modulus in Pa times \"thickness\" is one of the surface"},
-      {"warp*area*g11^2", 0, "the density is in J and must be in J/m²; a factor in 1/m² is missing"},
+      {"warp*area*g11^2", 0,
+       "the density is in J and must be in J/m²; a factor in 1/m² is missing; a number that has this unit is "
+       "a constant, as in constants: {c: {value: 1, unit: 1/m²}}"},
+      {"(thickness + 0.1)*stiff*g11^2", 11,
+       "\"+\" joins m and 1; both must have one unit; a number that has this unit is a constant, as in "
+       "constants: {c: {value: 1, unit: m}}"},
       {"warp*g11^2 + stiff*g22^2", 11, "\"+\" joins J/m² and Pa; both must have one unit"},
       {"warp*exp(stiff)", 9, "\"exp\" takes a number without a unit, not one in Pa"},
       {"warp^g11", 5, "the exponent of a quantity in J/m² must be a literal number"},

@@ -106,7 +106,11 @@ TEST_CASE("an error has the line and column inside the formula, also of a broken
   CHECK(error.where.line == 8);
   CHECK(error.where.column == 26);
   error = first("sum: \"g11 + g22\"", "sum: \"tail + g22\", tail: g11");
-  CHECK_THAT(error.message, Catch::Contains("\"where\" defines it further down: move it up"));
+  CHECK(error.message == "formula: unknown name \"tail\": \"where\" defines it further down: move it up");
+  error = first("sum: \"g11 + g22\"", "sum: \"g11 + sum\"");
+  CHECK(error.message == "formula: unknown name \"sum\": a sub-expression cannot use itself");
+  error = first("sum: \"g11 + g22\"", "sum: \"sqr(g11)\", half: \"0.5*sum\", more: \"sum + half\"");
+  CHECK_THAT(error.message, Catch::Contains("unknown function \"sqr\""));
   error = first("unit: N/m", "unit: kN/m");
   CHECK_THAT(error.message, Catch::Contains("\"kN/m\" is not a unit that formulas know"));
   error = first("name: orthotropic", "name: 2x");
