@@ -183,6 +183,18 @@ ConfigNode* step(ConfigNode& node, const std::string& word, const Location& wher
   return &node.entries.back().second;
 }
 
+/// Why a word of a path names no item of a list, or which items it names.
+std::string fault_of_word(const ConfigNode& list, const std::string& word) {
+  const std::string of_list = " of a list of " + std::to_string(list.items.size()) + ", counted from 0";
+  std::string indices;
+  for (const std::size_t index : list.indices_of(word))
+    indices += (indices.empty() ? "" : " or ") + std::to_string(index);
+  return "\"" + excerpt(word) + "\" is " +
+         (!indices.empty() ? "the type or name of several items" + of_list + ": write the index, " + indices
+          : parse_integer(word) ? "not an index" + of_list
+                                : "neither an index" + of_list + ", nor the type or name of an item");
+}
+
 /// Whether a node is written on one line: what is empty, a scalar, and a list of scalars.
 bool fits_a_line(const ConfigNode& node) {
   return node.entries.empty() &&
@@ -260,16 +272,12 @@ bool set_path(ConfigNode& root, const std::string& path, ConfigNode value, const
   }
   ConfigNode* node = &root;
   for (const std::string& word : words) {
-    const size_t size = node->items.size();
-    node = step(*node, word, where);
-    if (!node) {
-      const std::string of_list = " of a list of " + std::to_string(size) + ", counted from 0";
-      errors.push_back({where, "\"" + excerpt(word) + "\" is " +
-                                   (parse_integer(word) ? "not an index" + of_list
-                                                        : "neither an index" + of_list +
-                                                              ", nor the type or name of an item")});
+    ConfigNode* next = step(*node, word, where);
+    if (!next) {
+      errors.push_back({where, fault_of_word(*node, word)});
       return false;
     }
+    node = next;
   }
   *node = std::move(value);
   return true;

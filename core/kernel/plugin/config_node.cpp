@@ -74,17 +74,24 @@ std::string ConfigError::text() const {
   return shown.empty() ? sentence : sentence + "\n" + printable_lines(shown);
 }
 
-std::optional<std::size_t> ConfigNode::index_of(const std::string& word) const {
+std::vector<std::size_t> ConfigNode::indices_of(const std::string& word) const {
   if (const auto index = parse_integer(word)) {
-    if (*index < 0 || *index >= static_cast<int>(items.size())) return std::nullopt;
-    return static_cast<std::size_t>(*index);
+    if (*index < 0 || *index >= static_cast<int>(items.size())) return {};
+    return {static_cast<std::size_t>(*index)};
   }
+  std::vector<std::size_t> named;
   for (std::size_t i = 0; i < items.size(); ++i) {
-    if (items[i].kind == Kind::scalar && items[i].scalar == word) return i;
+    bool is_named = items[i].kind == Kind::scalar && items[i].scalar == word;
     for (const char* key : {"type", "name"})
-      if (const ConfigNode* own = items[i].find(key); own && own->scalar == word) return i;
+      if (const ConfigNode* own = items[i].find(key); own && own->scalar == word) is_named = true;
+    if (is_named) named.push_back(i);
   }
-  return std::nullopt;
+  return named;
+}
+
+std::optional<std::size_t> ConfigNode::index_of(const std::string& word) const {
+  const std::vector<std::size_t> named = indices_of(word);
+  return named.size() == 1 ? std::optional(named[0]) : std::nullopt;
 }
 
 const ConfigNode* ConfigNode::find(const std::string& key) const {

@@ -35,7 +35,9 @@ struct ConfigNode {
   const ConfigNode* find(const std::string& key) const;  ///< map entry or null
   /// The place of a map's entry; without the entry, the map's own.
   const Location& where_of(const std::string& key) const;
-  /// Index of the list's item that a word of a path names by its index from 0, its type or its name.
+  /// Indices of the list's items that a word of a path names by their index from 0, their type or their name.
+  std::vector<std::size_t> indices_of(const std::string& word) const;
+  /// The index of the only item that it names; none if it names several.
   std::optional<std::size_t> index_of(const std::string& word) const;
 
   /// The plugin that the node chooses: a scalar's text, or that of a map's `type`; empty for others.

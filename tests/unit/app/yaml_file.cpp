@@ -156,6 +156,14 @@ TEST_CASE("a path sets a value in maps and lists, making missing maps") {
   CHECK(set("refiner: loop", "refiner.corner_angle", "30") == "{refiner: {type: loop, corner_angle: 30}}");
 }
 
+TEST_CASE("a path that leads to several items is reported, not set in the first of them") {
+  const std::string two = "list: [{type: a}, {type: b, name: a}, {name: c}, a]";
+  CHECK(set(two, "list.a.k", "2") ==
+        "--set list.a.k: \"a\" is the type or name of several items of a list of 4, counted from 0: write "
+        "the index, 0 or 1 or 3");
+  CHECK(set(two, "list.c.k", "2") == "{list: [{type: a}, {type: b, name: a}, {name: c, k: 2}, a]}");
+}
+
 TEST_CASE("a path that does not exist is reported") {
   CHECK(set("a: 1", "a..b", "2") == "--set a..b: the path has an empty name");
   CHECK(set("a: 1", "", "2") == "--set : the path has an empty name");
