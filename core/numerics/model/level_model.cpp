@@ -202,6 +202,12 @@ double LevelModel::energy_without_contact(const Positions& x) const {
   return sum;
 }
 
+bool LevelModel::is_held() const {
+  return !dirichlet_.empty() || std::any_of(terms_.begin(), terms_.end(), [](const Term& term) {
+    return term.role == EnergyRole::position;
+  });
+}
+
 double LevelModel::energy(const Positions& x) const { return energy_without_contact(x) + barrier(x); }
 
 std::vector<std::pair<std::string, double>> LevelModel::energy_parts(const Positions& x) const {

@@ -49,6 +49,8 @@ class LevelModel {
   }
   /// One flag a vertex: 1 where it has a Dirichlet condition.
   const std::vector<char>& fixed() const { return fixed_; }
+  /// Whether Dirichlet conditions or energies of role `position` keep the cloth somewhere.
+  bool is_held() const;
   const Eigen::VectorXd& masses() const { return masses_; }  ///< n, M_l [kg]
 
   /// Ψ_l and the external energies, or those of the given roles; never the limits [J].

@@ -76,7 +76,8 @@ class Newton {
       if (step_.interrupted() && run_.observer.stop_requested())
         return finish({Outcome::cancelled, "stopped on request"});
       if (const double drift = check_.drift(); drift > max_drift)
-        return finish({Outcome::infeasible, drift_text(drift, max_drift, iterate_.rest_diagonal())});
+        return finish({Outcome::infeasible,
+                       drift_text(drift, max_drift, iterate_.rest_diagonal(), f_.model().is_held())});
       if (dirichlet_.is_moving()) move_on_if_relaxed();
     }
   }

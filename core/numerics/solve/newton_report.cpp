@@ -49,11 +49,15 @@ std::string max_steps_text(int max_steps, double residual) {
          three_digits(residual);
 }
 
-std::string drift_text(double drift, double most, double diagonal) {
-  return "nothing holds the cloth within " + three_digits(most) + " of its diagonals: it has drifted by " +
+std::string drift_text(double drift, double most, double diagonal, bool is_held) {
+  const std::string begin = is_held ? "its pins or springs do not hold the cloth" : "nothing holds the cloth";
+  return begin + " within " + three_digits(most) + " of its diagonals: it has drifted by " +
          three_digits(drift) + " of them, " + three_digits(drift * diagonal) +
-         " m, and does not come to rest; pin it, put something under it, start it nearer to what is there, "
-         "or raise the friction";
+         " m, and does not come to rest; " +
+         (is_held
+              ? "an energy that is unbounded below has no state of rest: check the signs in formulas and "
+                "the energies' parameters; or pin every part of the cloth"
+              : "pin it, put something under it, start it nearer to what is there, or raise the friction");
 }
 
 std::string rounding_text(double residual, double tolerance, double rounding) {

@@ -254,6 +254,14 @@ TEST_CASE("A cloth that nothing holds is detected, in both forms", "[newton]") {
   }
 }
 
+TEST_CASE("A cloth that is pinned and falls without end has an energy that is unbounded below", "[newton]") {
+  NewtonCase c;
+  const LevelResult r = c.solve(NewtonParameters(), only_weight, {{0, c.level.rest.vertices.row(0), 0}});
+  CHECK(r.outcome == Outcome::infeasible);
+  CHECK_THAT(r.message, Catch::StartsWith("its pins or springs do not hold the cloth within 100 of its ") &&
+                            Catch::Contains("; an energy that is unbounded below has no state of rest: "));
+}
+
 TEST_CASE("A cloth without any force is at equilibrium: the residual scale has a lower bound") {
   NewtonCase c;
   const std::vector<DirichletVertex> dirichlet = {{0, c.level.rest.vertices.row(0), 0}};
