@@ -3,8 +3,10 @@
 #include <catch2/catch.hpp>
 
 #include "tests/support/command.h"
+#include "tests/support/folders.h"
 
 using Catch::Contains;
+using Catch::EndsWith;
 
 namespace {
 
@@ -75,6 +77,75 @@ TEST_CASE("What the compiler refuses is shown with the file's lines, and nothing
                         Contains("error: --plugin ") && Contains("rubber.cpp: does not compile"));
   }
   CHECK_FALSE(std::filesystem::exists(folder / "results"));
+}
+
+TEST_CASE("What a plugin throws or fails to return ends a command with a message") {
+  const PluginFolder folder;
+  folder.write("bad.cpp", R"(#include "core/kernel/interfaces/energy.h"
+#include "core/kernel/interfaces/refiner.h"
+#include "core/kernel/plugin/plugin.h"
+using namespace drape;
+struct Bound : BoundEnergy {
+  double value(const Positions&) const override { throw 42; }
+  double add_gradient(const Positions& x, Positions&) const override { return value(x); }
+  Stencils stencils() const override { return Stencils::Zero(1, 1); }
+  void add_hessian(const Positions&, Projection, BlockSink&) const override {}
+};
+struct Null : Energy {
+  EnergyRole role() const override { return EnergyRole::position; }
+  std::unique_ptr<BoundEnergy> bind(const Level&, const Material&) const override { return nullptr; }
+};
+struct Throws : Null {
+  std::unique_ptr<BoundEnergy> bind(const Level&, const Material&) const override {
+    return std::make_unique<Bound>();
+  }
+};
+struct Refuses : Null {
+  Refuses() { throw 42; }
+};
+struct Splits : Refiner {
+  ProlongationMatrix weights(const Level&) const override { throw "text"; }
+};
+DRAPE_PLUGIN(registry) {
+  registry.add<Energy, Null>("null", "Binds to nothing.");
+  registry.add<Energy, Throws>("throws", "Throws a number.");
+  registry.add<Energy, Refuses>("refuses", "Throws a number at once.");
+  registry.add<Refiner, Splits>("splits", "Throws a text.");
+}
+)");
+  const auto refusal = [&](const std::string& arguments) {
+    const Ended ended = folder.with(arguments + " --plugin bad.cpp");
+    CHECK(ended.exit_code == 2);
+    CHECK(ended.out == "");
+    return ended.err;
+  };
+  const std::string other = "an exception that is no std::exception\n";
+  CHECK_THAT(refusal("check-energy 'null'"),
+             EndsWith("error: bind returned null; return an object, which may "
+                      "have no elements\n"));
+  CHECK(refusal("check-energy throws") == "error: " + other);
+  CHECK(refusal("check-energy refuses") == "error: energy: refuses: " + other);
+  for (const char* command : {"check", "run"}) {
+    INFO(command);
+    CHECK_THAT(refusal(command + std::string(" drape.yaml --set energies=[throws] --set refiner=loop")),
+               EndsWith(other));
+    CHECK_THAT(refusal(command + std::string(" drape.yaml --set energies=[hinge] --set refiner=splits")),
+               EndsWith("the refiner: " + other));
+  }
+}
+
+TEST_CASE("A library is no source of a plugin, and a source may have any name") {
+  const PluginFolder folder;
+  const std::string library = (folders::test_plugins() / "good/libgood.so").string();
+  CHECK(
+      refused_by("list energy --plugin " + library, folder.path, folder.environment()) ==
+      "error: --plugin " + library +
+          ": is compiled, and --plugin takes a source; put the folder of the library into DRAPE_PLUGIN_PATH "
+          "instead, as in export DRAPE_PLUGIN_PATH=" +
+          (folders::test_plugins() / "good").string() + "\n");
+  folder.write("text.so", "no C++\n");
+  CHECK_THAT(refused_by("list energy --plugin text.so", folder.path, folder.environment()),
+             Contains("text.so:1:") && Contains("text.so: does not compile"));
 }
 
 TEST_CASE("A plugin's source without a compiler, or that is no plugin, is refused") {

@@ -44,11 +44,23 @@ std::vector<std::string> compiler(const fs::path& root) {
   return words;
 }
 
+/// Throws std::runtime_error for a file that is compiled already.
+void require_source(const fs::path& file) {
+  if (read_file(file).starts_with("\x7f"
+                                  "ELF"))
+    throw std::runtime_error("--plugin " + file.string() +
+                             ": is compiled, and --plugin takes a source; put the folder of the library into "
+                             "DRAPE_PLUGIN_PATH instead, as in export DRAPE_PLUGIN_PATH=" +
+                             file.parent_path().string());
+}
+
 /// The folder of the library that the source makes.
 fs::path compiled(const fs::path& source) {
+  require_source(source);
   const fs::path root = own_program().parent_path().parent_path(), libraries = root / "lib";
   std::vector<std::string> words = compiler(root);
-  words.push_back(source.string());
+  // Whatever the file's name: the compiler would take a file that ends otherwise than a source for an object.
+  words.insert(words.end(), {"-x", "c++", source.string(), "-x", "none"});
   // The preprocessed source has the headers in it; a library that was built again may have other classes.
   std::vector<std::string> preprocess = words;
   preprocess.emplace_back("-E");

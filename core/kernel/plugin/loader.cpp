@@ -44,7 +44,7 @@ std::string fault_of(const fs::path& library) {
   ElfW(Ehdr) header{};
   file.read(reinterpret_cast<char*>(&header), sizeof header);
   const std::uintmax_t size = fs::file_size(library);
-  if (size >= sizeof header && std::memcmp(header.e_ident, ELFMAG, SELFMAG) != 0)
+  if (std::memcmp(header.e_ident, ELFMAG, std::min<std::uintmax_t>(size, SELFMAG)) != 0)
     return "it is no shared library (ELF); take it out of the folder or build it again";
   if (size < sizeof header || size < header.e_shoff + std::uintmax_t{header.e_shnum} * header.e_shentsize)
     return "the file is cut short at " + std::to_string(size) +

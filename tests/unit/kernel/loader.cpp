@@ -200,6 +200,7 @@ TEST_CASE("a library of another machine or kind, or none is refused") {
   CHECK(with(offsetof(ElfW(Ehdr), e_type), ET_DYN ^ ET_EXEC) != "");
   CHECK_THAT(with(offsetof(ElfW(Ehdr), e_shoff) + 3, 0x7f), Contains("cut short"));
   CHECK_THAT(error_of_bytes("#!/bin/sh\n" + std::string(100, ' ')), Contains("it is no shared library"));
+  CHECK_THAT(error_of_bytes("a text\n"), Contains("it is no shared library"));
 
   const Scratch folder;
   Registry registry;
