@@ -77,8 +77,6 @@ class FollowedSurface {
 
 std::string unknown_obstacle(const Experiment& e, const std::string& obstacle) {
   std::vector<std::string> names = e.obstacle_names();
-  if (std::ranges::count(names, obstacle) > 1)
-    return "is the name of several obstacles; follow one by its index from 0";
   std::erase(names, "");
   return "does not exist; " +
          did_you_mean(obstacle, names,

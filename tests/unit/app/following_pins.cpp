@@ -167,8 +167,6 @@ TEST_CASE("a pin that cannot follow is refused with the reason") {
              Contains(":5:67: pin 0 follows obstacle \"bdy\", which does not exist; did you mean \"body\"?"));
   CHECK_THAT(refusal(sheet_on(other, turn, "{obstacle: 2}")),
              Contains("which does not exist; the names are body, floor"));
-  CHECK_THAT(refusal(sheet_on(ball + ", " + ball, turn, "body")),
-             Contains("\"body\" is the type or name of several items"));
   CHECK_THAT(refusal(sheet_on(other, turn, "floor")),
              Contains("pin 0 follows obstacle \"floor\", which is 1.6 m away from vertex "));
   CHECK_THAT(refusal(sheet_on(other, turn, "{obstacle: body, vertices: [3, 642]}")),
