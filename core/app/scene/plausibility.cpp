@@ -206,19 +206,6 @@ void check_contact(const SceneSummary& s, Warnings& warnings) {
                                     "add \"unit: mm\" or \"unit: cm\"");
 }
 
-/// The median of each edge's length in the start over that at rest.
-double start_stretch(const Level& level, const Positions& start) {
-  const auto& edges = level.topology.edges;
-  std::vector<double> stretch(edges.rows());
-  for (Eigen::Index e = 0; e < edges.rows(); ++e) {
-    const auto length = [&](const Positions& x) { return (x.row(edges(e, 0)) - x.row(edges(e, 1))).norm(); };
-    stretch[e] = length(start) / length(level.rest.vertices);
-  }
-  const auto middle = stretch.begin() + std::ssize(stretch) / 2;
-  std::nth_element(stretch.begin(), middle, stretch.end());
-  return *middle;
-}
-
 void check_membrane(const Experiment& e, Warnings& warnings) {
   const auto is_membrane = [](const NamedEnergy& named) {
     return named.energy->role() == EnergyRole::membrane;
@@ -228,8 +215,11 @@ void check_membrane(const Experiment& e, Warnings& warnings) {
                  "no energy resists stretching, so that the cloth may stretch without end; add neo_hookean");
 }
 
-void check_start(const Experiment& e, const Scene& scene, Warnings& warnings) {
-  const double stretch = start_stretch(scene.hierarchy.levels[0], scene.placed[0]);
+void check_start(const Experiment& e, const SceneSummary& s, Warnings& warnings) {
+  if (!s.enclosing.empty())
+    warnings.add("start", "the cloth starts inside the obstacle " + s.enclosing +
+                              "; if it should lie on it, move it by \"translate\"");
+  const double stretch = s.start_stretch;
   if (stretch <= largest_stretch && stretch >= 1 / largest_stretch) return;
   const StartParameters& start = e.parameters.start;
   warnings.add("start",
@@ -284,7 +274,7 @@ ConfigErrors plausibility_warnings(const Experiment& e, const Scene& scene, cons
   const double coarse_edge = std::ldexp(s.median_edge, s.level);
   check_nearest(e, "pins", e.parameters.pins, scene.hierarchy.levels[0], coarse_edge, warnings);
   check_nearest(e, "handles", e.parameters.handles, scene.hierarchy.levels[0], coarse_edge, warnings);
-  check_start(e, scene, warnings);
+  check_start(e, s, warnings);
   check_contact(s, warnings);
   return all;
 }

@@ -45,14 +45,29 @@ void add_edges(const Level& level, SceneSummary& summary) {
   summary.level = level.index;
 }
 
+double stretch_of(const Level& level, const Positions& start) {
+  const auto& edges = level.topology.edges;
+  std::vector<double> stretch(edges.rows());
+  for (Eigen::Index e = 0; e < edges.rows(); ++e) {
+    const auto length = [&](const Positions& x) { return (x.row(edges(e, 0)) - x.row(edges(e, 1))).norm(); };
+    stretch[e] = length(start) / length(level.rest.vertices);
+  }
+  const auto middle = stretch.begin() + std::ssize(stretch) / 2;
+  std::nth_element(stretch.begin(), middle, stretch.end());
+  return *middle;
+}
+
 void add_contacts(const LevelModel& model, const Positions& start, SceneSummary& summary) {
   for (const auto& contact : model.contacts()) {
     summary.dhat = std::max(summary.dhat, contact->smallest_gap(start).dhat);
     std::vector<ObstacleGap> gaps = contact->obstacle_gaps(start);
     if (gaps.empty()) continue;
-    for (ObstacleGap& gap : gaps) summary.obstacles.push_back(std::move(gap));
-    for (const TriangleMesh& mesh : contact->obstacles())
-      summary.obstacle_sizes.push_back(extents(mesh.vertices));
+    const std::vector<TriangleMesh> meshes = contact->obstacles();
+    for (std::size_t k = 0; k < gaps.size(); ++k) {
+      summary.obstacle_sizes.push_back(extents(meshes[k].vertices));
+      if (is_enclosed(model.level(), start, meshes[k])) summary.enclosing = gaps[k].obstacle;
+      summary.obstacles.push_back(std::move(gaps[k]));
+    }
   }
 }
 
@@ -82,6 +97,7 @@ SceneSummary summary_of(const Scene& scene) {
   summary.parts = static_cast<int>(coarsest.level().topology.components().size());
   summary.mass = coarsest.masses().sum();
   add_edges(scene.hierarchy.levels.back(), summary);
+  summary.start_stretch = stretch_of(coarsest.level(), scene.placed[0]);
   const bool bends = std::ranges::any_of(
       scene.energies, [](const NamedEnergy& named) { return named.energy->role() == EnergyRole::bending; });
   const double gravity = gravity_of(coarsest, scene.energies), stiffness = 2 * bending_stiffness(material);

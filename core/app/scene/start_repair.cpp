@@ -43,12 +43,19 @@ double winding_number(const TriangleMesh& mesh, const Vector3d& p) {
   return angle / (4 * M_PI);
 }
 
+}  // namespace
+
+bool is_enclosed(const Level& level, const Positions& x, const TriangleMesh& mesh) {
+  return std::ranges::any_of(level.topology.components(),
+                             [&](int v) { return winding_number(mesh, x.row(v).transpose()) > 0.5; });
+}
+
+namespace {
+
 class StartProbe {
  public:
   explicit StartProbe(const Scene& scene)
-      : scene_(scene),
-        components_(scene.hierarchy.levels[0].topology.components()),
-        obstacles_(obstacles_of(scene.model(0)->contacts())) {}
+      : scene_(scene), obstacles_(obstacles_of(scene.model(0)->contacts())) {}
 
   double diagonal() const { return bounding_box_diagonal(scene_.starts[0]); }
 
@@ -70,16 +77,14 @@ class StartProbe {
 
   /// Whether a component of the cloth lies inside an obstacle without intersecting it.
   bool enclosed(const Vector3d& translation) const {
-    return std::ranges::any_of(components_, [&](int v) {
-      const Vector3d p = scene_.starts[0].row(v).transpose() + translation;
-      return std::ranges::any_of(obstacles_,
-                                 [&](const TriangleMesh& mesh) { return winding_number(mesh, p) > 0.5; });
+    const Positions x = scene_.starts[0].rowwise() + translation.transpose();
+    return std::ranges::any_of(obstacles_, [&](const TriangleMesh& mesh) {
+      return is_enclosed(scene_.hierarchy.levels[0], x, mesh);
     });
   }
 
  private:
   const Scene& scene_;
-  std::vector<int> components_;
   std::vector<TriangleMesh> obstacles_;
 };
 

@@ -95,6 +95,8 @@ TEST_CASE("What no fabric has gets a warning that says what is usual, before a r
       warnings_of(scene_yaml("{shape: square, side: 1000, vertices: 900}")),
       Contains("2: the cloth is 1000 × 1000 m; fabric is usually between 0.05 and 10 m wide, and lengths "
                "are in metres; if its lengths are in millimetres, divide every length by 1000\n"));
+  const std::string around = "obstacles: [{name: crate, meshed_shape: box, size: [3, 3, 3]}]\n";
+  CHECK_THAT(warnings_of(scene_yaml(square, around)), Contains("the cloth starts inside the obstacle crate"));
   CHECK_THAT(warnings_of(replaced(scene_yaml(square), "neo_hookean, ", "")),
              Contains("no energy resists stretching"));
   // In centimetres, or in one of two units, or in none.
