@@ -76,8 +76,7 @@ class Newton {
       if (step_.interrupted() && run_.observer.stop_requested())
         return finish({Outcome::cancelled, "stopped on request"});
       if (const double drift = check_.drift(); drift > max_drift)
-        return finish({Outcome::infeasible,
-                       drift_text(drift, max_drift, iterate_.rest_diagonal(), f_.model().is_held())});
+        return finish({Outcome::infeasible, drift_text(drift, max_drift, f_.model())});
       if (dirichlet_.is_moving()) move_on_if_relaxed();
     }
   }

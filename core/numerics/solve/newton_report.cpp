@@ -49,7 +49,9 @@ std::string max_steps_text(int max_steps, double residual) {
          three_digits(residual);
 }
 
-std::string drift_text(double drift, double most, double diagonal, bool is_held) {
+std::string drift_text(double drift, double most, const LevelModel& model) {
+  const double diagonal = bounding_box_diagonal(model.level().rest.vertices);
+  const bool is_held = model.is_held();
   const std::string begin = is_held ? "its pins or springs do not hold the cloth" : "nothing holds the cloth";
   return begin + " within " + three_digits(most) + " of its diagonals: it has drifted by " +
          three_digits(drift) + " of them, " + three_digits(drift * diagonal) +

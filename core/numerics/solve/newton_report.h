@@ -15,9 +15,8 @@ IterationRow iteration_row(Objective& objective, const Iterate& iterate, const N
 /// Stores the contacts' stiffness, their smallest gap and the time that they took.
 void record_contacts(const ActiveContacts& contacts, LevelResult& result);
 
-/// Why a cloth that has drifted by `drift` of its diagonals [1], more than `most`, will not come to rest;
-/// whether something is to hold it (LevelModel::is_held).
-std::string drift_text(double drift, double most, double diagonal, bool is_held);
+/// Why a cloth that has drifted by `drift` of its diagonals [1], more than `most`, will not come to rest.
+std::string drift_text(double drift, double most, const LevelModel& model);
 
 /// Why the increment under way ends the level.
 std::string blocked_text(const LoadStepper& load);
