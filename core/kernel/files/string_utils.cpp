@@ -71,17 +71,15 @@ std::vector<std::string> split(const std::string& text, char separator) {
   return parts;
 }
 
-std::string joined(const std::vector<std::string>& words) {
+std::string joined(const std::vector<std::string>& words, const char* separator, const char* last) {
   std::string text;
-  for (const std::string& word : words) text += (text.empty() ? "" : ", ") + word;
+  for (std::size_t i = 0; i < words.size(); ++i)
+    text += (text.empty() ? "" : i + 1 == words.size() ? last : separator) + words[i];
   return text;
 }
 
 std::string quoted_choice(const std::vector<std::string>& words) {
-  std::string text;
-  for (size_t i = 0; i < words.size(); ++i)
-    text += (i == 0 ? "\"" : i + 1 == words.size() ? " or \"" : ", \"") + words[i] + "\"";
-  return text;
+  return words.empty() ? "" : "\"" + joined(words, "\", \"", "\" or \"") + "\"";
 }
 
 std::size_t display_width(const std::string& text) {

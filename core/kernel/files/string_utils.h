@@ -19,8 +19,9 @@ std::string only_word_with(const std::string& part, const std::vector<std::strin
 /// The parts between separators; empty ones too, so one more than there are separators.
 std::vector<std::string> split(const std::string& text, char separator);
 
-/// "a, b, c"
-std::string joined(const std::vector<std::string>& words);
+/// "a, b, c", or with other separators, as in "a, b and c".
+std::string joined(const std::vector<std::string>& words, const char* separator = ", ",
+                   const char* last = ", ");
 
 /// `"a", "b" or "c"`
 std::string quoted_choice(const std::vector<std::string>& words);

@@ -4,6 +4,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "core/kernel/files/string_utils.h"
 #include "core/numerics/mesh/mesh_faults.h"
 
 namespace drape {
@@ -11,14 +12,6 @@ namespace {
 
 std::string counted(int count, const std::string& one, const std::string& many) {
   return std::to_string(count) + " " + (count == 1 ? one : many);
-}
-
-/// "a, b and c"
-std::string enumerated(const std::vector<std::string>& items) {
-  std::string text;
-  for (std::size_t k = 0; k < items.size(); ++k)
-    text += (k == 0 ? "" : k + 1 == items.size() ? " and " : ", ") + items[k];
-  return text;
 }
 
 /// Marks the triangles without area. They must have none in every frame, or some in every one.
@@ -93,8 +86,9 @@ std::string MeshRepair::text() const {
     kept.push_back(counted(inverted_edges, "edge", "edges") + " between triangles that face opposite ways");
   if (shared_vertices > 0)
     kept.push_back(counted(shared_vertices, "vertex", "vertices") + " with separate fans of triangles");
-  return (dropped.empty() ? "" : "dropped " + enumerated(dropped)) +
-         (dropped.empty() || kept.empty() ? "" : "; ") + (kept.empty() ? "" : "kept " + enumerated(kept));
+  return (dropped.empty() ? "" : "dropped " + joined(dropped, ", ", " and ")) +
+         (dropped.empty() || kept.empty() ? "" : "; ") +
+         (kept.empty() ? "" : "kept " + joined(kept, ", ", " and "));
 }
 
 RepairedMesh repair_mesh(std::vector<TriangleMesh> frames) {
