@@ -338,6 +338,8 @@ TEST_CASE("what the contact models share stands outside them, and each obstacle 
        "friction_smoothing_distance, min_gap_fraction"},
       {"levels: 2", obstacles("ipc", "{name: ball, shape: sphere}"),
        "4:13: obstacles[0] (ball)" + none + "\"shape\"; add shapes to \"contact\""},
+      {"levels: 2", obstacles("ipc", "{name: ball, shape: sphere, meshed_shape: box}"),
+       "4:13: obstacles[0] (ball) has both \"meshed_shape\" and \"shape\"; keep one"},
       {"levels: 2", obstacles("[]", "{name: ball, shape: sphere}"),
        "4:13: obstacles[0] (ball)" + none + "\"shape\"; add shapes to \"contact\""},
       {"levels: 2", obstacles("shapes", "{shape: sphere}, {meshed_shape: box}"),

@@ -118,7 +118,15 @@ void share_obstacles(const Registry& registry, const std::vector<ConfigNode>& ob
     const auto takes = std::ranges::find_if(models, [&](const RegistryEntry* model) {
       return model && !known_key(*model, obstacles[i]).empty();
     });
-    if (takes != models.end())
+    const auto all = registry.of_kind("contact");
+    const auto other = std::ranges::find_if(all, [&](const RegistryEntry* model) {
+      return takes != models.end() && model != *takes && !known_key(*model, obstacles[i]).empty();
+    });
+    if (other != all.end())
+      errors.push_back({obstacles[i].where, label_of(obstacles[i], i) + " has both \"" +
+                                                known_key(**takes, obstacles[i]) + "\" and \"" +
+                                                known_key(**other, obstacles[i]) + "\"; keep one"});
+    else if (takes != models.end())
       configs[takes - models.begin()].obstacles.push_back(i);
     else if (std::ranges::find(models, nullptr) == models.end())  // else a model's name is wrong
       errors.push_back({obstacles[i].where, refusal(registry, obstacles[i], i)});
