@@ -107,10 +107,8 @@ class Observer {
   virtual void checkpoint(const NewtonState& state) { (void)state; }
 };
 
-/// A method: a schedule of Newton solves over the levels of a problem. Every level that it solves must have
-/// been reported to the observer. A run fails a method that reports a state which is not finite or not of its
-/// level, and does not believe that a level has converged whose pins are off their targets or, on the finest
-/// level, whose forces are not in balance.
+/// A method: a schedule of Newton solves over the levels of a problem, each reported to the observer. A run
+/// does not take its word for what has converged (docs/reference/guarantees.md).
 class Solver {
  public:
   static constexpr const char* kind = "solver";  ///< in the registry

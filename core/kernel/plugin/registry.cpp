@@ -128,8 +128,7 @@ const RegistryEntry* find_plugin(const Registry& registry, const std::string& ki
                         (hint.empty() ? "" : hint + " ") +
                         (names.empty() ? "no plugin of that kind is loaded" : "known: " + joined(names)) +
                         "; a plugin of your own is given by --plugin or found by DRAPE_PLUGIN_PATH; one "
-                        "registered in Python "
-                        "is known to that program alone"});
+                        "registered in Python is known to that program alone"});
   return nullptr;
 }
 
