@@ -43,28 +43,32 @@ void require_level(const Scene& scene, int level) {
 
 void require_state(const Scene& scene, int level, const Positions& x) {
   require_level(scene, level);
+  const auto refuse = [&](const std::string& fault) {
+    throw std::runtime_error("the method reported a state of level " + std::to_string(level) + fault);
+  };
   const int vertices = scene.hierarchy.levels[level].vertex_count();
-  const std::string reported = "the method reported a state of level " + std::to_string(level);
   if (x.rows() != vertices)
-    throw std::runtime_error(reported + " with " + std::to_string(x.rows()) + " vertices; the level has " +
-                             std::to_string(vertices));
-  if (!x.allFinite()) throw std::runtime_error(reported + " that is not finite");
+    refuse(" with " + std::to_string(x.rows()) + " vertices; the level has " + std::to_string(vertices));
+  if (!x.allFinite()) refuse(" that is not finite");
 }
 
 LevelResult audited(const Scene& scene, LevelResult result, double force_tolerance) {
   require_state(scene, result.level, result.x);
   if (!has_converged(result.outcome)) return result;
-  const LevelModel model = scene.model(result.level)->with_stiffness(result.contact_stiffness);
+  const auto refuse = [&](Outcome outcome, const std::string& fault) {
+    result.outcome = outcome;
+    result.message = "the method says that it converged; " + fault;
+  };
+  const LevelModel& model = *scene.model(result.level);
   if (const double distance = distance_of_pins(model, result.x);
-      !(distance <= max_pin_distance * bounding_box_diagonal(result.x)))
-    result.outcome = Outcome::infeasible, result.message = "the method says that it converged; a pin is " +
-                                                           three_digits(distance) + " m off its target";
-  if (result.level < scene.finest()) return result;
-  const double residual = residual_without_contacts(model, result.x),
-               claimed = std::max(result.force_residual, force_tolerance);
-  if (!(residual <= residual_slack * claimed) && result.outcome == Outcome::converged)
-    result.outcome = Outcome::stalled,
-    result.message = "the method says that it converged; the force residual is " + three_digits(residual);
+      !(distance <= max_pin_distance * bounding_box_diagonal(result.x))) {
+    refuse(Outcome::infeasible, "a pin is " + three_digits(distance) + " m off its target");
+  } else if (result.level == scene.finest() && result.outcome == Outcome::converged) {
+    const double residual =
+        residual_without_contacts(model.with_stiffness(result.contact_stiffness), result.x);
+    if (!(residual <= residual_slack * std::max(result.force_residual, force_tolerance)))
+      refuse(Outcome::stalled, "the force residual is " + three_digits(residual));
+  }
   return result;
 }
 
