@@ -58,6 +58,7 @@ double stretch_of(const Level& level, const Positions& start) {
 }
 
 void add_contacts(const LevelModel& model, const Positions& start, SceneSummary& summary) {
+  const Positions points = start(model.level().topology.components(), Eigen::all);
   for (const auto& contact : model.contacts()) {
     summary.dhat = std::max(summary.dhat, contact->smallest_gap(start).dhat);
     std::vector<ObstacleGap> gaps = contact->obstacle_gaps(start);
@@ -65,7 +66,7 @@ void add_contacts(const LevelModel& model, const Positions& start, SceneSummary&
     const std::vector<TriangleMesh> meshes = contact->obstacles();
     for (std::size_t k = 0; k < gaps.size(); ++k) {
       summary.obstacle_sizes.push_back(extents(meshes[k].vertices));
-      if (is_enclosed(model.level(), start, meshes[k])) summary.enclosing = gaps[k].obstacle;
+      if (is_inside(points, meshes[k])) summary.enclosing = gaps[k].obstacle;
       summary.obstacles.push_back(std::move(gaps[k]));
     }
   }

@@ -17,10 +17,9 @@ struct SceneSummary {
   double shortest_edge = 0, median_edge = 0, longest_edge = 0;
   double mass = 0;                       ///< [kg]
   std::optional<double> bending_length;  ///< (D/(ρ d g))^⅓ [m]; none without bending or uniform gravity
-  double start_stretch =
-      1;  ///< median of each edge's length in the start over that at rest, on the coarsest level [1]
-  double dhat = 0;                              ///< the largest d̂ of the contact models [m]; 0 without one
-  std::vector<ObstacleGap> obstacles;           ///< the gap of each obstacle at the coarsest level's start
+  double start_stretch = 1;            ///< median of start over rest length of the coarsest level's edges [1]
+  double dhat = 0;                     ///< the largest d̂ of the contact models [m]; 0 without one
+  std::vector<ObstacleGap> obstacles;  ///< the gap of each obstacle at the coarsest level's start
   std::vector<Eigen::Vector3d> obstacle_sizes;  ///< of their bounding boxes [m], in the same order
   std::string enclosing;  ///< an obstacle inside which a part of the cloth starts; "" without one
 };

@@ -45,9 +45,10 @@ double winding_number(const TriangleMesh& mesh, const Vector3d& p) {
 
 }  // namespace
 
-bool is_enclosed(const Level& level, const Positions& x, const TriangleMesh& mesh) {
-  return std::ranges::any_of(level.topology.components(),
-                             [&](int v) { return winding_number(mesh, x.row(v).transpose()) > 0.5; });
+bool is_inside(const Positions& points, const TriangleMesh& mesh) {
+  for (Eigen::Index i = 0; i < points.rows(); ++i)
+    if (winding_number(mesh, points.row(i).transpose()) > 0.5) return true;
+  return false;
 }
 
 namespace {
@@ -55,7 +56,9 @@ namespace {
 class StartProbe {
  public:
   explicit StartProbe(const Scene& scene)
-      : scene_(scene), obstacles_(obstacles_of(scene.model(0)->contacts())) {}
+      : scene_(scene),
+        points_(scene.starts[0](scene.hierarchy.levels[0].topology.components(), Eigen::all)),
+        obstacles_(obstacles_of(scene.model(0)->contacts())) {}
 
   double diagonal() const { return bounding_box_diagonal(scene_.starts[0]); }
 
@@ -77,14 +80,13 @@ class StartProbe {
 
   /// Whether a component of the cloth lies inside an obstacle without intersecting it.
   bool enclosed(const Vector3d& translation) const {
-    const Positions x = scene_.starts[0].rowwise() + translation.transpose();
-    return std::ranges::any_of(obstacles_, [&](const TriangleMesh& mesh) {
-      return is_enclosed(scene_.hierarchy.levels[0], x, mesh);
-    });
+    const Positions points = points_.rowwise() + translation.transpose();
+    return std::ranges::any_of(obstacles_, [&](const TriangleMesh& mesh) { return is_inside(points, mesh); });
   }
 
  private:
   const Scene& scene_;
+  const Positions points_;  // at the start, a vertex of each component
   std::vector<TriangleMesh> obstacles_;
 };
 
