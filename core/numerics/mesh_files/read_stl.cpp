@@ -6,7 +6,6 @@
 #include <cstdint>
 #include <cstring>
 #include <map>
-#include <stdexcept>
 
 #include "core/kernel/files/file.h"
 #include "core/kernel/files/message_text.h"
@@ -64,11 +63,10 @@ TriangleMesh read_binary(const std::filesystem::path& path, std::string_view byt
 }
 
 [[noreturn]] void refuse_size(const std::filesystem::path& path, std::string_view bytes) {
-  throw std::runtime_error(
-      path.string() +
-      ": is no STL file: text begins with 'solid', and a binary file has 84 bytes and 50 "
-      "for each of the triangles that it declares; this one has " +
-      std::to_string(bytes.size()) + " bytes");
+  refuse_path(path,
+              "is no STL file: text begins with 'solid', and a binary file has 84 bytes and 50 for each of "
+              "the triangles that it declares; this one has " +
+                  std::to_string(bytes.size()) + " bytes");
 }
 
 TriangleMesh read_text(const std::filesystem::path& path, std::string_view bytes) {
