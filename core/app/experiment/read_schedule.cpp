@@ -225,9 +225,10 @@ void ScheduleKey::declare(Declaration<ScheduleKey>& d) {
 }
 
 void ScheduleParameters::declare(Declaration<ScheduleParameters>& d) {
-  d.add("duration", &ScheduleParameters::duration,
-        "total pseudo-time, in the unit of `times`; 0 takes the last time of all keys, what they say beyond "
-        "it is left out")
+  d.add(
+       "duration", &ScheduleParameters::duration,
+       "total pseudo-time, in the unit of `times`, beyond which keys are not followed; 0 takes the last time "
+       "of all keys")
       .between(0, 1e9);
   d.add("steps", &ScheduleParameters::steps, "number of equal load increments")
       .between(1, 1e6)

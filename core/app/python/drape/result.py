@@ -192,7 +192,7 @@ def read_sweep(folder) -> pandas.DataFrame:
     """A sweep as one table, that of `drape table`: a row for each method of each run, with a column for every
     varied key and one for the seed. Of the folder of a run: a row for each of its methods.
 
-    Raises RuntimeError for a folder without a sweep.
+    Raises RuntimeError for a folder of neither.
     """
     return _tidy(pandas.DataFrame(json.loads(_core._table(folder))))
 
