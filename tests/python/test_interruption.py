@@ -5,6 +5,7 @@ import signal
 import threading
 
 import pytest
+from prototypes import NumpyStvk
 from waiting import completed, wait_until
 
 import drape
@@ -57,6 +58,29 @@ def test_an_exception_in_a_callback_is_raised(experiment, where, tmp_path, comma
     assert ended.returncode == 0
     plain = experiment.run(progress=False)["pcs"].levels[-1].x
     assert drape.read_run(tmp_path / "r")["pcs"].levels[-1].x.tobytes() == plain.tobytes()
+
+
+def test_a_run_is_resumed_to_the_same_bits(small, tmp_path):
+    class Own(NumpyStvk):
+        """A prototype, which the command does not know."""
+
+    drape.register("own_stvk", Own)
+    small["energies"][0] = "own_stvk"
+    experiment, folder = drape.Experiment(small), tmp_path / "r"
+    seen = []
+    experiment.run(out=folder, report=False, progress=False, on_iteration=lambda i: "stop" if i.level == 1 else None)
+    assert not drape.read_run(folder).complete
+    resumed = drape.resume(folder, report=False, progress=False, on_level=seen.append)
+    assert resumed.complete and [level.level for level in seen] == [1]
+    plain = experiment.run(progress=False)
+    assert resumed["pcs"].levels[-1].x.tobytes() == plain["pcs"].levels[-1].x.tobytes()
+    again = drape.resume(folder, on_level=seen.append, progress=False)  # complete: nothing runs
+    assert again.complete and len(seen) == 1
+    (folder / resumed["pcs"].levels[-1].mesh).write_text("")
+    with pytest.raises(RuntimeError, match="files are damaged or missing"):
+        drape.resume(folder)
+    with pytest.raises(RuntimeError, match="holds no run"):
+        drape.resume(tmp_path)
 
 
 def test_what_a_callback_may_not_be_or_return(experiment):

@@ -1,14 +1,11 @@
 #include <csignal>
 #include <iostream>
-#include <sstream>
 #include <thread>
 
 #include "core/app/cli/commands.h"
 #include "core/app/cli/config_arguments.h"
 #include "core/app/experiment/exit_codes.h"
 #include "core/app/report/run_table.h"
-#include "core/app/run/recorder_files.h"
-#include "core/app/run/run_folder.h"
 #include "core/app/run/runner.h"
 #include "core/app/run/saved_run.h"
 #include "core/app/scene/scene.h"
@@ -80,40 +77,20 @@ int run_config(RunRequest& r, const Registry& registry) {
   return exit_code;
 }
 
-/// For a complete run: checks its files and returns its exit code.
-int report_complete_run(const RunFolder& run, const Registry& registry) {
-  const std::filesystem::path& folder = run.path();
-  refuse_damaged_results(folder);
-  ConfigErrors errors;
-  const auto experiment = read_experiment(folder / "config.yaml", {}, registry, errors);
-  const auto scene = experiment ? build_scene(*experiment, errors, IntersectingStart::allowed) : nullptr;
-  require_none(errors);
-  const std::vector<std::string> again = write_rest(run, *scene);
-  if (!again.empty())
-    std::cerr << "warning: damaged or missing files were written again: " << joined(again) << "\n";
-  std::cout << folder.string() << ": the run is complete; there is nothing to resume\n";
-  return all_methods_succeeded(folder) ? exit_done : exit_not_converged;
-}
-
-/// Resumes an interrupted run in its folder, which is locked before anything in it is read.
+/// Resumes an interrupted run in its folder.
 int resume(RunRequest& r, const Registry& registry) {
-  const std::filesystem::path folder = r.out = r.resumed;
-  RunFolder locked = RunFolder::of_run(folder);
-  if (is_complete(folder)) return report_complete_run(locked, registry);
-  std::string warning;
-  InterruptedRun interrupted = interrupted_run(std::move(locked), warning);
-  const Checkpoint& checkpoint = interrupted.checkpoint;
-  std::istringstream warnings(warning);
-  for (std::string line; std::getline(warnings, line);) std::cerr << "warning: " << printable(line) << "\n";
-  r.methods = checkpoint.methods;
+  r.out = r.resumed;
+  std::vector<std::string> warnings;
   ConfigErrors errors;
-  const auto experiment = read_experiment(folder / "config.yaml", {}, registry, errors);
-  if (experiment) refuse_too_large(*experiment, r.large_memory(), errors);
-  const auto scene = errors.empty() ? build_scene(*experiment, errors, IntersectingStart::allowed) : nullptr;
-  if (scene && checkpoint.start.rows() > 0)
-    warm_start_scene(*experiment, *scene, checkpoint.first_level, checkpoint.start, errors);
+  std::optional<SavedRun> saved = read_saved_run(r.out, registry, r.large_memory(), warnings, errors);
+  warn_of(warnings);
   require_none(errors);
-  return run(r, *experiment, *scene, std::move(interrupted));
+  if (!saved->interrupted) {
+    std::cout << r.resumed << ": the run is complete; there is nothing to resume\n";
+    return all_methods_succeeded(r.out) ? exit_done : exit_not_converged;
+  }
+  r.methods = saved->interrupted->checkpoint.methods;
+  return run(r, saved->experiment, *saved->scene, std::move(saved->interrupted));
 }
 
 /// Warm-starts a possibly changed experiment from a state of a run, in another folder.

@@ -63,8 +63,7 @@ SceneHandle ExperimentHandle::scene(bool allow_memory) const {
 void warn_of_implausible(const SceneHandle& s) {
   const ConfigErrors warnings =
       without_gil([&] { return plausibility_warnings(*s.experiment, *s.scene, summary_of(*s.scene)); });
-  for (const ConfigError& warning : warnings)
-    if (PyErr_WarnEx(PyExc_UserWarning, warning.text().c_str(), 1) != 0) throw py::error_already_set();
+  for (const ConfigError& warning : warnings) warn(warning.text());
 }
 
 void bind_experiment(py::module_& m) {

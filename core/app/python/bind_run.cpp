@@ -10,6 +10,7 @@
 #include "core/app/report/run_export.h"
 #include "core/app/report/run_table.h"
 #include "core/app/run/runner.h"
+#include "core/app/run/saved_run.h"
 #include "core/app/view/page.h"
 #include "core/kernel/files/number_text.h"
 #include "core/numerics/mesh_files/io.h"
@@ -88,18 +89,9 @@ class Callbacks : public Observer {
   std::exception_ptr error_;
 };
 
-void run(const ExperimentHandle& handle, const std::vector<std::string>& methods, const fs::path& out,
-         const py::object& on_iteration, const py::object& on_level, bool progress, bool report,
-         bool overwrite, bool allow_memory) {
-  Callbacks callbacks(on_iteration, on_level);
-  const SceneHandle scene = handle.scene(allow_memory);
-  warn_of_implausible(scene);
-  RunOptions options;
-  options.out = out;
-  options.methods = chosen_methods(*scene.experiment, methods);
-  options.overwrite = overwrite;
-  options.verbosity = progress ? Verbosity::progress : Verbosity::quiet;
-  options.report = report;
+/// Runs `action` with the callbacks and without the GIL, and raises what a function or a prototype raised.
+template <class Action>
+void observed(Callbacks& callbacks, RunOptions options, const Action& action) {
   options.stop = [&] { return callbacks.stop_requested(); };  // of solves that are not observed too
   options.method_started = [&](const std::string& method) { callbacks.method_started(method); };
   options.observer = &callbacks;
@@ -107,7 +99,7 @@ void run(const ExperimentHandle& handle, const std::vector<std::string>& methods
   std::exception_ptr error;
   without_gil([&] {
     try {
-      run_experiment(*scene.experiment, *scene.scene, options);
+      action(options);
     } catch (...) {
       error = std::current_exception();
     }
@@ -118,7 +110,49 @@ void run(const ExperimentHandle& handle, const std::vector<std::string>& methods
   if (error) std::rethrow_exception(error);
 }
 
+RunOptions options_of(const fs::path& out, bool progress, bool report) {
+  RunOptions options;
+  options.out = out;
+  options.verbosity = progress ? Verbosity::progress : Verbosity::quiet;
+  options.report = report;
+  return options;
+}
+
+void run(const ExperimentHandle& handle, const std::vector<std::string>& methods, const fs::path& out,
+         const py::object& on_iteration, const py::object& on_level, bool progress, bool report,
+         bool overwrite, bool allow_memory) {
+  Callbacks callbacks(on_iteration, on_level);
+  const SceneHandle scene = handle.scene(allow_memory);
+  warn_of_implausible(scene);
+  RunOptions options = options_of(out, progress, report);
+  options.methods = chosen_methods(*scene.experiment, methods);
+  options.overwrite = overwrite;
+  observed(callbacks, options,
+           [&](const RunOptions& all) { run_experiment(*scene.experiment, *scene.scene, all); });
+}
+
+void resume(const fs::path& folder, const py::object& on_iteration, const py::object& on_level, bool progress,
+            bool report, bool allow_memory) {
+  Callbacks callbacks(on_iteration, on_level);
+  const LargeMemory large = allow_memory ? LargeMemory::allowed : LargeMemory::refused;
+  std::vector<std::string> warnings;
+  ConfigErrors errors;
+  const Registry& plugins = registry();
+  std::optional<SavedRun> saved =
+      without_gil([&] { return read_saved_run(folder, plugins, large, warnings, errors); });
+  for (const std::string& warning : warnings) warn(warning);
+  throw_errors(errors);
+  if (!saved->interrupted) return;
+  RunOptions options = options_of(folder, progress, report);
+  options.methods = saved->interrupted->checkpoint.methods;
+  observed(callbacks, options, [&](const RunOptions& all) {
+    resume_experiment(saved->experiment, *saved->scene, all, std::move(*saved->interrupted));
+  });
+}
+
 void bind_results(py::module_& m) {
+  m.def("_resume", &resume, py::arg("folder"), py::arg("on_iteration"), py::arg("on_level"),
+        py::arg("progress"), py::arg("report"), py::arg("allow_memory"));
   m.def(
       "_table",
       [](const fs::path& folder) { return table_text(table_of(read_runs({folder})), {}, TableFormat::json); },

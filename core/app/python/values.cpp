@@ -176,6 +176,10 @@ std::string in_python(std::string message) {
   return message;
 }
 
+void warn(const std::string& message) {
+  if (PyErr_WarnEx(PyExc_UserWarning, message.c_str(), 1) != 0) throw py::error_already_set();
+}
+
 void throw_errors(const ConfigErrors& errors) {
   if (errors.empty()) return;
   const py::module_ types = py::module_::import("drape.experiment");

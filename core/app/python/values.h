@@ -68,6 +68,9 @@ ConfigNode with_value(ConfigNode experiment, const std::string& key, const py::o
 /// A message with the arguments of Experiment.run in place of the command's options.
 std::string in_python(std::string message);
 
+/// Warns in Python. Throws what Python raises where warnings are errors.
+void warn(const std::string& message);
+
 /// Throws a Python exception drape.ConfigError unless the list is empty.
 void throw_errors(const ConfigErrors& errors);
 

@@ -155,6 +155,33 @@ InterruptedRun interrupted_run(RunFolder run, std::string& warning) {
   return {std::move(run), std::move(checkpoint)};
 }
 
+std::optional<SavedRun> read_saved_run(const fs::path& folder, const Registry& registry, LargeMemory large,
+                                       std::vector<std::string>& warnings, ConfigErrors& errors) {
+  RunFolder locked = RunFolder::of_run(folder);
+  const bool complete = is_complete(folder);
+  std::optional<InterruptedRun> interrupted;
+  if (complete) {
+    refuse_damaged_results(folder);
+  } else {
+    std::string warning;
+    interrupted = interrupted_run(std::move(locked), warning);
+    if (!warning.empty()) warnings = split(warning, '\n');
+  }
+  std::optional<Experiment> experiment = read_experiment(folder / "config.yaml", {}, registry, errors);
+  if (experiment && interrupted) refuse_too_large(*experiment, large, errors);
+  if (!errors.empty()) return {};
+  std::unique_ptr<Scene> scene = build_scene(*experiment, errors, IntersectingStart::allowed);
+  if (!scene) return {};
+  if (complete) {
+    const std::vector<std::string> again = write_rest(locked, *scene);
+    if (!again.empty()) warnings.push_back("damaged or missing files were written again: " + joined(again));
+  } else if (const Checkpoint& checkpoint = interrupted->checkpoint; checkpoint.start.rows() > 0) {
+    warm_start_scene(*experiment, *scene, checkpoint.first_level, checkpoint.start, errors);
+    if (!errors.empty()) return {};
+  }
+  return SavedRun{std::move(*experiment), std::move(scene), std::move(interrupted)};
+}
+
 SavedState saved_state(const fs::path& folder, const std::string& method, std::optional<int> level) {
   const nlohmann::ordered_json results = results_of(folder);
   SavedState state{method, 0, {}};

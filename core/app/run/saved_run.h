@@ -1,10 +1,14 @@
 #pragma once
 
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
+#include "core/app/experiment/cloth.h"
 #include "core/app/run/checkpoint.h"
+#include "core/app/scene/scene.h"
 
 namespace drape {
 
@@ -37,6 +41,21 @@ struct InterruptedRun {
 /// continue the run in between. `warning` reports harmless differences. Throws std::runtime_error with the
 /// reason if the run cannot be resumed.
 InterruptedRun interrupted_run(RunFolder folder, std::string& warning);
+
+/// A run as its folder has it.
+struct SavedRun {
+  Experiment experiment;
+  std::unique_ptr<Scene> scene;
+  std::optional<InterruptedRun> interrupted;  ///< to be resumed; nothing if the run is complete
+};
+
+/// The run in a folder, which is locked before anything in it is read. Of a complete run the meshes are
+/// checked, and inputs that are missing are written again. `warnings` reports harmless differences. Empty,
+/// with every error appended, if its config.yaml is not valid here. Throws std::runtime_error if there is no
+/// run, or one that is damaged or cannot be resumed.
+std::optional<SavedRun> read_saved_run(const std::filesystem::path& folder, const Registry& registry,
+                                       LargeMemory large, std::vector<std::string>& warnings,
+                                       ConfigErrors& errors);
 
 /// A saved state of a run.
 struct SavedState {

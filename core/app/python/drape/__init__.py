@@ -40,7 +40,7 @@ from ._core import (
     plugins,
     set_threads,
 )
-from .experiment import ConfigError, ConfigFault, Experiment
+from .experiment import ConfigError, ConfigFault, Experiment, resume
 from .prototypes import Column, Energy, Metric, Parameter, Refiner, Solver, check_energy, register
 from .result import LevelRecord, MethodRecord, Page, Result, read_run, read_sweep, show
 
@@ -48,5 +48,6 @@ __all__ = [
     "BoundEnergy", "Checkpoint", "Column", "ConfigError", "ConfigFault", "Energy", "Experiment", "Iteration",
     "Level", "LevelRecord", "LevelResult", "Material", "MethodRecord", "Metric", "Model", "Page", "Parameter",
     "Problem", "Refiner", "Result", "RunAborted", "Scene", "Solve", "Solver", "__commit__", "__version__",
-    "bind_energy", "check_energy", "plugins", "read_run", "read_sweep", "register", "set_threads", "show",
+    "bind_energy", "check_energy", "plugins", "read_run", "read_sweep", "register", "resume", "set_threads",
+    "show",
 ]

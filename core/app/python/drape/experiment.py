@@ -92,3 +92,22 @@ class Experiment(_core.ExperimentBase):
             result._temporary = True
             weakref.finalize(result, shutil.rmtree, temporary, ignore_errors=True)
         return result
+
+
+def resume(
+    folder: Union[str, os.PathLike],
+    *,
+    on_iteration: Optional[Callable[[_core.Iteration], Optional[str]]] = None,
+    on_level: Optional[Callable[[_core.LevelResult], Optional[str]]] = None,
+    progress: bool = True,
+    report: bool = True,
+    allow_memory: bool = False,
+) -> Result:
+    """Resume an interrupted run in its folder as `drape run --resume` does; a complete one stays as it is.
+
+    The result is that of an uninterrupted run, bit for bit. The arguments are those of `Experiment.run`.
+    Prototypes that the run uses must be registered again. Raises RuntimeError for a folder without a run, and
+    for a run that cannot be resumed.
+    """
+    _core._resume(os.fspath(folder), on_iteration, on_level, progress, report, allow_memory)
+    return Result(folder)
