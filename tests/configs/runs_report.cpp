@@ -332,6 +332,13 @@ TEST_CASE("bounds on negative energies and on counts that were zero") {
   CHECK(run.compare(" --bound energy_released=2").exit_code == 0);
 }
 
+TEST_CASE("a folder stands for the runs in it") {
+  std::string runs;
+  for (const std::string seed : {"1", "2", "3"}) runs += " runs/matrix=galerkin/seed_" + seed;
+  CHECK(shown_by("table runs/matrix=galerkin", sweep()) == shown_by("table" + runs, sweep()));
+  CHECK(shown_by("report runs/matrix=galerkin", sweep()) == "report: runs/matrix=galerkin/report.html\n");
+}
+
 TEST_CASE("compare refuses meaningless bounds") {
   CHECK(sweep_refusal("compare . . --bound seconds") ==
         "error: --bound seconds: write it as KEY=RATIO, as in --bound seconds=1.1\n");

@@ -211,7 +211,7 @@ def test_a_sweep_is_one_table(command, tmp_path):
     assert len(of) == 6 and set(of["newton.step_growth"]) == {1.5, 3} and set(of["seed"]) == {1, 2, 3}
     assert numpy.all(of["energy_released"] > 0)
     with pytest.raises(RuntimeError, match="neither results.json nor sweep.json"):
-        drape.read_sweep(tmp_path)
+        drape.read_sweep(tmp_path / "out/runs")
 
 
 @pytest.fixture

@@ -88,7 +88,8 @@ int make_figures(const std::string& folder, const std::string& out) {
 }
 
 int report(const Folders& folders, fs::path page, std::optional<int> picture_width) {
-  const bool several = folders.size() > 1 || is_sweep(folders.front());
+  const bool several = folders.size() > 1 || is_sweep(folders.front()) ||
+                       !fs::is_regular_file(folders.front() / "results.json");
   if (!several && !page.empty())
     throw std::runtime_error(
         "--out is for the page of several runs; a run's own is report.html in its folder");
@@ -100,7 +101,6 @@ int report(const Folders& folders, fs::path page, std::optional<int> picture_wid
   if (several) {
     write_runs_report(folders, page);
   } else {
-    require_run_or_sweep(folders.front());
     warn_of(write_report(folders.front(), {}, picture_width));
   }
   std::cout << "report: " << page.string() << "\n";
@@ -181,9 +181,10 @@ void add_report_commands(Commands& commands) {
       commands.add("report", "write the report of a run, of several runs or of a sweep",
                    "drape report results/sphere results/cube -o results/both.html",
                    [o] { return report(o->folders, o->out, o->picture_width); });
-  report_command.add_option("folder", o->folders, "results folders, or a sweep's")->required();
+  report_command.add_option("folder", o->folders, "folders of runs or sweeps, or one that has them in it")
+      ->required();
   add_option(report_command, "-o,--out FILE", o->out,
-             "page of several runs (default: report.html in a sweep's folder)");
+             "page of several runs (default: report.html in the folder)");
   add_picture_width(report_command, o->picture_width, "width of a run's pictures in pixels (default: 900)");
 
   CLI::App& compare_command =
@@ -199,7 +200,8 @@ void add_report_commands(Commands& commands) {
       "table", "print a table of runs and sweeps, one row per method; exits with 1 unless all pass",
       "drape table results/sphere --columns method,status,seconds,energy_released",
       [o] { return print_table(o->folders, o->columns, o->format); });
-  table_command.add_option("folder", o->folders, "results folders, or sweeps'")->required();
+  table_command.add_option("folder", o->folders, "folders of runs or sweeps, or one that has them in it")
+      ->required();
   add_option(table_command, "--format NAME", o->format, "md (default), csv or json")
       ->check([](const std::string& name) {
         return formats.contains(name) ? "" : "must be md, csv or json, not " + excerpt(name);

@@ -18,6 +18,10 @@ namespace {
 using Json = nlohmann::ordered_json;
 namespace fs = std::filesystem;
 
+bool is_run_or_sweep(const fs::path& folder) {
+  return is_sweep(folder) || fs::is_regular_file(folder / "results.json");
+}
+
 /// Adds the runs of a sweep, whose name is returned.
 std::string read_sweep(const fs::path& folder, RunCollection& collection) {
   const fs::path path = folder / "sweep.json";
@@ -85,6 +89,18 @@ void read_single_runs(const std::vector<fs::path>& folders, RunCollection& colle
   }
 }
 
+/// The folder itself, or the runs and sweeps that are folders in it, in the order of their names.
+std::vector<fs::path> runs_at(const fs::path& folder) {
+  if (is_run_or_sweep(folder)) return {folder};
+  std::vector<fs::path> found;
+  std::error_code unreadable;
+  for (const auto& entry : fs::directory_iterator(folder, unreadable))
+    if (is_run_or_sweep(entry.path())) found.push_back(entry.path());
+  std::sort(found.begin(), found.end());
+  if (found.empty()) require_run_or_sweep(folder);
+  return found;
+}
+
 }  // namespace
 
 std::vector<DeclaredMetric> RunCollection::metrics() const {
@@ -97,13 +113,16 @@ std::vector<DeclaredMetric> RunCollection::metrics() const {
 bool is_sweep(const fs::path& folder) { return fs::is_regular_file(folder / "sweep.json"); }
 
 void require_run_or_sweep(const fs::path& folder) {
-  if (is_sweep(folder) || fs::is_regular_file(folder / "results.json")) return;
+  if (is_run_or_sweep(folder)) return;
   throw std::runtime_error(folder.string() +
                            ": neither results.json nor sweep.json here; give the folder of a run or a sweep");
 }
 
-RunCollection read_runs(const std::vector<fs::path>& folders) {
+RunCollection read_runs(const std::vector<fs::path>& given) {
   RunCollection collection;
+  std::vector<fs::path> folders;
+  for (const fs::path& folder : given)
+    for (fs::path& each : runs_at(folder)) folders.push_back(std::move(each));
   std::vector<fs::path> single, sweep_of_run;
   std::map<std::string, int> sweeps;  // by their name
   for (const fs::path& folder : folders) {
@@ -111,7 +130,6 @@ RunCollection read_runs(const std::vector<fs::path>& folders) {
       ++sweeps[read_sweep(folder, collection)];
       sweep_of_run.resize(collection.runs.size(), folder);
     } else {
-      require_run_or_sweep(folder);
       single.push_back(folder);
     }
   }

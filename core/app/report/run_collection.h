@@ -43,9 +43,10 @@ bool is_sweep(const std::filesystem::path& folder);
 /// Throws std::runtime_error with one line for a folder that is neither a run's nor a sweep's.
 void require_run_or_sweep(const std::filesystem::path& folder);
 
-/// Reads runs and sweeps. Runs whose configs differ only by the seed form a variation, which is named after
-/// the experiment or, where variations share that, after its first folder. Throws std::runtime_error with one
-/// line for a folder that is neither a run nor a sweep.
-RunCollection read_runs(const std::vector<std::filesystem::path>& folders);
+/// Reads runs and sweeps, each by its folder or by the folder that has theirs in it. Runs whose configs
+/// differ only by the seed form a variation, which is named after the experiment or, where variations share
+/// that, after its first folder. Throws std::runtime_error with one line for a folder that is neither a run
+/// nor a sweep and has none in it.
+RunCollection read_runs(const std::vector<std::filesystem::path>& given);
 
 }  // namespace drape
