@@ -362,6 +362,15 @@ TEST_CASE("an export replaces no file unless it is asked to") {
   CHECK_FALSE(fs::exists(folder / "film_0000.png"));
 }
 
+TEST_CASE("a format may be named in capitals") {
+  const Scratch folder;
+  const std::string run = finished_run().string();
+  for (const std::string name : {"a.glb", "b.GLB", "a.vtp", "b.VTP"})
+    drape_ends("export " + run + " --to " + name, folder);
+  CHECK(text_of(folder / "a.glb") == text_of(folder / "b.GLB"));
+  CHECK(text_of(folder / "a.vtp") == text_of(folder / "b.VTP"));
+}
+
 TEST_CASE("an export that cannot be is refused, with what there is") {
   const std::string run = finished_run().string();
   CHECK(export_refusal("nowhere --to a.glb") ==

@@ -201,7 +201,7 @@ std::vector<fs::path> export_pictures(const RunData& run, const MethodRecord& me
 
 /// Throws std::runtime_error for a file of an unknown format, and for options that its format does not have.
 void check_options(const fs::path& file, const ExportOptions& options) {
-  const std::string extension = file.extension().string();
+  const std::string extension = lower_extension(file);
   const std::vector<std::string> known = {".glb", ".obj", ".ply", ".vtp", ".png"};
   if (std::find(known.begin(), known.end(), extension) == known.end())
     throw std::runtime_error("--to " + file.string() +
@@ -218,7 +218,7 @@ void check_options(const fs::path& file, const ExportOptions& options) {
 
 std::vector<fs::path> export_run(const fs::path& folder, const fs::path& file, const ExportOptions& options) {
   check_options(file, options);
-  const std::string extension = file.extension().string();
+  const std::string extension = lower_extension(file);
   const RunData run = read_run(folder);
   const MethodRecord& method = chosen_method(run, options.method);
   std::vector<const LevelRecord*> levels = chosen_levels(method, options.level);

@@ -11,19 +11,19 @@
 namespace drape {
 namespace {
 
-std::string lower_extension(const std::filesystem::path& path) {
-  std::string extension = path.extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return std::tolower(c); });
-  return extension;
-}
-
 std::runtime_error unknown_extension(const std::filesystem::path& path, const std::string& known) {
   return std::runtime_error(path.string() + ": unknown mesh format '" + path.extension().string() +
                             "'; known are " + known);
 }
 
 }  // namespace
+
+std::string lower_extension(const std::filesystem::path& path) {
+  std::string extension = path.extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return std::tolower(c); });
+  return extension;
+}
 
 TriangleMesh read_mesh(const std::filesystem::path& path) {
   const std::string extension = lower_extension(path);

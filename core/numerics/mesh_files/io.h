@@ -17,6 +17,9 @@ struct VertexField {
 };
 using VertexFields = std::vector<VertexField>;
 
+/// The extension, which names a file's format, in small letters.
+std::string lower_extension(const std::filesystem::path& path);
+
 /// Reads a Wavefront OBJ (v and f), an OFF (text), a PLY (text, binary little or big endian) or an STL (text,
 /// binary), by extension. Faces with more than three corners are cut (cut_polygon.h). Vertices keep their
 /// order and are not merged, except those of an STL, which are the different points of its triangles.
