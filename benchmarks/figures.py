@@ -4,7 +4,7 @@ A function of a record that is not stored raises FileNotFoundError; fill_figures
 
 import re
 
-from records import CONVERGED, RESULTS, WITHOUT_CONTACT, conditions, figure, median, read, seconds_text, stamps, with_range
+from records import CONVERGED, RESULTS, WITHOUT_CONTACT, conditions, figure, median, read, seconds_text, stamps, usual_conditions, with_range
 
 METHODS = ["pcs", "cascadic", "newton"]
 
@@ -81,10 +81,11 @@ def chosen_scenes():
     lines = [line for line in (RESULTS / "scenes.md").read_text().splitlines() if line.startswith("|")]
     head, *rows = [[c.strip() for c in line.strip("|").split("|")] for line in (lines[0], *lines[2:])]
     energy = next(name for name in head if name.startswith("energy"))
-    columns = ["run", "vertices", "steps", "seconds", energy, "smallest_gap", "largest_stretch", "intersections"]
-    by_name = {row[0]: [row[head.index(c)] for c in columns] for row in rows}
+    heads = {"run": "scene", "vertices": "vertices", "steps": "steps", energy: "energy released [J]", "smallest_gap": "smallest gap [m]",
+             "largest_stretch": "largest stretch", "intersections": "intersections"}
+    by_name = {row[0]: [row[head.index(c)] for c in heads] for row in rows}
     names = ["ribbon", "sphere", "cube", "tablecloth", "armadillo", "bunny", "sphere_fine", "dragon"]
-    return table(columns, [by_name[n] for n in names if n in by_name], ["scenes.md"], "lrrrrrrr")
+    return table(list(heads.values()), [by_name[n] for n in names if n in by_name], ["scenes.md"], "lrrrrrr")
 
 
 def best_in_table1():
@@ -146,7 +147,7 @@ def ablations():
             rows.append([plain_name(variant), method, ", ".join(figure(n) for n in iterations(r)), figure(of(r, "tflop") / direct, 2),
                          preview(r, "distance_rms"), preview(r, "silhouette_overlap"), figure(of(r, "energy"), 6)])
     # No comment for docs_figures: the flops are compared across variations.
-    return table(["variation", "method", "iterations by level", "total flops, relative to direct by the defaults", "preview: RMS", "overlap",
+    return table(["variation", "method", "iterations by level", "total flops, relative to direct by the defaults", "preview: RMS distance [diagonals]", "overlap",
                   "final energy [J]"], rows, [], "lllrrrr")[1:]
 
 
@@ -235,8 +236,8 @@ def codim_ipc():
             row.append(with_range(codim_ipc_ratios(starts, key), two))
         rows.append(row + [with_range([r.get("rms_distance") for r in starts], two)])
     # No comment for docs_figures: ratios start by start stand in no record.
-    return table(["scene", "vertices", "s per iteration: drape", "Codim-IPC", "ratio", "s to the same state: drape", "Codim-IPC", "ratio",
-                  "RMS distance of the final states"], rows, [], "lrrrrrrrr")[1:]
+    return table(["scene", "vertices", "iteration [s]: drape", "iteration [s]: Codim-IPC", "iteration: ratio", "to the same state [s]: drape",
+                  "to the same state [s]: Codim-IPC", "to the same state: ratio", "RMS distance of the final states"], rows, [], "lrrrrrrrr")[1:]
 
 
 def beside(program, title):
@@ -285,6 +286,7 @@ STUDIES = [
     ("[ablations](ablations.md#one-choice-at-a-time)", "ablations.md"),
     ("[hard cases](hard-cases.md)", "hard.md"),
     ("[remedies](ablations.md#newton)", "hard_remedies.md"),
+    ("[drape coefficients](validation.md#cusicks-drape-test)", "cusick.csv"),
     ("[Table 1](table1.md)", "table1.md"),
     ("[scenes](speed.md#every-scene)", "scenes.md"),
     ("[the dragon, by decrements](speed.md#levels-that-end-at-a-decrement)", "dragon_decrements.md"),
@@ -352,11 +354,6 @@ def median_seconds(method, key):
     return seconds_text([of(runs("sphere", method), key)])
 
 
-def build_of(name):
-    stamp, newest = stamps()["records"][name], stamps()["build"]
-    return f"commit {stamp['commit']}" + ("" if stamp["commit"] == newest else ", an older build")
-
-
 VALUES = {
     "sphere.vertices": lambda: f"{runs('sphere', 'pcs')[0]['vertices'] / 1000:.0f}K",
     "sphere.seen": lambda: median_seconds("pcs", "seconds_of_preview"),
@@ -366,7 +363,7 @@ VALUES = {
         median([r["preview"]["distance_rms"] for r in runs("sphere", "cascadic")])
         / median([r["preview"]["distance_rms"] for r in runs("sphere", "pcs")]), 2),
     "sphere.direct": lambda: median_seconds("newton", "seconds"),
-    "sphere.build": lambda: build_of("sphere.json"),
+    "usual conditions": usual_conditions,
     **{f"conditions of {name}": lambda name=name: conditions(name) for _, name in STUDIES},
     **{f"{method}'s preview of the sphere [s]": lambda method=method: seconds_text(
         [r["seconds_of_preview"] for r in runs("sphere", method)]) for method in METHODS},

@@ -23,8 +23,9 @@ def rounded_up(value):
     return next(digit for digit in (1, 2, 4, 6, 8, 10) if digit * power >= value * (1 - 1e-9)) * power
 
 
-def dots(rows, panels):
-    """A row a label, with a mark for each method in each panel. `rows`: {label: {method: [a value a panel]}}; panels: what they show."""
+def dots(rows, panels, most=None):
+    """A row a label, with a mark for each method in each panel. `rows`: {label: {method: [a value a panel]}}; panels: what they show;
+    most: the end of every axis, by default one for each panel."""
     methods = [m for m in COLOURS if any(m in of_row for of_row in rows.values())]
     wide = (WIDTH - LABELS) / len(panels)
     height = TOP + ROW * len(rows) + 30
@@ -37,10 +38,10 @@ def dots(rows, panels):
         out.append(f'<text x="{LABELS - 12}" y="{y + 4:g}" text-anchor="end">{escape(label)}</text>')
     for p, panel in enumerate(panels):
         left, right = LABELS + p * wide + 10, LABELS + (p + 1) * wide - 24
-        most = rounded_up(max(values[p] for of_row in rows.values() for values in of_row.values()))
-        at = lambda value: left + (right - left) * value / most  # noqa: E731
+        end = most or rounded_up(max(values[p] for of_row in rows.values() for values in of_row.values()))
+        at = lambda value: left + (right - left) * value / end  # noqa: E731
         out.append(f'<text x="{left:g}" y="42">{escape(panel)}</text>')
-        for value in (0, most / 2, most):
+        for value in (0, end / 2, end):
             out.append(f'<line x1="{at(value):.1f}" x2="{at(value):.1f}" y1="{TOP}" y2="{height - 26}"/>'
                        f'<text x="{at(value):.1f}" y="{height - 10}" text-anchor="middle">{figure(value, 2)}</text>')
         for row, of_row in enumerate(rows.values()):
@@ -57,13 +58,13 @@ def ablations():
     for (variant, method), runs in named.items():
         flops, distance = median([r["tflop"] for r in runs]) / direct, median([r["preview"]["distance_rms"] for r in runs])
         rows.setdefault(plain_name(variant), {})[method] = [flops, distance]
-    return dots(rows, ["total flops, relative to direct", "preview: RMS distance from the end"])
+    return dots(rows, ["total flops, relative to direct", "preview: RMS distance [diagonals]"])
 
 
 def table1():
     rows = {scene: {method: [counts[method] / rows_of for rows_of, counts in best] for method in best[0][1]}
             for scene, best in best_in_table1().items()}
-    return dots(rows, ["best by curvature", "best by distance, silhouette", "best by energy"])
+    return dots(rows, ["best by curvature", "best by distance, silhouette", "best by energy"], most=1)
 
 
 PLOTS = {"ablations": ablations, "table1": table1}

@@ -44,27 +44,47 @@ def write_json(path, value):
     path.write_text(json.dumps(value, indent=1, ensure_ascii=False) + "\n")
 
 
+def count(n, what):
+    """"1 start", "3 starts"."""
+    return f"{n} {what}" + ("" if n == 1 else "s")
+
+
 def stamps():
     """{"build": the commit of the last `make results`, "records": {name: stamp}}."""
     return read("stamps.json")
 
 
+def machine(stamp):
+    """"Intel Xeon with 2 cores"."""
+    cpu = stamp["cpu"].replace("(R)", "").replace(" Processor", "") + (" (AVX-512)" if stamp.get("avx512") else "")
+    return cpu + (f" with {count(stamp['cores'], 'core')}" if stamp.get("cores") else "")
+
+
+def usual_machine():
+    """That of most records."""
+    machines = [machine(stamp) for stamp in stamps()["records"].values() if stamp.get("cpu")]
+    return max(sorted(set(machines)), key=machines.count, default="")
+
+
+def usual_conditions():
+    """What conditions() leaves out."""
+    return f"{usual_machine()}, commit {stamps()['build']}"
+
+
 def conditions(name):
-    """A record's stamp in words: "3 starts, 2 threads, Intel Xeon with 2 cores, commit 0123abc"."""
+    """A record's stamp in words, but for the usual conditions: "3 starts, 2 threads, Intel Xeon with 2 cores"."""
     all_stamps = stamps()
     stamp = all_stamps["records"].get(name)
     if stamp is None:
         return "no record yet"
-    count = lambda n, what: f"{n} {what}" + ("" if n == 1 else "s")  # noqa: E731
     parts = [count(stamp["starts"], "start")] if stamp.get("starts") else []
     parts += [count(stamp["threads"], "thread")] if stamp.get("threads") else []
-    if stamp.get("cpu"):
-        cpu = stamp["cpu"].replace("(R)", "").replace(" Processor", "") + (" (AVX-512)" if stamp.get("avx512") else "")
-        parts.append(f"{cpu} with {count(stamp['cores'], 'core')}" if stamp.get("cores") else cpu)
-    if stamp.get("commit"):
-        parts.append(f"commit {stamp['commit']}" + ("" if stamp["commit"] == all_stamps["build"] else ", another build"))
-    else:
+    if stamp.get("cpu") and machine(stamp) != usual_machine():
+        parts.append(machine(stamp))
+    if not stamp.get("commit"):
         parts.append(stamp.get("note", "build not recorded"))
+    elif stamp["commit"] != all_stamps["build"]:
+        parts.append(f"commit {stamp['commit']}, another build")
     if stamp.get("runs_at_a_time", 1) > 1:
         parts.append(f"{stamp['runs_at_a_time']} runs at a time")
         if stamp["load_after"] >= own_load(stamp) + 0.5:
