@@ -51,7 +51,7 @@ function previews(run) {
   if (!shown.length) return null;
   return h('section', {id: 'previews'}, h('h2', {}, 'Previews on their ends'),
     explained('The end of each method, and as a blue line the outline of its preview, the state of its coarsest level. The closer the line follows the cloth, the ' +
-      'better the preview foretold it.'),
+      'more accurate the preview.'),
     h('div', {class: 'pictures'}, shown.map(({method, coarse, fine, png, alt}) => {
       const {levels, consistency = []} = run.results.methods[method], of = l => levels.find(each => each.level === l);
       const off = consistency.find(pair => pair.coarse === coarse && pair.fine === fine)?.distance_rms;
@@ -102,7 +102,7 @@ function levelTable(run) {
   return dataTable('levels', 'of levels', columnsOf(unique(rows.flatMap(Object.keys)), few, run.of).map(column => ({...column, better: undefined})), rows);
 }
 
-/// How well coarse levels foretell finer ones, with the scene's start in place of the coarse level as a rival.
+/// How close coarse levels are to finer ones, with the scene's start in place of the coarse level as a rival.
 function consistency(run) {
   const columns = metricColumns(run.results.metrics, 'pair').filter(column => column.shown !== 'stored');
   const pairs = run.order.flatMap(method => (run.results.methods[method].consistency || []).map(pair => ({method, levels: `${pair.coarse} → ${pair.fine}`, ...pair})));
@@ -113,7 +113,7 @@ function consistency(run) {
   }))}));
   const shown = ['levels', 'method', ...columns.map(column => column.name)];
   const texts = Object.values(run.results.metrics).filter(m => m.scope === 'pair' && m.text && m.columns.some(c => c.shown !== 'stored')).map(m => formula(m.text + ' '));
-  return fold('How well coarse levels foretell finer ones', h('p', {}, 'The method’s own interpolation prolongs the coarse state to the fine mesh, where it is compared with the fine one. ', ...texts.flat(),
+  return fold('How close coarse levels are to finer ones', h('p', {}, 'The method’s own interpolation prolongs the coarse state to the fine mesh, where it is compared with the fine one. ', ...texts.flat(),
     'The flat start is the scene’s start in place of the coarse state: where it is best, the measure does not compare the methods.'),
   dataTable('consistency', 'of pairs of levels', columnsOf(shown, shown, run.of), [...pairs, ...starts].sort((a, b) => a.levels.localeCompare(b.levels)), row => row.levels));
 }
@@ -153,7 +153,7 @@ function convergence(run) {
   draw('residual_seconds');
   const increments = run.order.flatMap(method => (run.results.methods[method].increments || []).map(row => ({method, ...row})));
   const under = (id, y, title) => {
-    const plot = new Chart(id, title + ' of each increment, over pseudo-time: where the lines of levels coincide, the coarse level foretold the fine one’s response.');
+    const plot = new Chart(id, title + ' of each increment, over pseudo-time: where the lines of levels coincide, the coarse level had the fine one’s response.');
     plot.draw({x: {title: 'pseudo-time', name: 'time'}, y: {title, name: y}, series: series.map(line => ({...look(line), mark: 'circle',
       points: increments.filter(row => row.method === line.method && (row.level ?? 0) === line.level).map(row => ({x: row.time, y: row[y]}))}))});
     return plot.element;

@@ -101,7 +101,7 @@ const thousands = n => (n / 1000).toFixed(n < 9950 ? 1 : 0);
 async function progression() {
   const results = path.join(runs, 'tablecloth');
   const all = JSON.parse(fs.readFileSync(path.join(results, 'results.json'), 'utf8')).methods.pcs.levels;
-  await run(folder, 'export', results, '--to', 'frame.png', '--frames', '--width', '960', '--view=0.5,-1,0.5');
+  await run(folder, 'export', results, '--to', 'frame.png', '--frames', '--width', '1280', '--view=0.5,-1,0.5');
   const names = fs.readdirSync(folder).filter(name => /^frame_.*png$/.test(name)).sort();
   const page = await newPage({viewport: {width: 640, height: 700}});
   const frames = [], ends = [];
@@ -115,7 +115,7 @@ async function progression() {
       fs.writeFileSync(path.join(folder, 'frame.html'), `<!DOCTYPE html><meta charset="utf-8"><style>
         body { margin: 0; background: #fbfbfb; }
         main { position: relative; width: 640px; height: 498px; overflow: hidden; }
-        img { display: block; width: 840px; margin: -66px 0 0 -100px; }
+        img { display: block; width: 640px; }
         p { position: absolute; left: 14px; top: 8px; margin: 0; color: #1b2027; font: 600 22px "Noto Sans", "DejaVu Sans", sans-serif; }
         </style><main><img src="${name}"><p>${label}</p></main>`);
       await page.goto('file://' + path.join(folder, 'frame.html'));
