@@ -113,9 +113,12 @@ class Finder {
   bool is_near(const Ball& ball) const {
     return solid_.distance(ball.centre) - ball.radius < scene_.barrier.dhat;
   }
-  /// The fraction of a cloth element of this length that one side of a cylinder's polygon covers.
+  /// The fraction of a cloth element of this length that one side of a cylinder's polygon covers. The sides
+  /// of a cylinder that is thinner than the element share it.
   double side_fraction(double length) const {
-    return features_.side > 0 ? std::min(1.0, features_.side / length) : 1;
+    if (features_.side == 0) return 1;
+    const double sides = 0.5 * static_cast<double>(features_.points.size());
+    return std::clamp(features_.side / length, 1 / sides, 1.0);
   }
 
   /// The triangles' vertices or edges, of which there are `count`, that are near; ascending, each once.

@@ -319,6 +319,19 @@ TEST_CASE("shapes: flat cloth on a face has the pressure κ |b'|") {
   }
 }
 
+TEST_CASE("shapes: a cylinder thinner than the cloth's edges carries cloth however thin it is") {
+  const Level level = square_sheet(4, 0.03);
+  const auto force_on = [&](double radius) {
+    ShapeParameters p = level_with(SolidKind::cylinder);
+    p.radius = radius;
+    const auto bound = Shapes(with({p})).bind(level, Material());
+    return -gradient_at(*bound, lifted(level, 0.4 * dhat, 0.011, 0.004)).col(2).sum();
+  };
+  const double thin = force_on(1e-4);
+  REQUIRE(thin > 0);
+  for (const double radius : {1e-5, 1e-6, 1e-7}) CHECK(force_on(radius) == Approx(thin).epsilon(0.02));
+}
+
 TEST_CASE("shapes: forces are continuous during sliding") {
   const Level level = square_sheet(4, 0.03);
   for (const SolidKind kind : kinds) {
