@@ -3,6 +3,7 @@
 #include <cmath>
 #include <limits>
 #include <stdexcept>
+#include <string_view>
 #include <type_traits>
 
 #include "core/kernel/files/file.h"
@@ -12,7 +13,7 @@ namespace drape {
 
 using Json = JsonFile::Json;
 
-const Json& member_of(const Json& object, const std::string& key) {
+const Json& member_of(const Json& object, std::string_view key) {
   static const Json absent;
   if (!object.is_object()) return absent;
   const auto found = object.find(key);

@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
+#include <string_view>
 
 namespace drape {
 
@@ -33,7 +34,7 @@ class JsonFile {
 };
 
 /// A member of an object; null if the key is absent or it is no object.
-const nlohmann::ordered_json& member_of(const nlohmann::ordered_json& object, const std::string& key);
+const nlohmann::ordered_json& member_of(const nlohmann::ordered_json& object, std::string_view key);
 /// A member's text; empty if it is none.
 std::string text_member(const nlohmann::ordered_json& object, const std::string& key);
 
