@@ -11,8 +11,9 @@ namespace drape {
 ///
 /// h grows after full steps and shrinks after short ones; without descent it is divided by four. Near a
 /// strain limit full steps gain no margin, and forces stay a thousand times the load: h is then divided by
-/// 16, unless the forces are falling, and does not grow until they have recovered. Where steps repeat each
-/// other, h is limited to a quarter, and the static form gets inertia.
+/// 16, unless the forces are falling, and does not grow until they have recovered, or until even the smallest
+/// h has not helped: then steps begin with the first one again. Where steps repeat each other, h is limited
+/// to a quarter, and the static form gets inertia.
 class StepController {
  public:
   static constexpr double min_step_size = 1e-8;  ///< damping has failed below this h [s]

@@ -122,6 +122,17 @@ TEST_CASE(
   CHECK(c.step_size() == 1.0 / 8);
 }
 
+TEST_CASE("Where even the smallest step size has not ended a stall, steps begin with the first one again") {
+  const NewtonParameters p = doubling();
+  StepController c(p);
+  for (int k = 0; k < 20 * 7; ++k) step(c, 0.5, 2e3);  // 16⁻⁷ < 1e-8
+  CHECK(c.step_size() == StepController::min_step_size);
+  CHECK(c.state().backed_off);
+  for (int k = 0; k < 20; ++k) step(c, 0.5, 2e3);
+  CHECK(c.step_size() == p.step_size);
+  CHECK_FALSE(c.state().backed_off);
+}
+
 TEST_CASE("Where steps repeat each other h is limited to a quarter, again and again, until the limit ends") {
   NewtonParameters p = doubling();
   StepController c(p);
