@@ -10,8 +10,8 @@
 #include "tests/support/page_data.h"
 
 namespace fs = std::filesystem;
-using Catch::Matchers::Contains;
-using Catch::Matchers::StartsWith;
+using Catch::Contains;
+using Catch::StartsWith;
 using Json = nlohmann::json;
 
 namespace {

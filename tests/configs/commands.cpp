@@ -10,10 +10,10 @@
 #include "tests/support/registry.h"
 
 namespace fs = std::filesystem;
-using Catch::Matchers::Contains;
-using Catch::Matchers::EndsWith;
-using Catch::Matchers::Matches;
-using Catch::Matchers::StartsWith;
+using Catch::Contains;
+using Catch::EndsWith;
+using Catch::Matches;
+using Catch::StartsWith;
 
 namespace {
 

@@ -5,7 +5,7 @@
 
 #include "tests/support/command.h"
 
-using Catch::Matchers::Contains;
+using Catch::Contains;
 
 namespace {
 

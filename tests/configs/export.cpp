@@ -12,9 +12,9 @@
 
 using namespace drape;
 namespace fs = std::filesystem;
-using Catch::Matchers::Contains;
-using Catch::Matchers::EndsWith;
-using Catch::Matchers::StartsWith;
+using Catch::Contains;
+using Catch::EndsWith;
+using Catch::StartsWith;
 using Json = nlohmann::json;
 
 namespace {

@@ -11,7 +11,7 @@
 
 using namespace drape;
 namespace fs = std::filesystem;
-using Catch::Matchers::Contains;
+using Catch::Contains;
 using OrderedJson = nlohmann::ordered_json;
 
 namespace {
@@ -279,7 +279,7 @@ TEST_CASE("compare lists changes, and exits with 1 if a bound is broken") {
   for (const char* line :
        {"pcs, level 1 +seconds .* slower\n", "pcs, levels 0 → 1 +d_H_fit .* ×0.500 +better\n",
         "cascadic, level 1 +iterations .* more work\n"})
-    CHECK_THAT(plain.out, Catch::Matchers::Matches("[\\s\\S]*" + std::string(line) + "[\\s\\S]*"));
+    CHECK_THAT(plain.out, Catch::Matches("[\\s\\S]*" + std::string(line) + "[\\s\\S]*"));
   CHECK(run.compare(" --bound d_H_fit=1 --bound energy_released=1").exit_code == 0);
   const Ended broken = run.compare(" --bound seconds=1.5");
   CHECK(broken.exit_code == 1);
@@ -293,7 +293,7 @@ TEST_CASE("compare gives energies no verdict where the models differ, and names 
     level["energy_released"] = level["energy_released"].get<double>() + 0.1;
   });
   const auto matches = [](const std::string& line) {
-    return Catch::Matchers::Matches("[\\s\\S]*" + line + "[\\s\\S]*");
+    return Catch::Matches("[\\s\\S]*" + line + "[\\s\\S]*");
   };
   const std::string config = text_of(run.folder / "b/config.yaml");
   const Ended same = run.compare();

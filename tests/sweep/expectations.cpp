@@ -6,8 +6,8 @@
 #include "tests/support/command.h"
 
 using namespace drape;
-using Catch::Matchers::Contains;
-using Catch::Matchers::StartsWith;
+using Catch::Contains;
+using Catch::StartsWith;
 using OrderedJson = nlohmann::ordered_json;
 
 namespace {

@@ -13,7 +13,7 @@
 #include "tests/support/sweep_runs.h"
 
 namespace fs = std::filesystem;
-using Catch::Matchers::Contains;
+using Catch::Contains;
 using Json = nlohmann::json;
 
 namespace {
@@ -142,7 +142,7 @@ TEST_CASE("Ctrl-C stops the runs, which save their state, and the same command r
   DrapeAtWork command("sweep s.yaml --out out --workers 1", folder);
   wait_for_endless(command, folder);
   CHECK_THAT(refused_by("sweep s.yaml --out out", folder.path),
-             Catch::Matchers::Matches("error: out: another `drape sweep` uses this folder \\(process "
+             Catch::Matches("error: out: another `drape sweep` uses this folder \\(process "
                                       "[0-9]+ on .+\\); wait for it, or name another folder with "
                                       "--out\n"));
   command.send(SIGINT);
@@ -150,7 +150,7 @@ TEST_CASE("Ctrl-C stops the runs, which save their state, and the same command r
   CHECK(ended.exit_code == 130);
   CHECK_THAT(ended.err, Contains("stopping: 1 run is saving its state\n"));
   CHECK_THAT(ended.err,
-             Catch::Matchers::EndsWith("stopped on request; the same command runs what is missing\n"));
+             Catch::EndsWith("stopped on request; the same command runs what is missing\n"));
   const Json stopped = runs_of(folder / "out");
   CHECK(stopped[0]["status"] == "converged");
   CHECK(stopped[1]["status"] == "cancelled");
@@ -305,8 +305,8 @@ TEST_CASE("a complete run without a final status keeps its results and is not re
 
   folder.write("out/runs/a/seed_1.status.json", "{");
   CHECK_THAT(refused_by("sweep s.yaml --out out", folder.path),
-             Catch::Matchers::StartsWith("error: out/runs/a/seed_1.status.json: is not a run's status") &&
-                 Catch::Matchers::EndsWith("; remove it and the run's folder\n"));
+             Catch::StartsWith("error: out/runs/a/seed_1.status.json: is not a run's status") &&
+                 Catch::EndsWith("; remove it and the run's folder\n"));
 }
 
 TEST_CASE("two tasks for one run, as after a daemon's death, run it once") {

@@ -138,7 +138,7 @@ TEST_CASE("two equal variations") {
 TEST_CASE("a sweep with a run that may exceed the memory starts no run") {
   CHECK_THAT(said_of("methods: [newton]\nablation:\n  - {name: small, levels: 1}\n"
                      "  - {name: large, levels: 10, set: {cloth.columns: 12, cloth.rows: 12}}\n"),
-             Catch::Matchers::Matches(
+             Catch::Matches(
                  "error: large, seed 1, may need 1582 GB of memory, where this machine has [0-9.]+ GB; take "
                  "fewer levels or vertices, or allow it with --allow-memory\n"));
 }
@@ -175,7 +175,7 @@ TEST_CASE("--dry-run validates and lists without writing") {
   const std::string sweep = folders::source() / "tests/sweep/small_sweep.yaml";
   CHECK_THAT(
       shown_by("sweep " + sweep + " --dry-run", folder.path),
-      Catch::Matchers::StartsWith("sweep small_sweep: 24 runs in results/small_sweep, each with 1 thread\n"
+      Catch::StartsWith("sweep small_sweep: 24 runs in results/small_sweep, each with 1 thread\n"
                                   "pending    runs/refiner=loop,levels=1,step_growth=1.5/seed_1  levels 1, "
                                   "about 64 vertices, 0.1 GB  {\"refiner\":\"loop\",\"levels\":1,"
                                   "\"newton.step_growth\":1.5}\n"));
@@ -189,7 +189,7 @@ TEST_CASE("--most-levels limits the levels of experiments") {
   const auto plan = [&](const std::string& option) {
     return shown_by("sweep s.yaml --dry-run" + option, folder.path);
   };
-  using Catch::Matchers::Contains;
+  using Catch::Contains;
   CHECK_THAT(plan(""), Contains("few/seed_1  levels 1,") && Contains("many/seed_1  levels 3,"));
   CHECK_THAT(plan(" --most-levels 2"),
              Contains("few/seed_1  levels 1,") && Contains("many/seed_1  levels 2,"));
@@ -227,7 +227,7 @@ TEST_CASE("a setting may be a whole map or list, and its files are relative to t
   drape_ends("sweep sweeps/s.yaml --out out", folder);
   const std::string other = text_of(folder / "out/runs/other_energies/seed_1/config.yaml");
   for (const char* line : {"- type: stvk\n", "acceleration: [0, 0, -5]\n", "step_size: 0.25\n"})
-    CHECK_THAT(other, Catch::Matchers::Contains(line));
+    CHECK_THAT(other, Catch::Contains(line));
   CHECK(other.find("hinge") == std::string::npos);
   CHECK(fs::exists(folder / "out/runs/mesh/seed_1/levels/newton_l1.ply"));
   const auto json = json_in(folder / "out/sweep.json");

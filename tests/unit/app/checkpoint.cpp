@@ -8,8 +8,8 @@
 #include "tests/support/refusal.h"
 
 using namespace drape;
-using Catch::Matchers::Contains;
-using Catch::Matchers::EndsWith;
+using Catch::Contains;
+using Catch::EndsWith;
 
 namespace {
 

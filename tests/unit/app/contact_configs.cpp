@@ -6,7 +6,7 @@
 #include "tests/support/solve.h"
 
 using namespace drape;
-using Catch::Matchers::Contains;
+using Catch::Contains;
 
 namespace {
 

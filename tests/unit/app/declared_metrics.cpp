@@ -10,7 +10,7 @@
 
 using namespace drape;
 using Json = nlohmann::ordered_json;
-using Catch::Matchers::Contains;
+using Catch::Contains;
 
 namespace {
 

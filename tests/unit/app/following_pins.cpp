@@ -11,7 +11,7 @@
 #include "tests/support/solve.h"
 
 using namespace drape;
-using Catch::Matchers::Contains;
+using Catch::Contains;
 
 namespace {
 

@@ -20,7 +20,7 @@
 #include "tests/support/refusal.h"
 
 using namespace drape;
-using Catch::Matchers::Contains;
+using Catch::Contains;
 namespace fs = std::filesystem;
 
 namespace {

@@ -7,7 +7,7 @@
 #include "tests/support/refusal.h"
 
 using namespace drape;
-using Catch::Matchers::Contains;
+using Catch::Contains;
 
 namespace {
 

@@ -9,7 +9,7 @@
 #include "tests/support/command.h"
 #include "tests/support/folders.h"
 
-using Catch::Matchers::Contains, Catch::Matchers::EndsWith, Catch::Matchers::StartsWith;
+using Catch::Contains, Catch::EndsWith, Catch::StartsWith;
 
 namespace {
 

@@ -9,7 +9,7 @@
 using namespace drape;
 using CornerPoint = Eigen::Vector3d;
 using CornerList = std::vector<CornerPoint>;
-using Catch::Matchers::Contains;
+using Catch::Contains;
 
 namespace {
 
