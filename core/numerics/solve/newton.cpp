@@ -203,8 +203,9 @@ class Newton {
     load_.report_increment();
     if (dirichlet_.infeasible()) return {Outcome::infeasible, "", "the rest of the cloth is at equilibrium"};
     if (in_tolerance) return {Outcome::converged};
-    return {Outcome::converged_to_rounding,
-            rounding_text(iterate_.force_residual(), p_.force_tolerance, check_.rounding_residual())};
+    const double residual = iterate_.force_residual();
+    return {residual < balanced ? Outcome::converged_to_rounding : Outcome::stalled,
+            rounding_text(residual, p_.force_tolerance, check_.rounding_residual())};
   }
 
   /// Steps repeat each other: damps the lag of friction, which such steps mostly come from, or h.
@@ -253,8 +254,7 @@ class Newton {
   }
 
   void add_to_message(const std::string& text) {
-    if (!result_.message.empty() && !text.empty()) result_.message += "; ";
-    result_.message += text;
+    result_.message += (result_.message.empty() || text.empty() ? "" : "; ") + text;
   }
 
   LevelResult finish(const End& end) {

@@ -188,6 +188,16 @@ TEST_CASE("A strip at equilibrium up to round-off has converged to rounding") {
     }
 }
 
+TEST_CASE("Round-off beyond the load leaves no equilibrium") {
+  HangingStrip strip(1e18);
+  Observer silent;
+  const LevelResult r = strip.solve(far_too_tight(NewtonForm::quasistatic), silent);
+  CAPTURE(r.steps, r.message);
+  CHECK(r.force_residual > 1);
+  CHECK(r.outcome == Outcome::stalled);
+  CHECK_THAT(r.message, Catch::Contains("round-off alone accounts for up to "));
+}
+
 TEST_CASE("A run that ends at the rounding floor can be resumed bit for bit from any state") {
   KeepingObserver whole;
   whole.keeps_states = true;
