@@ -112,7 +112,7 @@ TEST_CASE("a start or a reference that is no regular file, or is not finite") {
   REQUIRE(mkfifo((folder / "pipe.ply").c_str(), 0600) == 0);
   for (const std::string key : {"start", "reference"}) {
     const std::string said = drape_with("check e.yaml --set '" + key + "={file: pipe.ply}'", folder.path).err;
-    CHECK_THAT(said, Catch::Matchers::Contains("pipe.ply: is a pipe or a device"));
+    CHECK_THAT(said, Catch::Contains("pipe.ply: is a pipe or a device"));
   }
   drape_ends("run e.yaml --out out --quiet --no-report --levels 1 --method pcs", folder);
   const std::string rest = text_of(folder / "out/rest/l0.ply");
@@ -131,11 +131,11 @@ TEST_CASE("a start or a reference that is no regular file, or is not finite") {
   CHECK(said_with(0.1) == "");
   CHECK_THAT(
       drape_with("check e.yaml --set cloth.side=0.1 --set 'start.translate=[9e8, 0, 0]'", folder.path).err,
-      Catch::Matchers::Contains("the start of level 0: the mesh is 0.127 m across and 9e+08 m from the "
-                                "origin, where rounding moves vertices by 2e-07 m; move it nearer\n"));
+      Catch::Contains("the start of level 0: the mesh is 0.127 m across and 9e+08 m from the "
+                      "origin, where rounding moves vertices by 2e-07 m; move it nearer\n"));
   CHECK_THAT(
       drape_with("check e.yaml --set cloth.side=1e6 --set 'start.scale=[1e4, 1, 1]'", folder.path).err,
-      Catch::Matchers::Contains(
+      Catch::Contains(
           "the start of level 0: 30 vertices have too large a coordinate: 1 with 2e+09 m, 2 with 4e+09 m, "
           "3 with 6e+09 m, 4 with 8e+09 m, 5 with 1e+10 m, … (counted from 0); at most 1e+09 m can be "
           "computed with: is the file in metres?\n"));
@@ -146,7 +146,7 @@ TEST_CASE("output is short for any number and length of errors") {
   for (int k = 0; k < 20000; ++k) text += "key_" + std::to_string(k) + ": 1\n";
   const std::string said = said_of(text);
   CHECK(said.size() < 20000);
-  CHECK_THAT(said, Catch::Matchers::EndsWith("error: and 19960 more\n"));
+  CHECK_THAT(said, Catch::EndsWith("error: and 19960 more\n"));
   const std::string word(1000000, 'x');
   for (const std::string& edited :
        {replaced(small_experiment(), "levels: 2", "levels: " + word),
@@ -585,6 +585,6 @@ TEST_CASE("plugin libraries that do not fit") {
     return refused(folder, "run e.yaml --out out", "DRAPE_PLUGIN_PATH=" + path);
   };
   CHECK_THAT(said(folders::test_plugins() / "wrong_abi"),
-             Catch::Matchers::Contains("/libwrong_abi.so: does not fit this drape, rebuild it: "));
+             Catch::Contains("/libwrong_abi.so: does not fit this drape, rebuild it: "));
   CHECK(said("nowhere") == "error: DRAPE_PLUGIN_PATH names nowhere, which is not a folder\n");
 }

@@ -85,7 +85,7 @@ TEST_CASE("all faults of a mesh are listed at once") {
        {"1 vertex belongs to no triangle: 9", "1 triangle repeats a vertex: 9",
         "1 triangle has the same vertices as another: 8 ", "1 edge has more than two triangles: (0, 4)",
         "1 vertex joins separate fans of triangles: 8 of 2 fans"})
-    CHECK_THAT(said, Catch::Matchers::Contains(fault));
+    CHECK_THAT(said, Catch::Contains(fault));
   CHECK(std::count(said.begin(), said.end(), '\n') == 5);
 }
 
@@ -101,6 +101,5 @@ TEST_CASE("few faults are listed for any number in a mesh") {
   for (int k = 0; k < 200000; ++k) mesh += "\nf 1 2 3";
   const std::string said = said_of_mesh(mesh + "\n");
   CHECK(said.size() < 10000);
-  CHECK_THAT(said, Catch::Matchers::Contains(
-                       "in/cloth.obj: 199999 triangles have the same vertices as another: 1 "));
+  CHECK_THAT(said, Catch::Contains("in/cloth.obj: 199999 triangles have the same vertices as another: 1 "));
 }

@@ -38,7 +38,7 @@ TEST_CASE("SIGINT ends a run after the step, with all results so far and the rep
   const Ended ended = command.wait();
   CHECK(ended.exit_code == 130);
   CHECK(ended.out == "report: out/report.html\n");
-  CHECK_THAT(ended.err, Catch::Matchers::EndsWith("stopped on request; everything up to then is in out\n"));
+  CHECK_THAT(ended.err, Catch::EndsWith("stopped on request; everything up to then is in out\n"));
   const Json all = json_in(folder / "out/results.json");
   CHECK(all["complete"] == false);
   REQUIRE(all["methods"].size() == 1);  // the next method is not begun
@@ -80,7 +80,7 @@ TEST_CASE("A run writes nothing of its progress into its files where the standar
   for (const auto& entry : fs::recursive_directory_iterator(folder / "out")) {
     if (!entry.is_regular_file()) continue;
     INFO(entry.path());
-    CHECK_THAT(text_of(entry.path()), !Catch::Matchers::Contains("pcs       level 0/0"));
+    CHECK_THAT(text_of(entry.path()), !Catch::Contains("pcs       level 0/0"));
   }
 }
 

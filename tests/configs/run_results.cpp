@@ -255,20 +255,18 @@ TEST_CASE("the saved config has the defaults of omitted parameters") {
   const std::string config = text_of(whole_run() / "config.yaml");
   for (const char* line : {"\n  density: 472.6\n", "\ncontact: []\n", "\n  corner_angle: 30\n",
                            "\n    acceleration: [0, 0, -9.81]\n", "\n  - type: stretch\n"})
-    CHECK_THAT(config, Catch::Matchers::Contains(line));
+    CHECK_THAT(config, Catch::Contains(line));
 }
 
 TEST_CASE("a metric that throws leaves a note, and the run continues") {
   const Scratch folder(replaced(small_experiment(), "[0.9, 0.9, 1]", "[0, 0, 1]"));
-  CHECK_THAT(
-      drape_with("check e.yaml", folder.path).err,
-      Catch::Matchers::Contains("\nerror: e.yaml:4:8: energy or forces at the start of level 0 are not "
-                                "finite: energy neo_hookean is not, as triangle 0 (0, 1, 7) has no "
-                                "area there; change the start\n"));
+  CHECK_THAT(drape_with("check e.yaml", folder.path).err,
+             Catch::Contains("\nerror: e.yaml:4:8: energy or forces at the start of level 0 are not "
+                             "finite: energy neo_hookean is not, as triangle 0 (0, 1, 7) has no "
+                             "area there; change the start\n"));
   const Ended ended =
       drape_ends("run e.yaml --out out --method all --threads 1 --quiet --no-report", folder, 1);
-  CHECK_THAT(ended.err,
-             Catch::Matchers::StartsWith("warning: e.yaml:4:8: the start has 0 times the lengths"));
+  CHECK_THAT(ended.err, Catch::StartsWith("warning: e.yaml:4:8: the start has 0 times the lengths"));
   CHECK(std::count(ended.err.begin(), ended.err.end(), '\n') == 1);
   const Json all = json_in(folder / "out/results.json");
   CHECK(all["complete"] == true);
@@ -279,6 +277,6 @@ TEST_CASE("a metric that throws leaves a note, and the run continues") {
           "energy or forces at the start are not finite: energy neo_hookean is not, as triangle 0 (0, 1, 7) "
           "has no area there; change the start");
     CHECK_THAT(method["consistency"][0]["not_measured"]["curvature_consistency"].get<std::string>(),
-               Catch::Matchers::StartsWith("curvature: the triangles around vertex 0 "));
+               Catch::StartsWith("curvature: the triangles around vertex 0 "));
   }
 }

@@ -72,7 +72,7 @@ std::unique_ptr<BoundEnergy> bind(const Candidate& candidate, const Level& level
   } catch (const std::runtime_error& error) {
     INFO(candidate.name);
     REQUIRE_FALSE(level.rest.vertices.col(2).isZero(0));
-    REQUIRE_THAT(error.what(), Catch::Matchers::Contains("the rest shape of level 0 is not flat"));
+    REQUIRE_THAT(error.what(), Catch::Contains("the rest shape of level 0 is not flat"));
     return nullptr;
   }
 }

@@ -35,8 +35,7 @@ TEST_CASE("a run that was stopped resumes from its checkpoint, to the bits of an
   REQUIRE(runs_of(folder / "out")[0]["status"] == "cancelled");
   drape_with("sweep s.yaml --out out", folder.path);
   CHECK(runs_of(folder / "out")[0]["starts"] == 2);
-  CHECK_THAT(text_of(folder / "out/runs/slow/seed_1/log.jsonl"),
-             Catch::Matchers::Contains("\"run_resumed\""));
+  CHECK_THAT(text_of(folder / "out/runs/slow/seed_1/log.jsonl"), Catch::Contains("\"run_resumed\""));
   CHECK(outcome_of(folder / "out") == outcome_of(folder / "whole"));
 }
 
@@ -48,8 +47,7 @@ TEST_CASE("a sweep that was killed runs an experiment that has changed since fro
   drape_with("sweep s.yaml --out out", folder.path);
   const auto results = json_in(folder / "out/runs/slow/seed_1/results.json");
   CHECK(results["methods"]["newton"]["levels"][0]["steps"] == 3);
-  CHECK_THAT(text_of(folder / "out/runs/slow/seed_1/log.jsonl"),
-             !Catch::Matchers::Contains("\"run_resumed\""));
+  CHECK_THAT(text_of(folder / "out/runs/slow/seed_1/log.jsonl"), !Catch::Contains("\"run_resumed\""));
 }
 
 TEST_CASE("a sweep removes no run that another process is resuming") {
@@ -67,8 +65,7 @@ TEST_CASE("a sweep removes no run that another process is resuming") {
   drape_with("sweep s.yaml --out out", folder.path);
   CHECK(text_of(folder / (run + "/notes")) == "mine");
   CHECK(runs_of(folder / "out")[0]["status"] == "failed");
-  CHECK_THAT(runs_of(folder / "out")[0]["error"].get<std::string>(),
-             Catch::Matchers::Contains("uses this folder"));
+  CHECK_THAT(runs_of(folder / "out")[0]["error"].get<std::string>(), Catch::Contains("uses this folder"));
   by_hand.send(SIGCONT);
   by_hand.send(SIGINT);
   by_hand.wait();
@@ -111,7 +108,7 @@ TEST_CASE("a sweep replaces no complete results that it did not make") {
       R"({"status": "failed", "error": "", "exit_code": 2, "seconds": 0, "starts": 1, "threads": 1})");
   const std::string results = text_of(folder / (run + "/results.json"));
   CHECK_THAT(refused_by("sweep s.yaml --out out --retry-failed", folder.path),
-             Catch::Matchers::Contains(run + ": has complete results, but not from this sweep"));
+             Catch::Contains(run + ": has complete results, but not from this sweep"));
   CHECK(text_of(folder / (run + "/results.json")) == results);
 }
 
@@ -129,7 +126,7 @@ TEST_CASE("a sweep starts no run once its program was replaced, and the same com
   std::filesystem::rename(folder / "bin/new", folder / "bin/drape");
   const Ended ended = command.wait();
   CHECK(ended.exit_code == 3);
-  CHECK_THAT(ended.err, Catch::Matchers::Contains("bin/drape was replaced or removed while the sweep ran"));
+  CHECK_THAT(ended.err, Catch::Contains("bin/drape was replaced or removed while the sweep ran"));
   CHECK(count_of(runs_of(folder / "out"), "failed") == 0);
   CHECK(count_of(runs_of(folder / "out"), "pending") > 0);
   drape_ends("sweep s.yaml --out out", folder);

@@ -143,14 +143,13 @@ TEST_CASE("Ctrl-C stops the runs, which save their state, and the same command r
   wait_for_endless(command, folder);
   CHECK_THAT(refused_by("sweep s.yaml --out out", folder.path),
              Catch::Matches("error: out: another `drape sweep` uses this folder \\(process "
-                                      "[0-9]+ on .+\\); wait for it, or name another folder with "
-                                      "--out\n"));
+                            "[0-9]+ on .+\\); wait for it, or name another folder with "
+                            "--out\n"));
   command.send(SIGINT);
   const Ended ended = command.wait();
   CHECK(ended.exit_code == 130);
   CHECK_THAT(ended.err, Contains("stopping: 1 run is saving its state\n"));
-  CHECK_THAT(ended.err,
-             Catch::EndsWith("stopped on request; the same command runs what is missing\n"));
+  CHECK_THAT(ended.err, Catch::EndsWith("stopped on request; the same command runs what is missing\n"));
   const Json stopped = runs_of(folder / "out");
   CHECK(stopped[0]["status"] == "converged");
   CHECK(stopped[1]["status"] == "cancelled");

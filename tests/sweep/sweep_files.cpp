@@ -173,12 +173,11 @@ TEST_CASE("conflicting options, and a foreign folder") {
 TEST_CASE("--dry-run validates and lists without writing") {
   const Scratch folder;
   const std::string sweep = folders::source() / "tests/sweep/small_sweep.yaml";
-  CHECK_THAT(
-      shown_by("sweep " + sweep + " --dry-run", folder.path),
-      Catch::StartsWith("sweep small_sweep: 24 runs in results/small_sweep, each with 1 thread\n"
-                                  "pending    runs/refiner=loop,levels=1,step_growth=1.5/seed_1  levels 1, "
-                                  "about 64 vertices, 0.1 GB  {\"refiner\":\"loop\",\"levels\":1,"
-                                  "\"newton.step_growth\":1.5}\n"));
+  CHECK_THAT(shown_by("sweep " + sweep + " --dry-run", folder.path),
+             Catch::StartsWith("sweep small_sweep: 24 runs in results/small_sweep, each with 1 thread\n"
+                               "pending    runs/refiner=loop,levels=1,step_growth=1.5/seed_1  levels 1, "
+                               "about 64 vertices, 0.1 GB  {\"refiner\":\"loop\",\"levels\":1,"
+                               "\"newton.step_growth\":1.5}\n"));
   CHECK(fs::is_empty(folder.path));
 }
 

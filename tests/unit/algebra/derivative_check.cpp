@@ -52,8 +52,7 @@ TEST_CASE("a gradient that is not added, and an energy that is another, are refu
   Careless energy;
   CHECK(check_derivatives(energy, state, 1e-3).gradient.error < 1e-9);
   energy.excess = 1e-3;
-  CHECK_THROWS_WITH(check_derivatives(energy, state, 1e-3),
-                    Catch::Matchers::StartsWith("add_gradient returns "));
+  CHECK_THROWS_WITH(check_derivatives(energy, state, 1e-3), Catch::StartsWith("add_gradient returns "));
   energy = {};
   energy.overwrites = true;
   CHECK_THROWS_WITH(check_derivatives(energy, state, 1e-3),
@@ -96,7 +95,7 @@ TEST_CASE("what is not finite differs, and is named") {
   energy = {};
   energy.limit = -1;
   CHECK_THROWS_WITH(check_derivatives(energy, state, 1e-3),
-                    Catch::Matchers::StartsWith("the energy is not finite at this state: value is inf"));
+                    Catch::StartsWith("the energy is not finite at this state: value is inf"));
 }
 
 TEST_CASE("the round-off of a constant energy is no error of its gradient") {

@@ -46,13 +46,13 @@ TEST_CASE("what a faulty refiner returns is refused before anything is computed 
   const std::string of_level = "the refiner's result for level 0: ";
   CHECK(refusal([](ProlongationMatrix&) {}).empty());
   CHECK_THAT(refusal([](ProlongationMatrix& p) { p.conservativeResize(p.rows() - 1, p.cols()); }),
-             Catch::Matchers::StartsWith(of_level + "weights of 34 × 12, not 35 × 12"));
+             Catch::StartsWith(of_level + "weights of 34 × 12, not 35 × 12"));
   CHECK_THAT(refusal([](ProlongationMatrix& p) { p.conservativeResize(p.rows(), 20); }),
-             Catch::Matchers::StartsWith(of_level + "weights of 35 × 20"));
+             Catch::StartsWith(of_level + "weights of 35 × 20"));
   CHECK_THAT(refusal([](ProlongationMatrix& p) { p *= 1.01; }),
-             Catch::Matchers::StartsWith(of_level + "row 0 of its weights sums to 1.01"));
+             Catch::StartsWith(of_level + "row 0 of its weights sums to 1.01"));
   CHECK_THAT(refusal([](ProlongationMatrix& p) { p.coeffRef(5, 5) = std::nan(""); }),
-             Catch::Matchers::StartsWith(of_level + "row 5"));
+             Catch::StartsWith(of_level + "row 5"));
   CHECK(refusal([](ProlongationMatrix&) { throw std::runtime_error("cannot refine"); }) ==
         "the refiner: cannot refine");
   CHECK(refusal([](ProlongationMatrix&) { throw "text"; }) ==

@@ -70,7 +70,7 @@ TEST_CASE("an energy that cannot be bound, or is not what it says, is refused by
   CHECK_THAT(refusal([]() -> std::unique_ptr<BoundEnergy> {
                return std::make_unique<OriginSprings>(Stencils(0, 1));
              }),
-             Catch::Matchers::StartsWith("energy wind has no elements, so it counts as linear, but"));
+             Catch::StartsWith("energy wind has no elements, so it counts as linear, but"));
   CHECK(refusal([]() -> std::unique_ptr<BoundEnergy> { throw 42; }) ==
         "energy wind: an exception that is no std::exception");
 }

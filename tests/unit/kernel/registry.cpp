@@ -152,10 +152,10 @@ TEST_CASE("a declaration whose saved config could not be read again is refused")
   CHECK(refusal<0>().empty());
   CHECK(refusal<1>() ==
         who + "the default of parameter \"size\" is refused: \"size\" must be at least 5, not 1");
-  CHECK_THAT(refusal<2>(), Catch::Matchers::StartsWith(who + "parameter \"my word\" needs another name"));
-  CHECK_THAT(refusal<3>(), Catch::Matchers::StartsWith(who + "parameter \"type\" needs another name"));
-  CHECK_THAT(refusal<4>(), Catch::Matchers::StartsWith(who + "the default of parameter \"word\" is refused"));
-  CHECK_THAT(refusal<5>(), Catch::Matchers::StartsWith(who + "the default of parameter \"list\" is refused"));
+  CHECK_THAT(refusal<2>(), Catch::StartsWith(who + "parameter \"my word\" needs another name"));
+  CHECK_THAT(refusal<3>(), Catch::StartsWith(who + "parameter \"type\" needs another name"));
+  CHECK_THAT(refusal<4>(), Catch::StartsWith(who + "the default of parameter \"word\" is refused"));
+  CHECK_THAT(refusal<5>(), Catch::StartsWith(who + "the default of parameter \"list\" is refused"));
   for (const char* name : {"my refiner", "my.refiner", "Mine"})
     CHECK(refusal<0>(name) == "lib.so: the name of refiner \"" + std::string(name) +
                                   "\" must be lower case, digits and underscores");
