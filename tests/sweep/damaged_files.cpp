@@ -7,6 +7,7 @@
 #include "tests/support/sweep_runs.h"
 
 using Json = nlohmann::json;
+using Catch::Matchers::Contains;
 
 TEST_CASE("a value of the wrong kind in a sweep's files is named with its file and its key") {
   const Scratch folder(small_experiment());
@@ -56,4 +57,41 @@ TEST_CASE("a value of the wrong kind in a sweep's files is named with its file a
         "error: " + results + ": \"status\" must be a text, not [1]" + rerun);
   CHECK(said(results, [](Json& json) { json["complete"] = "yes"; }) ==
         "error: " + results + ": \"complete\" must be true or false, not \"yes\"" + rerun);
+}
+
+TEST_CASE("a run whose results are cut short has failed, and the sweep's others are as they were") {
+  const Scratch folder(small_experiment());
+  folder.write("s.yaml", coarsest_by_newton + "seeds: [1, 2]\n");
+  drape_ends("sweep s.yaml --out out", folder);
+  const std::string run = "out/runs/base/seed_1", results = run + "/results.json";
+  folder.write(results, "{");
+
+  const std::string why = results + ": is damaged or cut short: it is not a JSON object; ";
+  const Ended table = drape_ends("table out --columns seed,status,pass,message", folder, 1);
+  CHECK_THAT(table.out, Contains("| 1 | failed | NO | " + why + "run the experiment again |") &&
+                            Contains("| 2 | converged | yes |"));
+  drape_ends("report out", folder);
+
+  CHECK_THAT(drape_ends("sweep s.yaml --out out", folder, 1).out,
+             Contains("    " + why + "--retry-failed runs it again\n"));
+  Json runs = runs_of(folder / "out");
+  CHECK(runs[0]["status"] == "failed");
+  CHECK(runs[0]["exit_code"] == 3);
+  CHECK(runs[1]["status"] == "converged");
+  folder.write(results, R"({"complete": true})");
+  drape_ends("sweep s.yaml --out out", folder, 1);
+  drape_ends("sweep s.yaml --out out --retry-failed", folder);
+  runs = runs_of(folder / "out");
+  CHECK(runs[0]["starts"] == 2);
+  CHECK(runs[1]["starts"] == 1);
+}
+
+TEST_CASE("a run whose folder is removed is run again") {
+  const Scratch folder(small_experiment());
+  folder.write("s.yaml", coarsest_by_newton);
+  drape_ends("sweep s.yaml --out out", folder);
+  std::filesystem::remove_all(folder / "out/runs/base/seed_1");
+  drape_ends("sweep s.yaml --out out", folder);
+  CHECK(runs_of(folder / "out")[0]["starts"] == 2);
+  CHECK(std::filesystem::exists(folder / "out/runs/base/seed_1/results.json"));
 }

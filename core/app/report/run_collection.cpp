@@ -6,9 +6,11 @@
 #include <set>
 #include <stdexcept>
 
+#include "core/app/experiment/exit_codes.h"
 #include "core/app/files/json_file.h"
 #include "core/app/files/yaml_file.h"
 #include "core/kernel/files/file.h"
+#include "core/kernel/files/message_text.h"
 #include "core/kernel/interfaces/solver.h"
 
 namespace drape {
@@ -20,6 +22,18 @@ namespace fs = std::filesystem;
 
 bool is_run_or_sweep(const fs::path& folder) {
   return is_sweep(folder) || fs::is_regular_file(folder / "results.json");
+}
+
+/// Reads a sweep's run. One whose files are damaged has failed: the others are still read.
+void read_data(RunRecord& run, RunCollection& collection) {
+  try {
+    run.data = read_run(run.folder);
+  } catch (const std::exception& damaged) {
+    run.status = "failed";
+    run.exit_code = exit_aborted;
+    run.error = reason_of(damaged);
+    collection.complete = false;
+  }
 }
 
 /// Adds the runs of a sweep, whose name is returned.
@@ -49,7 +63,7 @@ std::string read_sweep(const fs::path& folder, RunCollection& collection) {
     if (const Json& seed = member_of(entry, "seed"); seed.is_number()) run.seed = seed.get<double>();
     // Running and failed runs may have written files; only complete ones have results.
     const bool has_results = run.status == "converged" || run.status == "not_converged";
-    if (has_results && fs::is_regular_file(run.folder / "results.json")) run.data = read_run(run.folder);
+    if (has_results && fs::is_regular_file(run.folder / "results.json")) read_data(run, collection);
     collection.runs.push_back(std::move(run));
   }
   return name;

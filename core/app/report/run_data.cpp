@@ -127,15 +127,21 @@ SnapshotFile RunData::snapshots(const LevelRecord& level, Eigen::Index n) const 
 
 std::string rest_file(int level) { return "rest/l" + std::to_string(level) + ".ply"; }
 
-RunData read_run(const std::filesystem::path& folder) {
+Json read_results(const std::filesystem::path& folder, const std::string& remedy) {
   const std::filesystem::path path = folder / "results.json";
   if (!std::filesystem::is_regular_file(path))
     refuse_path(folder, "no results.json here; give the folder of a run");
+  Json json = parse_json(read_file(path));
+  const JsonFile file(path, remedy);
+  if (!json.is_object()) file.refuse("is damaged or cut short: it is not a JSON object");
+  return json;
+}
+
+RunData read_run(const std::filesystem::path& folder) {
   RunData run;
   run.folder = folder;
-  run.results = parse_json(read_file(path));
+  run.results = read_results(folder);
   const Json& json = run.results;
-  if (!json.is_object()) refuse_path(path, "not a JSON object; is it cut short?");
 
   run.experiment = text_member(json, "experiment");
   run.complete = member_of(json, "complete") == true;
@@ -152,7 +158,7 @@ RunData read_run(const std::filesystem::path& folder) {
     ConfigErrors unread;
     run.config = parse_yaml(run.configuration, "config.yaml", unread);
   }
-  const JsonFile file(path, "run the experiment again");
+  const JsonFile file(folder / "results.json", "run the experiment again");
   if (const Json& methods = member_of(json, "methods"); methods.is_object())
     for (const auto& [name, value] : methods.items()) {
       run.methods.push_back(method_of(name, value, file));

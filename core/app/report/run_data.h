@@ -85,8 +85,13 @@ struct RunData {
 /// A level's rest shape, relative to a run's folder.
 std::string rest_file(int level);
 
+/// The results.json of a run's folder. Throws std::runtime_error, with that remedy, if it is missing, cut
+/// short or not a run's.
+nlohmann::ordered_json read_results(const std::filesystem::path& folder,
+                                    const std::string& remedy = "run the experiment again");
+
 /// Reads results.json (required), iterations.csv, errors.csv and config.yaml (optional). Null values are
-/// absent. Throws std::runtime_error with one line if results.json is missing or is not JSON.
+/// absent. Throws std::runtime_error with one line if results.json is missing or damaged.
 RunData read_run(const std::filesystem::path& folder);
 
 }  // namespace drape

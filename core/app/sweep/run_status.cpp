@@ -9,6 +9,7 @@
 #include "core/app/experiment/experiment.h"
 #include "core/app/files/file_lock.h"
 #include "core/app/files/json_file.h"
+#include "core/app/report/run_data.h"
 #include "core/app/run/checkpoint.h"
 #include "core/kernel/files/file.h"
 #include "core/kernel/files/message_text.h"
@@ -30,7 +31,24 @@ JsonFile results_file(const RunFiles& files) {
 /// The run's results if they are complete, otherwise null.
 Json complete_results(const RunFiles& files) {
   Json results = parse_json(text_of_file(files.results()));
+  if (!member_of(results, "methods").is_object()) return Json();  // damaged
   return results_file(files).find<bool>(results, "complete").value_or(false) ? results : Json();
+}
+
+/// The status of a run that had results, by what is there of them now.
+RunStatus with_sound_results(const RunFiles& files, RunStatus status) {
+  if (!std::filesystem::exists(files.results())) {
+    status.state = RunState::pending;
+    return status;
+  }
+  try {
+    read_results(files.folder, "--retry-failed runs it again");
+  } catch (const std::exception& damaged) {
+    status.state = RunState::failed;
+    status.error = reason_of(damaged);
+    status.exit_code = exit_aborted;
+  }
+  return status;
 }
 
 std::string last_lines(const std::filesystem::path& file) {
@@ -118,7 +136,8 @@ void write_status(const RunFiles& files, const RunStatus& status) {
 
 bool has_complete_results(const RunFiles& files) { return !complete_results(files).is_null(); }
 
-RunStatus resolve_interrupted(const RunFiles& files, RunStatus status) {
+RunStatus resolve_status(const RunFiles& files, RunStatus status) {
+  if (status.has_results()) return with_sound_results(files, std::move(status));
   // A refused run has not begun: results in its folder may be of another experiment.
   const bool had_begun = status.state == RunState::running || status.state == RunState::cancelled ||
                          (status.state == RunState::failed && !status.refused());
@@ -127,7 +146,6 @@ RunStatus resolve_interrupted(const RunFiles& files, RunStatus status) {
   const Json results = complete_results(files);
   if (results.is_null()) return status;
   const JsonFile file = results_file(files);
-  if (!results.contains("methods")) file.refuse("\"methods\" is missing");
   status.state = RunState::converged;
   status.error.clear();
   status.seconds = 0;
@@ -159,7 +177,7 @@ bool RunProcess::ended() {
     }
     return false;
   }
-  status_ = resolve_interrupted(files_, status_);
+  status_ = resolve_status(files_, status_);
   status_.seconds = seconds;
   status_.exit_code = exit->code;
   const bool stopped =

@@ -48,9 +48,10 @@ void write_status(const RunFiles& files, const RunStatus& status);
 
 /// Whether the run's folder has complete results, whoever made them.
 bool has_complete_results(const RunFiles& files);
-/// The status of a run that had begun and has no results yet: from its results if they are complete, as after
-/// `drape run --resume`; otherwise failed, or cancelled if it is marked as running but is not.
-RunStatus resolve_interrupted(const RunFiles& files, RunStatus status);
+/// The status of a run by its results. One that had begun has complete ones after `drape run --resume`;
+/// without any it has failed, or is cancelled if it is marked as running but is not. One whose results were
+/// damaged since has failed, one whose results are gone is pending.
+RunStatus resolve_status(const RunFiles& files, RunStatus status);
 
 /// A `drape run` of the files' config; updates the status at its beginning and end.
 class RunProcess {

@@ -184,7 +184,7 @@ int run_task(const SweepFolder& folder, int index, const SweepOptions& options) 
   FileLock lock(files.lock());
   while (!lock.acquire(1))
     if (options.stop()) return exit_by_signal + SIGINT;
-  if (const RunStatus before = resolve_interrupted(files, read_status(files)); before.has_results()) {
+  if (const RunStatus before = resolve_status(files, read_status(files)); before.has_results()) {
     write_status(files, before);
     return before.exit_code;
   }

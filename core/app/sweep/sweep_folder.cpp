@@ -73,7 +73,7 @@ void SweepFolder::refuse_other_runs(const Sweep& sweep, int threads) const {
       refuse_path(
           files.folder,
           "is there already, and not from this sweep; move it away, or name another folder with --out");
-    if (!resolve_interrupted(files, status).has_results()) {
+    if (!resolve_status(files, status).has_results()) {
       if (has_complete_results(files))
         refuse_path(
             files.folder,
@@ -109,7 +109,7 @@ void SweepFolder::prepare(const Sweep& sweep, int threads) const {
     const RunFiles files = this->files(run.folder);
     make_folder(files.folder.parent_path());
     const RunStatus before = read_status(files);
-    RunStatus status = resolve_interrupted(files, before);
+    RunStatus status = resolve_status(files, before);
     const bool is_other = text_of_file(files.config()) != run.config;
     if (is_other && (status.state == RunState::failed || status.state == RunState::cancelled))
       status.state = RunState::pending;
@@ -153,7 +153,7 @@ Json SweepFolder::finalize() const {
   const Json json = read();
   for (const Json& run : json["runs"]) {
     const RunFiles files = this->files(run["folder"]);
-    const RunStatus before = read_status(files), status = resolve_interrupted(files, before);
+    const RunStatus before = read_status(files), status = resolve_status(files, before);
     if (status.state != before.state) write_status(files, status);
   }
   return refresh();
