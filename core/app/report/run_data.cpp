@@ -134,6 +134,7 @@ Json read_results(const std::filesystem::path& folder, const std::string& remedy
   Json json = parse_json(read_file(path));
   const JsonFile file(path, remedy);
   if (!json.is_object()) file.refuse("is damaged or cut short: it is not a JSON object");
+  if (!member_of(json, "methods").is_object()) file.refuse("is damaged: \"methods\" is not a map");
   return json;
 }
 

@@ -23,6 +23,14 @@ std::string said_of_level(const std::string& level) {
 
 }  // namespace
 
+TEST_CASE("results without methods, or that are cut short, are refused") {
+  const std::string again = "; run the experiment again";
+  CHECK(said_of("{") == "results.json: is damaged or cut short: it is not a JSON object" + again);
+  CHECK(said_of("{}") == "results.json: is damaged: \"methods\" is not a map" + again);
+  CHECK(said_of(R"({"methods": [1]})") == "results.json: is damaged: \"methods\" is not a map" + again);
+  CHECK(said_of(R"({"methods": {}})") == "");
+}
+
 TEST_CASE("a level that is no whole number is named with its file and its key") {
   const std::string must = "results.json: \"level\" must be a whole number, not ",
                     end = "; run the experiment again";
