@@ -172,6 +172,19 @@ TEST_CASE("A folder that is deleted during a run aborts it with its own code, an
   }
 }
 
+TEST_CASE("A run that has lost a file it cannot be resumed without is to be run again") {
+  const Scratch folder;
+  write_experiment(folder, "{type: failing, level: 1, command: rm out/iterations.csv}");
+  const Ended ended =
+      drape_with("run e.yaml --out out --method newton,odd,pcs --checkpoint 0 --quiet --no-report",
+                 folder.path, with_failing);
+  CHECK(ended.exit_code == drape::exit_aborted);
+  CHECK(ended.err ==
+        "error: cannot write out/iterations.csv: No such file or directory; the run is aborted. Once the "
+        "cause is removed, run the experiment again: its iterations.csv is missing\n");
+  CHECK(fs::exists(folder / "out/checkpoint/state.bin"));
+}
+
 TEST_CASE("A full disk aborts the run with its own code; once there is room it can be resumed") {
   const Scratch folder(small_experiment());
   const std::string arguments =

@@ -419,6 +419,15 @@ TEST_CASE("Checkpoints that cannot be resumed are refused with the reason") {
   damaged("out/rest/l0.ply", "ply\n", "out/rest/l0.ply: is not what it was when the run began");
   damaged("out/iterations.csv", "method\n",
           "out/iterations.csv: is shorter than when the checkpoint was made");
+  for (const char* name : {"out/iterations.csv", "out/log.jsonl"}) {
+    const std::string whole = text_of(folder / name);
+    std::filesystem::remove(folder / name);
+    CHECK_THAT(
+        refused_by("run --resume out", folder.path),
+        Contains(std::string(name) + ": is missing, and the run cannot be resumed without: put it back, "
+                                     "or run the experiment again"));
+    folder.write(name, whole);
+  }
   CHECK(text_of(folder / "out/results.json") == before);
 
   FileLock other(folder / "out/checkpoint/lock");

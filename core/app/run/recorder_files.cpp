@@ -59,9 +59,11 @@ void refuse_short_files(const RunFolder& folder, const Recorder::State& state) {
   for (const auto& [name, bytes] :
        {std::pair("iterations.csv", state.iterations_bytes), {"log.jsonl", state.log_bytes}}) {
     const std::filesystem::path file = folder.file(name);
-    std::error_code error;
-    const std::uint64_t now = std::filesystem::file_size(file, error);
-    if (error || now < bytes)
+    if (!std::filesystem::exists(file))
+      refuse_path(
+          file,
+          "is missing, and the run cannot be resumed without: put it back, or run the experiment again");
+    if (size_of_file(file) < bytes)
       refuse_path(file,
                   "is shorter than when the checkpoint was made; it was changed since, and the run cannot be "
                   "resumed: run the experiment again");

@@ -47,6 +47,16 @@ class UnrecordedObserver : public Observer {
   RunObserver& run_;
 };
 
+/// What to do about an aborted run.
+std::string way_on(const RunFolder& folder) {
+  const std::string again = "run the experiment again: ";
+  if (!has_checkpoint(folder.path())) return again + "there is no checkpoint of it";
+  for (const char* needed : {"iterations.csv", "log.jsonl"})
+    if (const auto file = folder.file(needed); !std::filesystem::exists(file))
+      return again + "its " + needed + " is missing";
+  return "resume it with drape run --resume " + folder.path().string();
+}
+
 /// Performs an action of a run that has begun; errors abort the run.
 template <class Action>
 bool with_folder(const RunFolder& folder, const RunOptions& options, const Action& action) {
@@ -60,10 +70,7 @@ bool with_folder(const RunFolder& folder, const RunOptions& options, const Actio
   }
   record_abort(folder, cause);
   if (options.view) options.view->run_finished("the run was aborted: " + cause);
-  throw RunAborted(cause + "; the run is aborted. Once the cause is removed, " +
-                   (has_checkpoint(folder.path())
-                        ? "resume it with drape run --resume " + folder.path().string()
-                        : "run the experiment again: there is no checkpoint of it"));
+  throw RunAborted(cause + "; the run is aborted. Once the cause is removed, " + way_on(folder));
 }
 
 /// Time that a stopped run still spends on its report's pictures [s].
