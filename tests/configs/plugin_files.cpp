@@ -158,3 +158,15 @@ TEST_CASE("A plugin's source without a compiler, or that is no plugin, is refuse
   CHECK_THAT(refused_by("list energy --plugin empty.cpp", folder.path, folder.environment()),
              Contains("is not a drape plugin"));
 }
+
+TEST_CASE("A cache or a folder for temporary files that is not there is named, with its variable") {
+  const PluginFolder folder;
+  const std::string list = "list energy --plugin rubber.cpp";
+  CHECK(refused_by(list, folder.path, folder.environment() + " TMPDIR=/nonexistent") ==
+        "error: --plugin: the folder for temporary files, TMPDIR=/nonexistent, is not there (No such file or "
+        "directory); make it, or name another in the variable TMPDIR\n");
+  const std::string err = refused_by(list, folder.path, "XDG_CACHE_HOME=/proc/none");
+  CHECK_THAT(err, Contains("error: --plugin: cannot make /proc/none/drape/rubber-") &&
+                      EndsWith("for the library (No such file or directory); name a folder for it in the "
+                               "variable XDG_CACHE_HOME\n"));
+}

@@ -24,10 +24,31 @@ std::string variable(const char* name) {
   return value ? value : "";
 }
 
+/// The folder for temporary files. Throws std::runtime_error without one.
+fs::path temporary_folder() {
+  std::error_code error;
+  const fs::path folder = fs::temp_directory_path(error);
+  if (!error) return folder;
+  std::string where = "/tmp";
+  for (const char* name : {"TEMPDIR", "TEMP", "TMP", "TMPDIR"})  // the last that is set counts
+    if (const std::string value = variable(name); !value.empty()) where = name + ("=" + value);
+  throw std::runtime_error("--plugin: the folder for temporary files, " + where + ", is not there (" +
+                           error.message() + "); make it, or name another in the variable TMPDIR");
+}
+
 fs::path cache_folder() {
   const std::string own = variable("XDG_CACHE_HOME"), home = variable("HOME");
   if (!own.empty()) return fs::path(own) / "drape";
-  return home.empty() ? fs::temp_directory_path() / "drape-cache" : fs::path(home) / ".cache" / "drape";
+  return home.empty() ? temporary_folder() / "drape-cache" : fs::path(home) / ".cache" / "drape";
+}
+
+/// Makes a folder in the cache. Throws std::runtime_error, which names the variable, if it cannot be made.
+void make_cache(const fs::path& folder) {
+  std::error_code error;
+  fs::create_directories(folder, error);
+  if (error)
+    throw std::runtime_error("--plugin: cannot make " + folder.string() + " for the library (" +
+                             error.message() + "); name a folder for it in the variable XDG_CACHE_HOME");
 }
 
 /// The compiler and its options, without input and output. DRAPE_… are those of this build
@@ -57,6 +78,7 @@ void require_source(const fs::path& file) {
 /// The folder of the library that the source makes.
 fs::path compiled(const fs::path& source) {
   require_source(source);
+  temporary_folder();  // which the compiler's output needs
   const fs::path root = own_program().parent_path().parent_path(), libraries = root / "lib";
   std::vector<std::string> words = compiler(root);
   // Whatever the file's name: the compiler would take a file that ends otherwise than a source for an object.
@@ -73,7 +95,7 @@ fs::path compiled(const fs::path& source) {
   const fs::path library = folder / (source.stem().string() + ".so");
   if (fs::exists(library)) return folder;
 
-  make_folder(folder);
+  make_cache(folder);
   const fs::path made = folder / (std::to_string(getpid()) + ".part");
   words.insert(words.end(), {"-o", made.string(), "-L" + libraries.string(), "-ldrape"});
   std::cerr << "compiling " << printable(source.string()) << std::flush;
