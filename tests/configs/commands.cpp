@@ -290,6 +290,27 @@ TEST_CASE("report rewrites a run's page, or names what is missing") {
   CHECK_THAT(refused_by("report out", folder.path), StartsWith("error: out/results.json"));
 }
 
+TEST_CASE("a report that cannot be written is refused before anything is drawn, with another place") {
+  const Scratch folder(small_experiment());
+  drape_ends("run e.yaml --out out --levels 1 --method newton --quiet --no-report", folder);
+  CHECK(refused_by("report out out --out nowhere/both.html", folder.path) ==
+        "error: nowhere: cannot be written to (No such file or directory); name a page elsewhere with drape "
+        "report --out\n");
+  if (Command("unshare -rm true", folder.path).wait().exit_code != 0) return;
+  for (const std::string command : {"report out", "view out"}) {
+    const Ended ended = Command(
+                            "unshare -rm sh -c 'mount --bind out out && mount -o remount,ro,bind out && "
+                            "exec " +
+                                drape_command + " " + command + "'",
+                            folder.path)
+                            .wait();
+    CHECK(ended.exit_code == 2);
+    CHECK(ended.err ==
+          "error: out: cannot be written to (Read-only file system); copy the folder to where it can, and "
+          "name the copy\n");
+  }
+}
+
 TEST_CASE("a --set takes one value, so that the config may follow it") {
   const Scratch folder(small_experiment());
   CHECK_THAT(shown_by("check --set levels=1 --set cloth.rows=7 e.yaml", folder.path),

@@ -1,9 +1,13 @@
 #include "core/app/report/report.h"
 
+#include <unistd.h>
+
 #include <algorithm>
+#include <cerrno>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
+#include <system_error>
 
 #include "core/app/files/json_file.h"
 #include "core/app/report/compare.h"
@@ -129,11 +133,18 @@ void refuse_other_file(const fs::path& page) {
                              ": is there already, and no report of drape; name another page with --out");
 }
 
+/// Before anything is drawn or written.
+void refuse_unwritable(const fs::path& folder, const std::string& remedy) {
+  if (access(folder.c_str(), W_OK) != 0)
+    refuse_path(folder, "cannot be written to (" + std::generic_category().message(errno) + "); " + remedy);
+}
+
 }  // namespace
 
 std::vector<std::string> write_report(const fs::path& folder, const std::function<bool()>& cancelled,
                                       std::optional<int> picture_width) {
   const RunCollection collection = read_runs({folder});
+  refuse_unwritable(folder, "copy the folder to where it can, and name the copy");
   const RunData& run = *collection.runs.front().data;
   PictureSet set = draw_pictures(run, cancelled, picture_width);
   const ReportView view = report_view(run);
@@ -162,6 +173,8 @@ std::vector<std::string> write_report(const fs::path& folder, const std::functio
 void write_runs_report(const std::vector<fs::path>& folders, const fs::path& file) {
   refuse_other_file(file);
   const RunCollection collection = read_runs(folders);
+  const fs::path parent = file.parent_path();
+  refuse_unwritable(parent.empty() ? "." : parent, "name a page elsewhere with drape report --out");
   std::map<std::string, int> physics;
   const RunTable table = table_of(collection);
   Json runs = Json::array();
