@@ -237,6 +237,26 @@ TEST_CASE("A failed write to standard output is an error") {
   CHECK(ended.err == "error: standard output cannot be written to\n");
 }
 
+TEST_CASE("A run or a sweep whose standard output is lost ends with the code of its results") {
+  if (!fs::exists("/dev/full")) return;
+  const Scratch folder(small_experiment());
+  folder.write("s.yaml", "name: s\nbase: e.yaml\nset: {levels: 1}\nmethods: [newton]\n");
+  const auto into_full = [&](const std::string& line) {
+    return Command("exec " + drape_command + " " + line + " > /dev/full", folder.path).wait();
+  };
+  const std::string warning = "warning: standard output cannot be written to; the results are not affected\n";
+  for (const char* line : {"run e.yaml --levels 1 --quiet --no-report --out out", "run --resume out",
+                           "sweep s.yaml --quiet --out swept"}) {
+    INFO(line);
+    const Ended ended = into_full(line);
+    CHECK(ended.exit_code == drape::exit_done);
+    CHECK(ended.err == warning);
+  }
+  CHECK(results_in(folder)["complete"] == true);
+  CHECK(into_full("sweep s.yaml --dry-run --out swept").exit_code == drape::exit_aborted);
+  CHECK(into_full("table out").exit_code == drape::exit_aborted);
+}
+
 TEST_CASE("Names that the file system does not allow are refused before the first write") {
   const Scratch folder;
   const std::string longest(200, 'm'), too_long(201, 'm');

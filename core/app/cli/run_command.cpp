@@ -149,10 +149,14 @@ int run_or_resume(RunRequest& r, const Registry& registry) {
 
 void add_run_command(Commands& commands) {
   const auto request = std::make_shared<RunRequest>();
-  CLI::App& command = commands.add_with_plugins(
-      "run", "run an experiment and write its results and report",
-      "drape run configs/sphere.yaml --levels 3 --method all -o results/sphere",
-      [request](const Registry& registry) { return run_or_resume(*request, registry); });
+  CLI::App& command =
+      commands.add_with_plugins("run", "run an experiment and write its results and report",
+                                "drape run configs/sphere.yaml --levels 3 --method all -o results/sphere",
+                                [request](const Registry& registry) {
+                                  const int exit_code = run_or_resume(*request, registry);
+                                  allow_lost_output();
+                                  return exit_code;
+                                });
   RunRequest& r = *request;  // lives as long as the command
   r.add_to(command)->required(false);
   add_option(command, "-o,--out FOLDER", r.out, "results folder (default: results/NAME)");

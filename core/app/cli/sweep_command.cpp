@@ -127,7 +127,10 @@ int run_sweep(SweepRequest r, const Registry& registry) {
                                             : std::filesystem::path(r.folder));
   if (r.dry_run) return show_plan(*sweep, folder, r.threads);
   stop_on_signals();  // nothing to save before this point
-  return r.engine == "slurm" ? run_on_slurm(*sweep, folder, r) : run_local(*sweep, folder, std::move(r));
+  const int exit_code =
+      r.engine == "slurm" ? run_on_slurm(*sweep, folder, r) : run_local(*sweep, folder, std::move(r));
+  allow_lost_output();
+  return exit_code;
 }
 
 /// A job of a sweep on a cluster: a run, or collecting the runs' statuses.
