@@ -363,6 +363,7 @@ TEST_CASE("an option that does not fit") {
       {"--method pcs,fast", "--method fast: the experiment's methods are pcs, cascadic, newton"},
       {"--levels 0", "--levels: must be an integer of at least 1, not 0" + see},
       {"--levels 11", "--levels: \"levels\" must be at most 10, not 11"},
+      {"--levels 99999999999", "--levels: must be an integer of at most 2147483647, not 99999999999" + see},
       {"--threads two", "--threads: must be an integer of at least 1, not two" + see},
       {"--view --port 65536", "--port: must be a port, 0 to 65535, not 65536" + see},
       {"--port 8000", "--port requires --view" + see},
@@ -453,6 +454,10 @@ TEST_CASE("a results folder that cannot be used") {
         "--out\n");
   CHECK(refused(folder, "run e.yaml --out /proc") ==
         "error: /proc: cannot write to the results folder; name another with --out\n");
+  fs::create_symlink("gone", folder / "link");
+  CHECK(
+      refused(folder, "run e.yaml --out link") ==  // which is left there
+      "error: link: is a link to gone, which does not exist; make that folder, or name another with --out\n");
 
   fs::create_directory(folder / "mine");
   folder.write("mine/config.yaml", "mine");

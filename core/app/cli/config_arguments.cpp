@@ -21,7 +21,14 @@ OptionCheck integer_between(int least, int most, const std::string& what) {
 }
 
 OptionCheck positive_integer() {
-  return integer_between(1, std::numeric_limits<int>::max(), "an integer of at least 1");
+  constexpr int most = std::numeric_limits<int>::max();
+  return [](const std::string& text) {
+    const bool digits = !text.empty() && text.find_first_not_of("0123456789") == text.npos;
+    const bool too_large = digits && !parse_integer(text);
+    return integer_between(
+        1, most,
+        too_large ? "an integer of at most " + std::to_string(most) : "an integer of at least 1")(text);
+  };
 }
 
 OptionCheck number_of_at_least(double least) {

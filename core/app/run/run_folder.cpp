@@ -115,11 +115,12 @@ void refuse_what_is_there(const RunFolder& folder, bool overwrite, const std::ve
   refuse_what_must_stay(folder, inputs);
 }
 
-/// The missing folders of the path, innermost first.
+/// The missing folders of the path, innermost first. A link is not missing, wherever it leads.
 std::vector<fs::path> missing_folders(const fs::path& folder) {
   std::vector<fs::path> missing;
   std::error_code error;
-  for (fs::path p = fs::absolute(folder); !fs::exists(p, error) && p.has_relative_path(); p = p.parent_path())
+  fs::path p = fs::absolute(folder);
+  for (; !fs::exists(fs::symlink_status(p, error)) && p.has_relative_path(); p = p.parent_path())
     missing.push_back(p);
   return missing;
 }
@@ -127,6 +128,9 @@ std::vector<fs::path> missing_folders(const fs::path& folder) {
 void make_writable(const RunFolder& folder) {
   std::error_code error;
   fs::create_directories(folder.path(), error);
+  if (fs::is_symlink(folder.path()) && !fs::exists(folder.path()))
+    refuse_path(folder.path(), "is a link to " + fs::read_symlink(folder.path()).string() +
+                                   ", which does not exist; make that folder, or name another with --out");
   if (error || !fs::is_directory(folder.path()))
     refuse_path(folder.path(), "cannot make the results folder" +
                                    (error ? " (" + error.message() + ")" : "") + "; name another with --out");
