@@ -100,6 +100,8 @@ class TreeBuilder : public YAML::EventHandler {
       parent.items.push_back(std::move(node));
     } else if (!key) {
       if (node.kind != Kind::scalar) errors_.push_back({node.where, "a key must be a word"});
+      if (node.scalar == "<<" && !node.quoted)
+        errors_.push_back({node.where, "merging maps by << is not supported; write the keys out"});
       key = std::move(node);
     } else {
       if (node.kind == Kind::null) node.where = key->where;  // yaml-cpp locates it at the next token
@@ -138,6 +140,12 @@ bool is_text(const std::string& text, const std::string& name, ConfigErrors& err
   return false;
 }
 
+/// Of a line, counted from 0.
+bool is_indented_by_tab(const std::string& text, std::size_t line) {
+  const std::vector<std::string> lines = split(text, '\n');
+  return line < lines.size() && lines[line].find('\t') < lines[line].find_first_not_of(" \t");
+}
+
 /// The value of a text; nothing, with errors appended, for a faulty one.
 std::optional<ConfigNode> parse_value(const std::string& text, const std::string& name,
                                       ConfigErrors& errors) {
@@ -155,6 +163,8 @@ std::optional<ConfigNode> parse_value(const std::string& text, const std::string
       faults = {{documents.roots[1], "a second document begins here; a config is one"}};
   } catch (const YAML::Exception& error) {
     faults = {{place(name, error.mark), "not valid YAML: " + error.msg}};
+    if (is_indented_by_tab(text, std::size_t(error.mark.line)))
+      faults[0].message += "; tabs cannot indent, use spaces";
   } catch (const ConfigError& endless) {
     faults.push_back(endless);
   }

@@ -77,6 +77,10 @@ TEST_CASE("null, quoted and tagged scalars are told apart") {
 TEST_CASE("invalid configs are reported with the location") {
   CHECK(parse_fault("a: 1\nb: [1, 2\nc: 3\n") == "f:3:2: not valid YAML: end of sequence flow not found");
   CHECK(parse_fault("a: 1\n  b: 2\n") == "f:2:4: not valid YAML: illegal map value");
+  CHECK(parse_fault("a:\n\tb: 2\n") ==
+        "f:2:3: not valid YAML: illegal map value; tabs cannot indent, use spaces");
+  CHECK(parse_fault("a: &a {b: 1}\nc:\n  <<: *a\n") ==
+        "f:3:3: merging maps by << is not supported; write the keys out");
   CHECK(parse_fault("a: *none\n") == "f:1:4: not valid YAML: the referenced anchor is not defined");
   CHECK(parse_fault("") == "f: is empty; a config is a map of keys and values");
   CHECK(parse_fault("# only a comment\n") == "f: is empty; a config is a map of keys and values");
