@@ -36,17 +36,17 @@ bool returned(const Ring& values, int k, int period) {
 }  // namespace
 
 void CycleDetector::note(double energy, double residual) {
-  const int k = s_.steps++, size = static_cast<int>(s_.energies.size());
-  s_.energies[k % size] = energy;
-  s_.residuals[k % size] = residual;
+  const int k = steps++, size = static_cast<int>(energies.size());
+  energies[k % size] = energy;
+  residuals[k % size] = residual;
   for (int period = shortest_period; period <= longest_period; ++period) {
-    int& returns = s_.returns[period - shortest_period];
-    const bool again = k >= period && range(s_.residuals, k, period) > 0 &&
-                       returned(s_.energies, k, period) && returned(s_.residuals, k, period);
-    returns = again ? returns + 1 : 0;
+    int& count = returns[period - shortest_period];
+    const bool again = k >= period && range(residuals, k, period) > 0 && returned(energies, k, period) &&
+                       returned(residuals, k, period);
+    count = again ? count + 1 : 0;
   }
 }
 
-bool CycleDetector::cycling() const { return *std::ranges::max_element(s_.returns) >= needed_returns; }
+bool CycleDetector::cycling() const { return *std::ranges::max_element(returns) >= needed_returns; }
 
 }  // namespace drape

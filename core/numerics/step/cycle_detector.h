@@ -9,29 +9,19 @@ namespace drape {
 ///
 /// A step lowers the energy of which it takes the lagged quantities as given; where these answer the step
 /// with more than what they took, as friction's normal forces can, no step comes nearer to an equilibrium.
-class CycleDetector {
- public:
+struct CycleDetector {
   static constexpr int shortest_period = 2, longest_period = 4;
 
-  struct State {
-    int steps = 0;  ///< noted so far
-    /// Energies [J] and force residuals of the last steps; step k is at k mod (longest_period + 1).
-    std::array<double, longest_period + 1> energies{}, residuals{};
-    /// By period, from the shortest: consecutive steps that returned.
-    std::array<int, longest_period - shortest_period + 1> returns{};
-  };
-  State state() const { return s_; }
-  void restore(const State& state) { s_ = state; }
+  int steps = 0;  ///< noted so far
+  /// Energies [J] and force residuals of the last steps; step k is at k mod (longest_period + 1).
+  std::array<double, longest_period + 1> energies{}, residuals{};
+  /// By period, from the shortest: consecutive steps that returned.
+  std::array<int, longest_period - shortest_period + 1> returns{};
 
   /// Records the energy [J] and force residual at a step's end.
   void note(double energy, double residual);
   /// Whether the last steps are a cycle.
   bool cycling() const;
-  /// Forgets all steps.
-  void restart() { s_ = {}; }
-
- private:
-  State s_;
 };
 
 }  // namespace drape

@@ -4,23 +4,9 @@
 
 namespace drape {
 
-EquilibriumCheck::State EquilibriumCheck::state() const {
-  return {decrements_,
-          {initial_centroid_.x(), initial_centroid_.y(), initial_centroid_.z()},
-          idle_.state(),
-          cycle_.state()};
-}
-
-void EquilibriumCheck::restore(const State& s) {
-  decrements_ = s.decrements;
-  initial_centroid_ << s.initial_centroid[0], s.initial_centroid[1], s.initial_centroid[2];
-  idle_.restore(s.idle);
-  cycle_.restore(s.cycle);
-}
-
 bool EquilibriumCheck::is_within(double times) const {
   if (!(iterate_.force_residual() <= times * p_.force_tolerance)) return false;  // also false for NaN
-  return p_.decrement_tolerance == 0 || *std::ranges::max_element(decrements_) <= p_.decrement_tolerance;
+  return p_.decrement_tolerance == 0 || *std::ranges::max_element(s_.decrements) <= p_.decrement_tolerance;
 }
 
 bool EquilibriumCheck::in_tolerance() {
@@ -30,7 +16,7 @@ bool EquilibriumCheck::in_tolerance() {
 }
 
 bool EquilibriumCheck::is_at_rounding_floor(FactorCache& factor) {
-  idle_.restart();
+  s_.idle = {};
   iterate_.update_friction();
   const RoundingFloor floor =
       rounding_floor(factor.plain_hessian(), iterate_.x(), iterate_.gradient(), iterate_.fixed());
@@ -39,12 +25,12 @@ bool EquilibriumCheck::is_at_rounding_floor(FactorCache& factor) {
 }
 
 double EquilibriumCheck::drift() const {
-  return (iterate_.free_centroid() - initial_centroid_).norm() / iterate_.rest_diagonal();
+  return (iterate_.free_centroid() - s_.initial_centroid).norm() / iterate_.rest_diagonal();
 }
 
 void EquilibriumCheck::note_step(double inertia) {
-  idle_.note(iterate_.energy(), iterate_.force_residual(), iterate_.energy_noise(inertia));
-  cycle_.note(iterate_.energy_without_friction(), iterate_.force_residual());
+  s_.idle.note(iterate_.energy(), iterate_.force_residual(), iterate_.energy_noise(inertia));
+  s_.cycle.note(iterate_.energy_without_friction(), iterate_.force_residual());
 }
 
 }  // namespace drape

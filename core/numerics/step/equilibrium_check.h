@@ -16,14 +16,15 @@ namespace drape {
 class EquilibriumCheck {
  public:
   struct State {
-    /// Of the last three iterations, +∞ before there are as many; iteration k is at k mod 3 [m/s].
+    /// Decrements of the last three iterations, +∞ until filled; iteration k is at k mod 3 [m/s].
     std::array<double, 3> decrements = unknown_decrements();
-    std::array<double, 3> initial_centroid{};  ///< of the free vertices where the drift begins [m]
-    IdleSteps::State idle;
-    CycleDetector::State cycle;
+    /// Of the free vertices where the drift begins [m].
+    Eigen::RowVector3d initial_centroid = Eigen::RowVector3d::Zero();
+    IdleSteps idle = {};
+    CycleDetector cycle = {};
   };
-  State state() const;
-  void restore(const State& state);
+  State state() const { return s_; }
+  void restore(const State& state) { s_ = state; }
 
   /// Refers to both arguments.
   EquilibriumCheck(Iterate& iterate, const NewtonParameters& parameters)
@@ -34,11 +35,11 @@ class EquilibriumCheck {
   /// Whether the tolerances are met. If they seem to be, lags friction at the iterate and checks them again.
   bool in_tolerance();
   /// Whether progress has stopped: many idle steps.
-  bool is_idle() const { return idle_.many(); }
+  bool is_idle() const { return s_.idle.many(); }
   /// Whether steps lead round and round.
-  bool is_cycling() const { return cycle_.cycling(); }
+  bool is_cycling() const { return s_.cycle.cycling(); }
   /// Looks for a new cycle, after the solver has done something about the last one.
-  void restart_cycle() { cycle_.restart(); }
+  void restart_cycle() { s_.cycle = {}; }
   /// Whether all forces are within their round-off bounds. Lags friction at the iterate first, and restarts
   /// the count of idle steps. Call it only once progress has stopped: it invalidates the factor.
   bool is_at_rounding_floor(FactorCache& factor);
@@ -48,17 +49,13 @@ class EquilibriumCheck {
   double drift() const;
 
   /// Notes the decrement of an iteration, before the iteration is counted.
-  void note_decrement(double decrement) { decrements_[iterate_.result().iterations % 3] = decrement; }
+  void note_decrement(double decrement) { s_.decrements[iterate_.result().iterations % 3] = decrement; }
   /// Notes the end of a step with this `inertia` [J].
   void note_step(double inertia);
   /// For another objective: restarts the count of idle steps, and forgets cycles and decrements.
-  void restart() {
-    idle_.restart();
-    cycle_.restart();
-    decrements_ = unknown_decrements();
-  }
+  void restart() { s_ = {.initial_centroid = s_.initial_centroid}; }
   /// Measures the drift from here on.
-  void restart_drift() { initial_centroid_ = iterate_.free_centroid(); }
+  void restart_drift() { s_.initial_centroid = iterate_.free_centroid(); }
 
  private:
   static constexpr std::array<double, 3> unknown_decrements() {
@@ -68,10 +65,7 @@ class EquilibriumCheck {
 
   Iterate& iterate_;
   const NewtonParameters& p_;
-  std::array<double, 3> decrements_ = unknown_decrements();
-  Eigen::RowVector3d initial_centroid_ = Eigen::RowVector3d::Zero();
-  IdleSteps idle_;
-  CycleDetector cycle_;
+  State s_;
   double rounding_residual_ = 0;
 };
 

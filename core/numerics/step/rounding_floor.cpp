@@ -35,12 +35,11 @@ RoundingFloor rounding_floor(const BlockMatrix& hessian, const Positions& x, con
   return floor;
 }
 
-void IdleSteps::note(double energy, double residual, double noise) {
-  const bool idle = std::abs(energy - s_.energy) <= noise && residual > 0.5 * s_.residual;
-  if (idle)
-    ++s_.steps;
+void IdleSteps::note(double new_energy, double new_residual, double noise) {
+  if (std::abs(new_energy - energy) <= noise && new_residual > 0.5 * residual)
+    ++steps;
   else
-    s_ = {0, energy, residual};
+    *this = {0, new_energy, new_residual};
 }
 
 }  // namespace drape

@@ -30,26 +30,15 @@ RoundingFloor rounding_floor(const BlockMatrix& hessian, const Positions& x, con
                              const std::vector<char>& fixed);
 
 /// Detects idle steps: ten consecutive ones with the same energy, whose force residual has not halved.
-class IdleSteps {
- public:
-  struct State {
-    int steps = 0;
-    double energy = std::numeric_limits<double>::infinity();
-    double residual = std::numeric_limits<double>::infinity();
-  };
-  State state() const { return s_; }
-  void restore(const State& state) { s_ = state; }
+struct IdleSteps {
+  int steps = 0;
+  /// At the end of the last step that was not idle [J], [1].
+  double energy = std::numeric_limits<double>::infinity(), residual = energy;
 
   /// Records the energy [J] and force residual at a step's end. Energies within `noise` [J] count as the
   /// same.
-  void note(double energy, double residual, double noise);
-  bool many() const { return s_.steps >= max_idle; }
-  /// Restarts the count, for another objective.
-  void restart() { s_ = {}; }
-
- private:
-  static constexpr int max_idle = 10;
-  State s_;
+  void note(double new_energy, double new_residual, double noise);
+  bool many() const { return steps >= 10; }
 };
 
 }  // namespace drape

@@ -129,7 +129,7 @@ TEST_CASE("A checkpoint is read as it was written") {
   CHECK(s.step.factor.shift == 16);
   CHECK(s.step.factor.values == std::vector<double>{1, 2, 3});
   CHECK(s.check.decrements == std::array<double, 3>{1, 2, 3});
-  CHECK(s.check.initial_centroid == std::array<double, 3>{7, 8, 9});
+  CHECK(s.check.initial_centroid == Eigen::RowVector3d(7, 8, 9));
   CHECK(s.check.idle.steps == 3);
   CHECK(s.check.idle.energy == -0.5);
   CHECK(s.check.idle.residual == 1e-6);

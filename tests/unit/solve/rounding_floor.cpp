@@ -158,7 +158,7 @@ TEST_CASE("Steps are idle while neither energy nor residual falls") {
   CHECK(!after(9, 1, 0.4e-3));
   CHECK(!after(1, 1 - 2e-12, 0.4e-3));  // the energy has fallen
   CHECK(after(10, 1 - 2e-12, 0.4e-3));
-  idle.restart();
+  idle = {};
   CHECK(!after(10, 1 - 2e-12, 0.4e-3));
   for (int k = 0; k < 30; ++k) idle.note(1 - 1e-12 * k / 4, 1e-3, 1e-12);  // creeps: falls eventually
   CHECK(!idle.many());
