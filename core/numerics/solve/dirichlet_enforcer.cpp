@@ -31,19 +31,19 @@ constexpr int max_idle_moves = 4;
 
 void DirichletEnforcer::begin(const Positions& x) {
   fixed_ = model_->fixed();
-  unsatisfied_.clear();
+  s_.unsatisfied.clear();
   penalty_.reset();
-  infeasible_ = false;
-  idle_ = 0;
+  s_.infeasible = false;
+  s_.idle = 0;
   const auto& vertices = model_->dirichlet();
   for (std::size_t k = 0; k < vertices.size(); ++k)
     if (x.row(vertices[k].vertex) != vertices[k].target.transpose())
-      unsatisfied_.push_back(static_cast<int>(k));
+      s_.unsatisfied.push_back(static_cast<int>(k));
 }
 
 Positions DirichletEnforcer::displacement_to_targets(const Positions& x) const {
   Positions displacement = Positions::Zero(x.rows(), 3);
-  for (int k : unsatisfied_) {
+  for (int k : s_.unsatisfied) {
     const DirichletVertex& d = model_->dirichlet()[k];
     displacement.row(d.vertex) = d.target.transpose() - x.row(d.vertex);
   }
@@ -52,24 +52,24 @@ Positions DirichletEnforcer::displacement_to_targets(const Positions& x) const {
 
 void DirichletEnforcer::set_satisfied() {
   fixed_ = model_->fixed();
-  blocked_by_.clear();
-  unsatisfied_.clear();
+  s_.blocked_by.clear();
+  s_.unsatisfied.clear();
   penalty_.reset();
 }
 
 bool DirichletEnforcer::note_move(double fraction) {
-  idle_ = fraction < min_move ? idle_ + 1 : 0;
-  return idle_ < max_idle_moves;
+  s_.idle = fraction < min_move ? s_.idle + 1 : 0;
+  return s_.idle < max_idle_moves;
 }
 
 void DirichletEnforcer::begin_penalty(const std::string& blocked_by) {
-  blocked_by_ = blocked_by;
+  s_.blocked_by = blocked_by;
   // The number of the modulus, as in the supplement, but not below what the membrane would notice
   // (departure).
-  stiffness_ = std::max(model_->material().mean_membrane_modulus(),
-                        min_initial_stiffness * membrane_stiffness() / smallest_mass());
-  best_ = INFINITY;
-  idle_ = 0;
+  s_.stiffness = std::max(model_->material().mean_membrane_modulus(),
+                          min_initial_stiffness * membrane_stiffness() / smallest_mass());
+  s_.best = INFINITY;
+  s_.idle = 0;
   release();
 }
 
@@ -79,7 +79,7 @@ double DirichletEnforcer::membrane_stiffness() const {
 
 double DirichletEnforcer::smallest_mass() const {
   double least = INFINITY;
-  for (int k : unsatisfied_) least = std::min(least, model_->masses()[model_->dirichlet()[k].vertex]);
+  for (int k : s_.unsatisfied) least = std::min(least, model_->masses()[model_->dirichlet()[k].vertex]);
   return least;
 }
 
@@ -89,48 +89,44 @@ double DirichletEnforcer::patch_width() const {
 
 void DirichletEnforcer::restore(const State& s) {
   fixed_ = model_->fixed();
-  unsatisfied_ = s.unsatisfied;
-  for (const int k : unsatisfied_)
+  s_ = s;
+  for (const int k : s_.unsatisfied)
     if (static_cast<std::size_t>(k) >= model_->dirichlet().size())
       throw std::runtime_error("the checkpoint has a pinned vertex that its load does not have");
-  stiffness_ = s.stiffness;
-  best_ = s.best;
-  idle_ = s.idle;
-  infeasible_ = s.infeasible;
-  blocked_by_ = s.blocked_by;
   if (s.released) release();
 }
 
 void DirichletEnforcer::release() {
-  for (int k : unsatisfied_) fixed_[model_->dirichlet()[k].vertex] = 0;
+  for (int k : s_.unsatisfied) fixed_[model_->dirichlet()[k].vertex] = 0;
   make_penalty();
 }
 
 void DirichletEnforcer::make_penalty() {
   std::vector<PositionPenalty::Term> terms;
-  for (int k : unsatisfied_) {
+  for (int k : s_.unsatisfied) {
     const DirichletVertex& d = model_->dirichlet()[k];
-    terms.push_back({d.vertex, d.target, stiffness_ * model_->masses()[d.vertex]});
+    terms.push_back({d.vertex, d.target, s_.stiffness * model_->masses()[d.vertex]});
   }
   penalty_ = std::make_unique<PositionPenalty>(std::move(terms));
 }
 
 bool DirichletEnforcer::increase_penalty(const Positions& x, const std::string& blocked_by) {
-  blocked_by_ = blocked_by;
+  s_.blocked_by = blocked_by;
   const double distance = max_violation(x);
-  if (distance <= max_remaining * best_ && best_ - distance > min_gain * patch_width()) {
-    best_ = distance;
-    idle_ = 0;
+  if (distance <= max_remaining * s_.best && s_.best - distance > min_gain * patch_width()) {
+    s_.best = distance;
+    s_.idle = 0;
   } else {
-    ++idle_;
+    ++s_.idle;
   }
-  if (idle_ >= max_idle_doublings && stiffness_ * smallest_mass() > excess_stiffness * membrane_stiffness()) {
-    infeasible_ = true;
+  if (s_.idle >= max_idle_doublings &&
+      s_.stiffness * smallest_mass() > excess_stiffness * membrane_stiffness()) {
+    s_.infeasible = true;
     fixed_ = model_->fixed();
     penalty_.reset();
     return false;
   }
-  stiffness_ *= 2;
+  s_.stiffness *= 2;
   make_penalty();
   return true;
 }
@@ -142,13 +138,13 @@ double DirichletEnforcer::violation(const Positions& x, int unsatisfied) const {
 
 double DirichletEnforcer::max_violation(const Positions& x) const {
   double most = 0;
-  for (int k : unsatisfied_) most = std::max(most, violation(x, k));
+  for (int k : s_.unsatisfied) most = std::max(most, violation(x, k));
   return most;
 }
 
 std::string DirichletEnforcer::message(const Positions& x) const {
   std::map<int, int> worst_of_pin;
-  for (int k : unsatisfied_) {
+  for (int k : s_.unsatisfied) {
     const auto [it, first] = worst_of_pin.try_emplace(model_->dirichlet()[k].pin, k);
     if (!first && violation(x, k) > violation(x, it->second)) it->second = k;
   }
@@ -158,7 +154,7 @@ std::string DirichletEnforcer::message(const Positions& x) const {
             three_digits(violation(x, k)) + " m short of its target (vertex " +
             std::to_string(model_->dirichlet()[k].vertex) + ")";
   }
-  return text + (blocked_by_.empty() ? "" : ", blocked by " + blocked_by_);
+  return text + (s_.blocked_by.empty() ? "" : ", blocked by " + s_.blocked_by);
 }
 
 }  // namespace drape

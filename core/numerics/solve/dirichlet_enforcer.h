@@ -23,16 +23,19 @@ class DirichletEnforcer {
   /// targets that x has not reached.
   void set_model(const LevelModel& model) { model_ = &model; }
 
-  /// Everything that does not follow from the model; units as of the members of the same names.
+  /// Everything that does not follow from the model.
   struct State {
-    std::vector<int> unsatisfied;
-    double stiffness = 0, best = 0;
-    int idle = 0;  ///< doublings of the penalty, or without one moves, since one last helped
+    std::vector<int> unsatisfied;  ///< indices into the model's dirichlet()
+    double stiffness = 0;          ///< κ_B [1/s²]
+    double best = 0;               ///< violation when a doubling last helped [m]
+    int idle = 0;                  ///< doublings, or without a penalty moves, since one last helped
     bool infeasible = false, released = false;
     std::string blocked_by;
   };
   State state() const {
-    return {unsatisfied_, stiffness_, best_, idle_, infeasible_, penalty_ != nullptr, blocked_by_};
+    State s = s_;
+    s.released = penalty_ != nullptr;
+    return s;
   }
   void restore(const State& state);
 
@@ -40,9 +43,9 @@ class DirichletEnforcer {
   void begin(const Positions& x);
   /// n×3 [m]: from x to the targets for vertices that are not there, zero elsewhere.
   Positions displacement_to_targets(const Positions& x) const;
-  bool active() const { return !unsatisfied_.empty() && !infeasible_; }
+  bool active() const { return !s_.unsatisfied.empty() && !s_.infeasible; }
   /// Whether some targets were found to be out of reach. Their vertices stay fixed where they are.
-  bool infeasible() const { return infeasible_; }
+  bool infeasible() const { return s_.infeasible; }
 
   /// Whether vertices are held on the way to their targets.
   bool is_moving() const { return active() && !penalty_; }
@@ -78,13 +81,8 @@ class DirichletEnforcer {
 
   const LevelModel* model_;
   std::vector<char> fixed_;
-  std::vector<int> unsatisfied_;  // indices into model_->dirichlet()
-  std::unique_ptr<PositionPenalty> penalty_;
-  double stiffness_ = 0;  // κ_B [1/s²]
-  double best_ = 0;       // violation when a doubling last helped [m]
-  int idle_ = 0;          // doublings, or without a penalty moves, since one last helped
-  bool infeasible_ = false;
-  std::string blocked_by_;
+  State s_;                                   // all but `released`
+  std::unique_ptr<PositionPenalty> penalty_;  // of released vertices
 };
 
 }  // namespace drape
