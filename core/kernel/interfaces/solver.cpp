@@ -1,45 +1,23 @@
 #include "core/kernel/interfaces/solver.h"
 
-#include <utility>
+#include <iterator>
 
 namespace drape {
 
-Outcome worse_of(Outcome a, Outcome b) {
-  constexpr Outcome rising[] = {Outcome::converged_to_rounding,
-                                Outcome::refined_early_on_request,
-                                Outcome::max_steps_reached,
-                                Outcome::stalled,
-                                Outcome::infeasible,
-                                Outcome::cancelled};
-  Outcome worst = Outcome::converged;
-  for (const Outcome outcome : rising)
-    if (a == outcome || b == outcome) worst = outcome;
-  return worst;
+const char* to_string(Outcome outcome) {
+  constexpr const char* names[] = {"converged",
+                                   "converged_to_rounding",
+                                   "refined_early_on_request",
+                                   "max_steps_reached",
+                                   "stalled",
+                                   "infeasible",
+                                   "cancelled"};
+  const auto index = static_cast<std::size_t>(outcome);
+  return index < std::size(names) ? names[index] : "";
 }
-
-namespace {
-
-constexpr std::pair<Outcome, const char*> names[] = {
-    {Outcome::converged, "converged"},
-    {Outcome::max_steps_reached, "max_steps_reached"},
-    {Outcome::stalled, "stalled"},
-    {Outcome::cancelled, "cancelled"},
-    {Outcome::infeasible, "infeasible"},
-    {Outcome::refined_early_on_request, "refined_early_on_request"},
-    {Outcome::converged_to_rounding, "converged_to_rounding"}};
-
-}  // namespace
 
 bool has_converged(const std::string& outcome) {
-  for (const auto& [value, name] : names)
-    if (name == outcome) return has_converged(value);
-  return false;
-}
-
-const char* to_string(Outcome outcome) {
-  for (const auto& [value, name] : names)
-    if (value == outcome) return name;
-  return "";
+  return outcome == to_string(Outcome::converged) || outcome == to_string(Outcome::converged_to_rounding);
 }
 
 }  // namespace drape

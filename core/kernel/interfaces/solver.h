@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <map>
 #include <memory>
 #include <optional>
@@ -29,27 +30,23 @@ struct Problem {
   }
 };
 
-/// How a level ended. `refined_early_on_request`: an observer asked for the next level.
-/// `converged_to_rounding`: as near to equilibrium as round-off allows, though above the tolerance.
+/// How a level ended, from the best to the worst.
 enum class Outcome {
   converged,
+  converged_to_rounding,     ///< as near to equilibrium as round-off allows, though above the tolerance
+  refined_early_on_request,  ///< an observer asked for the next level
   max_steps_reached,
   stalled,
-  cancelled,
   infeasible,
-  refined_early_on_request,
-  converged_to_rounding
+  cancelled
 };
+/// Its name in results; empty for a number that is none.
 const char* to_string(Outcome outcome);
 /// Whether a level is at equilibrium.
-inline bool has_converged(Outcome outcome) {
-  return outcome == Outcome::converged || outcome == Outcome::converged_to_rounding;
-}
-/// The worse outcome, in rising order: converged, converged_to_rounding, refined_early_on_request,
-/// max_steps_reached, stalled, infeasible, cancelled.
-Outcome worse_of(Outcome a, Outcome b);
-/// The same as has_converged for outcomes by name, as in results.
+inline bool has_converged(Outcome outcome) { return outcome <= Outcome::converged_to_rounding; }
+/// The same for outcomes by name.
 bool has_converged(const std::string& outcome);
+inline Outcome worse_of(Outcome a, Outcome b) { return std::max(a, b); }
 
 /// One Newton iteration, for observers.
 struct IterationRow {
