@@ -4,8 +4,6 @@
 #include <stdexcept>
 #include <string>
 
-#include "core/kernel/interfaces/half_edges.h"
-
 namespace drape {
 namespace {
 
@@ -56,21 +54,6 @@ void number_edges(const Triangles& triangles, int vertex_count, EdgeTriangles al
   }
 }
 
-/// Lists, for each of `row_count` values, the rows of `table` it occurs in, ascending.
-template <class Table, class Item>
-AdjacencyList transpose(const Table& table, int row_count, Item item) {
-  AdjacencyList list;
-  list.start.assign(row_count + 1, 0);
-  for (int r = 0; r < table.rows(); ++r)
-    for (int c = 0; c < table.cols(); ++c) ++list.start[table(r, c) + 1];
-  for (int i = 0; i < row_count; ++i) list.start[i + 1] += list.start[i];
-  list.items.resize(table.size());
-  std::vector<int> end(list.start.begin(), list.start.end() - 1);
-  for (int r = 0; r < table.rows(); ++r)
-    for (int c = 0; c < table.cols(); ++c) list.items[end[table(r, c)]++] = item(r, c);
-  return list;
-}
-
 Topology make_topology(const Triangles& triangles, int vertex_count, EdgeTriangles allowed) {
   require_indices(triangles, vertex_count);
   Topology topology;
@@ -83,10 +66,14 @@ Topology make_topology(const Triangles& triangles, int vertex_count, EdgeTriangl
     topology.on_border[topology.edges(e, 1)] = 1;
   }
 
-  topology.vertex_triangles = transpose(triangles, vertex_count, [](int t, int) { return t; });
+  topology.vertex_triangles = AdjacencyList::of(vertex_count, [&](const auto& add) {
+    for (int t = 0; t < triangles.rows(); ++t)
+      for (int k = 0; k < 3; ++k) add(triangles(t, k), t);
+  });
   AdjacencyList& neighbours = topology.vertex_vertices;
-  neighbours =
-      transpose(topology.edges, vertex_count, [&](int e, int c) { return topology.edges(e, 1 - c); });
+  neighbours = AdjacencyList::of(vertex_count, [&](const auto& add) {
+    for (const auto& edge : topology.edges.rowwise()) add(edge[0], edge[1]), add(edge[1], edge[0]);
+  });
   for (int v = 0; v < vertex_count; ++v)
     std::sort(neighbours.items.begin() + neighbours.start[v],
               neighbours.items.begin() + neighbours.start[v + 1]);
@@ -94,6 +81,16 @@ Topology make_topology(const Triangles& triangles, int vertex_count, EdgeTriangl
 }
 
 }  // namespace
+
+std::vector<int> half_edges_by_edge(const Triangles& triangles, int vertex_count) {
+  const AdjacencyList by_larger = AdjacencyList::of(vertex_count, [&](const auto& add) {
+    for (int h = 0; h < triangles.size(); ++h) add(HalfEdge::of(triangles, h).larger(), h);
+  });
+  const auto by_both = [&](const auto& add) {
+    for (const int h : by_larger.items) add(HalfEdge::of(triangles, h).smaller(), h);
+  };
+  return AdjacencyList::of(vertex_count, by_both).items;
+}
 
 Topology Topology::of(const Triangles& triangles, int vertex_count) {
   return make_topology(triangles, vertex_count, EdgeTriangles::at_most_two);

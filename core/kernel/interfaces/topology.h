@@ -1,6 +1,8 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
+#include <numeric>
 #include <vector>
 
 #include "core/kernel/interfaces/triangle_mesh.h"
@@ -15,7 +17,39 @@ struct AdjacencyList {
   const int* begin(int row) const { return items.data() + start[row]; }
   const int* end(int row) const { return items.data() + start[row + 1]; }
   int size(int row) const { return start[row + 1] - start[row]; }
+
+  /// Row by row the items that visit(add) gives by add(row, item), in its order, which is the same in two
+  /// calls. A counting sort.
+  template <class Visit>
+  static AdjacencyList of(int row_count, const Visit& visit) {
+    AdjacencyList list{std::vector<int>(row_count + 1, 0), {}};
+    visit([&](int row, int) { ++list.start[row + 1]; });
+    std::partial_sum(list.start.begin(), list.start.end(), list.start.begin());
+    list.items.resize(list.start.back());
+    std::vector<int> end(list.start.begin(), list.start.end() - 1);
+    visit([&](int row, int item) { list.items[end[row]++] = item; });
+    return list;
+  }
 };
+
+/// One side of a triangle, in the triangle's direction. Half-edge number 3t + k is the side of triangle t
+/// opposite its vertex k.
+struct HalfEdge {
+  int from;
+  int to;
+
+  static HalfEdge of(const Triangles& triangles, int number) {
+    const int t = number / 3, k = number % 3;
+    return {triangles(t, (k + 1) % 3), triangles(t, (k + 2) % 3)};
+  }
+  int smaller() const { return std::min(from, to); }
+  int larger() const { return std::max(from, to); }
+  bool same_edge(const HalfEdge& o) const { return smaller() == o.smaller() && larger() == o.larger(); }
+};
+
+/// All half-edge numbers, ordered by edge (smaller end, then larger), then by number. Linear time.
+/// Indices must be in 0 … vertex_count - 1.
+std::vector<int> half_edges_by_edge(const Triangles& triangles, int vertex_count);
 
 /// Edges and adjacency of a triangle mesh, derived once from its triangles.
 /// Deterministic: edges are numbered in order of first appearance in triangle_edges, row by row.

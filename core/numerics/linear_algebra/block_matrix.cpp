@@ -4,27 +4,12 @@
 #include <stdexcept>
 #include <string>
 
+#include "core/kernel/interfaces/topology.h"
 #include "core/kernel/threads/parallel.h"
 #include "core/numerics/linear_algebra/column_sets.h"
 
 namespace drape {
 namespace {
-
-/// Rows of one stencil array that contain each vertex (a counting sort).
-struct VertexElements {
-  std::vector<int> start, rows;
-
-  VertexElements(int vertex_count, const Stencils& stencils)
-      : start(vertex_count + 1), rows(stencils.size()) {
-    for (Eigen::Index i = 0; i < stencils.size(); ++i)
-      if (stencils.data()[i] >= 0) ++start[stencils.data()[i] + 1];
-    for (int v = 0; v < vertex_count; ++v) start[v + 1] += start[v];
-    std::vector<int> end(start.begin(), start.end() - 1);
-    for (Eigen::Index e = 0; e < stencils.rows(); ++e)
-      for (Eigen::Index k = 0; k < stencils.cols(); ++k)
-        if (stencils(e, k) >= 0) rows[end[stencils(e, k)]++] = static_cast<int>(e);
-  }
-};
 
 void require_vertices(int vertex_count, const Stencils& stencils) {
   for (Eigen::Index e = 0; e < stencils.rows(); ++e)
@@ -45,16 +30,20 @@ void require_vertices(int vertex_count, const Stencils& stencils) {
 
 std::shared_ptr<const BlockPattern> BlockPattern::of(int vertex_count,
                                                      const std::vector<Stencils>& stencils) {
-  std::vector<VertexElements> elements;
+  std::vector<AdjacencyList> elements;  // of each vertex, for each stencil array
   for (const Stencils& s : stencils) {
     require_vertices(vertex_count, s);
-    elements.emplace_back(vertex_count, s);
+    elements.push_back(AdjacencyList::of(vertex_count, [&](const auto& add) {
+      for (int e = 0; e < s.rows(); ++e)
+        for (const int v : s.row(e))
+          if (v >= 0) add(v, e);
+    }));
   }
   ColumnSets sets = ColumnSets::collect(vertex_count, vertex_count, [&](int i, const auto& add) {
     add(i);
     for (std::size_t s = 0; s < stencils.size(); ++s)
-      for (int r = elements[s].start[i]; r < elements[s].start[i + 1]; ++r) {
-        const int* row = stencils[s].data() + elements[s].rows[r] * stencils[s].cols();
+      for (const int* e = elements[s].begin(i); e != elements[s].end(i); ++e) {
+        const int* row = stencils[s].data() + *e * stencils[s].cols();
         for (Eigen::Index k = 0; k < stencils[s].cols(); ++k)
           if (row[k] > i) add(row[k]);
       }

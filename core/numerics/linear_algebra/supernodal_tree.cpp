@@ -36,17 +36,16 @@ void SupernodalTree::find_children() {
   for (int s = 0; s < count(); ++s)
     std::fill(supernode.begin() + first_[s], supernode.begin() + first_[s + 1], s);
   parent_.assign(count(), -1);
-  children_.start.assign(count() + 1, 0);
   for (int s = 0; s < count(); ++s)
-    if (rows_.size(s) > 0) ++children_.start[(parent_[s] = supernode[*rows_.begin(s)]) + 1];
-  std::partial_sum(children_.start.begin(), children_.start.end(), children_.start.begin());
-  children_.items.resize(children_.start.back());
-  std::vector<int> at(children_.start.begin(), children_.start.end() - 1);
+    if (rows_.size(s) > 0) parent_[s] = supernode[*rows_.begin(s)];
+  children_ = AdjacencyList::of(count(), [&](const auto& add) {
+    for (int s = 0; s < count(); ++s)
+      if (parent_[s] >= 0) add(parent_[s], s);
+  });
   relative_.resize(rows_.items.size());
   for (int s = 0; s < count(); ++s) {
     const int p = parent_[s];
     if (p < 0) continue;
-    children_.items[at[p]++] = s;
     const int* row = rows_.begin(p);
     for (int k = rows_.start[s]; k < rows_.start[s + 1]; ++k) {
       const int position = rows_.items[k];

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "core/kernel/interfaces/half_edges.h"
+#include "core/kernel/interfaces/topology.h"
 #include "core/numerics/mesh/mesh_faults.h"
 
 namespace drape {

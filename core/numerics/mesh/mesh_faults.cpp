@@ -5,7 +5,7 @@
 #include <array>
 #include <utility>
 
-#include "core/kernel/interfaces/half_edges.h"
+#include "core/kernel/interfaces/topology.h"
 #include "core/kernel/plugin/bounds.h"
 #include "core/numerics/mesh/disjoint_sets.h"
 

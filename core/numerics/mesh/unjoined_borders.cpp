@@ -5,7 +5,7 @@
 #include <cmath>
 #include <utility>
 
-#include "core/kernel/interfaces/half_edges.h"
+#include "core/kernel/interfaces/topology.h"
 #include "core/numerics/mesh/disjoint_sets.h"
 #include "core/numerics/mesh/mesh_faults.h"
 
