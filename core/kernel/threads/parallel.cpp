@@ -14,22 +14,16 @@
 namespace drape {
 namespace {
 
-/// A range and its pieces.
-struct Pieces {
-  int size, grain, count;
-
-  Pieces(int size, int grain) : size(size), grain(std::max(grain, 1)), count(0) {
-    if (size > 0) count = (size - 1) / this->grain + 1;
-  }
-  int begin(int piece) const { return piece * grain; }
-  int end(int piece) const { return grain < size - begin(piece) ? begin(piece) + grain : size; }
-};
-
+/// What is called for each piece of a range.
 struct Task {
-  const Pieces& pieces;
-  const std::function<void(int piece, int begin, int end)>& body;
+  int size, grain;
+  std::function<void(int piece, int begin, int end)> body;
 
-  void run(int piece) const { body(piece, pieces.begin(piece), pieces.end(piece)); }
+  int pieces() const { return size > 0 ? (size - 1) / grain + 1 : 0; }
+  void run(int piece) const {
+    const int begin = piece * grain;
+    body(piece, begin, grain < size - begin ? begin + grain : size);
+  }
 };
 
 thread_local bool inside_task = false;
@@ -53,10 +47,10 @@ class Pool {
     task_ = &task;
     error_ = nullptr;
     failed_ = false;
-    unfinished_ = task.pieces.count;
+    unfinished_ = task.pieces();
     helpers_ = threads - 1;
     ++turn_;
-    ticket_.store(turn_ << 32 | static_cast<std::uint32_t>(task.pieces.count), std::memory_order_release);
+    ticket_.store(turn_ << 32 | static_cast<std::uint32_t>(task.pieces()), std::memory_order_release);
     ticket_.notify_all();
     work();
     for (int tries = 0; unfinished_.load(std::memory_order_acquire) > 0; ++tries)
@@ -87,7 +81,7 @@ class Pool {
       if (!ticket_.compare_exchange_weak(ticket, ticket - 1, std::memory_order_acq_rel)) continue;
       // We own this piece, so the task exists until we report it finished.
       try {
-        if (!failed_) task_->run(task_->pieces.count - static_cast<int>(ticket & left_mask));
+        if (!failed_) task_->run(task_->pieces() - static_cast<int>(ticket & left_mask));
       } catch (...) {
         if (!failed_.exchange(true)) error_ = std::current_exception();
       }
@@ -122,11 +116,10 @@ Pool& pool() {
 
 std::atomic<int> chosen_threads = 0;  // 0: one for each core
 
-void run_pieces(const Pieces& pieces, const std::function<void(int piece, int begin, int end)>& body) {
-  const int threads = std::min(thread_count(), pieces.count);
-  const Task task{pieces, body};
+void run(const Task& task) {
+  const int threads = std::min(thread_count(), task.pieces());
   if (threads > 1 && !inside_task && pool().run(task, threads)) return;
-  for (int piece = 0; piece < pieces.count; ++piece) task.run(piece);
+  for (int piece = 0; piece < task.pieces(); ++piece) task.run(piece);
 }
 
 }  // namespace
@@ -148,13 +141,15 @@ int thread_count() {
 void set_thread_count(int threads) { chosen_threads = std::max(threads, 0); }
 
 void parallel_for(int size, int grain, const std::function<void(int begin, int end)>& body) {
-  run_pieces(Pieces(size, grain), [&](int, int begin, int end) { body(begin, end); });
+  run({size, std::max(grain, 1), [&](int, int begin, int end) { body(begin, end); }});
 }
 
 double parallel_sum(int size, int grain, const std::function<double(int begin, int end)>& body) {
-  const Pieces pieces(size, grain);
-  std::vector<double> parts(pieces.count);
-  run_pieces(pieces, [&](int piece, int begin, int end) { parts[piece] = body(begin, end); });
+  std::vector<double> parts;
+  const Task task{size, std::max(grain, 1),
+                  [&](int piece, int begin, int end) { parts[piece] = body(begin, end); }};
+  parts.resize(task.pieces());
+  run(task);
   double sum = 0;
   for (const double part : parts) sum += part;
   return sum;

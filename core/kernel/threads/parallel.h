@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <vector>
 
 namespace drape {
 
@@ -20,5 +21,15 @@ void parallel_for(int size, int grain, const std::function<void(int begin, int e
 /// Sum of body(begin, end) over the pieces, added in their order: bitwise reproducible for any number of
 /// threads.
 double parallel_sum(int size, int grain, const std::function<double(int begin, int end)>& body);
+
+/// What body(begin, end, found) appends to `found` on the pieces, in their order.
+template <class T, class Body>
+std::vector<T> parallel_collect(int size, int grain, const Body& body) {
+  std::vector<std::vector<T>> pieces((size + grain - 1) / grain);
+  parallel_for(size, grain, [&](int begin, int end) { body(begin, end, pieces[begin / grain]); });
+  std::vector<T> all;
+  for (const std::vector<T>& piece : pieces) all.insert(all.end(), piece.begin(), piece.end());
+  return all;
+}
 
 }  // namespace drape

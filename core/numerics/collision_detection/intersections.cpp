@@ -7,7 +7,7 @@
 #include <array>
 #include <limits>
 
-#include "core/kernel/threads/parallel_collect.h"
+#include "core/kernel/threads/parallel.h"
 #include "core/numerics/collision_detection/broad_phase.h"
 
 namespace drape {

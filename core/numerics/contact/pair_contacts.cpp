@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "core/kernel/threads/parallel_collect.h"
+#include "core/kernel/threads/parallel.h"
 #include "core/numerics/contact/contact_kernel.h"
 #include "core/numerics/contact_forces/friction.h"
 

@@ -5,7 +5,7 @@
 #include <limits>
 #include <utility>
 
-#include "core/kernel/threads/parallel_collect.h"
+#include "core/kernel/threads/parallel.h"
 #include "core/numerics/contact/contact_kernel.h"
 #include "core/numerics/contact/projected_matrix.h"
 #include "core/numerics/contact_forces/friction.h"

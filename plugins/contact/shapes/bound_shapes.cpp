@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "core/kernel/interfaces/gaps.h"
-#include "core/kernel/threads/parallel_collect.h"
+#include "core/kernel/threads/parallel.h"
 #include "core/numerics/collision_detection/nonlinear_ccd.h"
 #include "core/numerics/contact/contact_stack.h"
 #include "core/numerics/contact/vertex_contacts.h"

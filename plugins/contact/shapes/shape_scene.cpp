@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numeric>
 
-#include "core/kernel/threads/parallel_collect.h"
+#include "core/kernel/threads/parallel.h"
 #include "core/numerics/contact_forces/barrier.h"
 
 namespace drape::shapes {

@@ -1,10 +1,10 @@
+#include "core/kernel/threads/parallel.h"
+
 #include <atomic>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <stdexcept>
 #include <vector>
-
-#include "core/kernel/threads/parallel_collect.h"
 
 using namespace drape;
 
