@@ -2,7 +2,6 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -10,7 +9,6 @@
 
 #include "core/kernel/files/message_text.h"
 #include "core/kernel/plugin/bounds.h"
-#include "core/numerics/mesh/flat_overlaps.h"
 #include "core/numerics/mesh/mesh_faults.h"
 #include "core/numerics/mesh/unjoined_borders.h"
 
@@ -37,80 +35,68 @@ std::string edge_text(const FaultyEdge& edge) {
   return names + (edge.triangles.size() > most_named ? ", …" : "");
 }
 
-std::array<Eigen::Vector3d, 3> corners(const TriangleMesh& mesh, int t) {
-  const auto v = mesh.triangles.row(t);
-  return {mesh.vertices.row(v[0]), mesh.vertices.row(v[1]), mesh.vertices.row(v[2])};
-}
-
 /// How a kind of fault reads: "3 triangles have no area: 4 (0, 1, 2), … (counted from 0); remove them".
 struct Wording {
   const char *one, *many, *fault, *remedy;
 };
 
-/// A line for each kind of fault, with a few examples.
-class FaultLines {
- public:
-  explicit FaultLines(std::vector<std::string>& lines) : lines_(lines) {}
+using Lines = std::vector<std::string>;
 
-  template <class Elements, class Text>
-  void add(const Elements& elements, const Wording& wording, const Text& text_of) {
-    if (elements.empty()) return;
-    std::string line = std::to_string(elements.size()) + " " +
-                       (elements.size() == 1 ? wording.one : wording.many) + wording.fault;
-    for (std::size_t k = 0; k < std::min(elements.size(), most_examples); ++k)
-      line += (k == 0 ? ": " : ", ") + text_of(elements[k]);
-    if (elements.size() > most_examples) line += ", …";
-    lines_.push_back(line + from_0 + "; " + wording.remedy);
-  }
-
- private:
-  std::vector<std::string>& lines_;
-};
+/// Appends a line for a kind of fault, with a few examples.
+template <class Elements, class Text>
+void add_line(Lines& lines, const Elements& elements, const Wording& wording, const Text& text_of) {
+  if (elements.empty()) return;
+  std::string line = std::to_string(elements.size()) + " " +
+                     (elements.size() == 1 ? wording.one : wording.many) + wording.fault;
+  for (std::size_t k = 0; k < std::min(elements.size(), most_examples); ++k)
+    line += (k == 0 ? ": " : ", ") + text_of(elements[k]);
+  if (elements.size() > most_examples) line += ", …";
+  lines.push_back(line + from_0 + "; " + wording.remedy);
+}
 
 /// Appends the triangles that name a vertex out of range. Returns whether all are in range.
-bool check_indices(const TriangleMesh& mesh, std::vector<std::string>& lines) {
+bool check_indices(const TriangleMesh& mesh, Lines& lines) {
   const int n = static_cast<int>(mesh.vertices.rows());
   std::vector<int> faulty;
   for (int t = 0; t < mesh.triangles.rows(); ++t)
     if (mesh.triangles.row(t).minCoeff() < 0 || mesh.triangles.row(t).maxCoeff() >= n) faulty.push_back(t);
   const std::string range = "vertices go from 0 to " + text(n - 1);
-  FaultLines(lines).add(faulty,
-                        {"triangle names", "triangles name", " a vertex that is not there", range.c_str()},
-                        [&](int t) { return triangle_text(mesh.triangles, t); });
+  add_line(lines, faulty, {"triangle names", "triangles name", " a vertex that is not there", range.c_str()},
+           [&](int t) { return triangle_text(mesh.triangles, t); });
   return faulty.empty();
 }
 
-void check_elements(const MeshFaults& faults, const Triangles& triangles, FaultLines& lines) {
+void check_elements(const MeshFaults& faults, const Triangles& triangles, Lines& lines) {
   const auto triangle = [&](int t) { return triangle_text(triangles, t); };
-  lines.add(faults.loose_vertices, {"vertex belongs", "vertices belong", " to no triangle", "remove them"},
-            text);
-  lines.add(faults.repeating_triangles, {"triangle repeats", "triangles repeat", " a vertex", "remove them"},
-            triangle);
-  lines.add(faults.empty_triangles,
-            {"triangle has", "triangles have", " no area", "move their vertices apart, or remove them"},
-            triangle);
-  lines.add(faults.doubled_triangles,
-            {"triangle has", "triangles have", " the same vertices as another", "remove one of each two"},
-            [&](const MeshFaults::Pair& p) { return triangle(p.element) + " as " + text(p.other); });
+  add_line(lines, faults.loose_vertices,
+           {"vertex belongs", "vertices belong", " to no triangle", "remove them"}, text);
+  add_line(lines, faults.repeating_triangles,
+           {"triangle repeats", "triangles repeat", " a vertex", "remove them"}, triangle);
+  add_line(lines, faults.empty_triangles,
+           {"triangle has", "triangles have", " no area", "move their vertices apart, or remove them"},
+           triangle);
+  add_line(lines, faults.doubled_triangles,
+           {"triangle has", "triangles have", " the same vertices as another", "remove one of each two"},
+           [&](const MeshFaults::Pair& p) { return triangle(p.element) + " as " + text(p.other); });
 }
 
-void check_connectivity(const MeshFaults& faults, FaultLines& lines) {
-  lines.add(faults.crowded_edges,
-            {"edge has", "edges have", " more than two triangles",
-             "a sheet has one or two at each edge: remove those between its sides, or cut it there"},
-            edge_text);
-  lines.add(faults.inverted_edges,
-            {"edge runs", "edges run", " in the same direction in both triangles",
-             "turn one side over, so that all triangles have the same front side"},
-            edge_text);
-  lines.add(faults.shared_vertices,
-            {"vertex joins", "vertices join", " separate fans of triangles",
-             "give every fan a vertex of its own, or join the fans along an edge"},
-            [](const MeshFaults::Pair& p) { return text(p.element) + " of " + text(p.other) + " fans"; });
+void check_connectivity(const MeshFaults& faults, Lines& lines) {
+  add_line(lines, faults.crowded_edges,
+           {"edge has", "edges have", " more than two triangles",
+            "a sheet has one or two at each edge: remove those between its sides, or cut it there"},
+           edge_text);
+  add_line(lines, faults.inverted_edges,
+           {"edge runs", "edges run", " in the same direction in both triangles",
+            "turn one side over, so that all triangles have the same front side"},
+           edge_text);
+  add_line(lines, faults.shared_vertices,
+           {"vertex joins", "vertices join", " separate fans of triangles",
+            "give every fan a vertex of its own, or join the fans along an edge"},
+           [](const MeshFaults::Pair& p) { return text(p.element) + " of " + text(p.other) + " fans"; });
 }
 
 /// Appends what shows that triangles beside one another are not joined.
-void check_borders(const TriangleMesh& mesh, std::vector<std::string>& lines) {
+void check_borders(const TriangleMesh& mesh, Lines& lines) {
   if (is_soup(mesh)) {
     lines.push_back(
         text(static_cast<int>(mesh.triangles.rows())) +
@@ -118,27 +104,27 @@ void check_borders(const TriangleMesh& mesh, std::vector<std::string>& lines) {
         "vertices that are at the same place");
     return;
   }
-  FaultLines(lines).add(t_junctions(mesh),
-                        {"border vertex lies", "border vertices lie", " inside a border edge (T-junctions)",
-                         "the cloth would open there: split the edge's triangle at the vertex"},
-                        [](const TJunction& j) {
-                          return text(j.vertex) + " in (" + text(j.edge[0]) + ", " + text(j.edge[1]) + ")";
-                        });
+  add_line(lines, t_junctions(mesh),
+           {"border vertex lies", "border vertices lie", " inside a border edge (T-junctions)",
+            "the cloth would open there: split the edge's triangle at the vertex"},
+           [](const TJunction& j) {
+             return text(j.vertex) + " in (" + text(j.edge[0]) + ", " + text(j.edge[1]) + ")";
+           });
 }
 
-void check_overlaps(const TriangleMesh& mesh, std::vector<std::string>& lines) {
-  FaultLines(lines).add(flat_overlaps(mesh),
-                        {"triangle of this flat mesh overlaps", "triangles of this flat mesh overlap",
-                         " those around a vertex: each faces the other way than they do",
-                         "move its vertices to where no triangles overlap"},
-                        [&](int t) { return triangle_text(mesh.triangles, t); });
+void check_overlaps(const TriangleMesh& mesh, Lines& lines) {
+  add_line(lines, flat_overlaps(mesh),
+           {"triangle of this flat mesh overlaps", "triangles of this flat mesh overlap",
+            " those around a vertex: each faces the other way than they do",
+            "move its vertices to where no triangles overlap"},
+           [&](int t) { return triangle_text(mesh.triangles, t); });
 }
 
 }  // namespace
 
 std::vector<std::string> check_coordinates(const Positions& x) {
   constexpr double largest_rounding = 1e-6;  // of a coordinate, relative to the diagonal
-  std::vector<std::string> faults;
+  Lines faults;
   std::vector<int> not_finite, too_large;
   for (int v = 0; v < x.rows(); ++v) {
     const double largest = x.row(v).cwiseAbs().maxCoeff<Eigen::PropagateNaN>();
@@ -149,12 +135,10 @@ std::vector<std::string> check_coordinates(const Positions& x) {
   }
   const std::string at_most = "at most " + three_digits(bounds::largest_coordinate) +
                               " m can be computed with: is the file in metres?";
-  FaultLines lines(faults);
-  lines.add(not_finite,
-            {"vertex has", "vertices have", " a coordinate that is not finite", "write the file again"},
-            text);
-  lines.add(too_large, {"vertex has", "vertices have", " too large a coordinate", at_most.c_str()},
-            [&](int v) { return text(v) + " with " + three_digits(x.row(v).cwiseAbs().maxCoeff()) + " m"; });
+  add_line(faults, not_finite,
+           {"vertex has", "vertices have", " a coordinate that is not finite", "write the file again"}, text);
+  add_line(faults, too_large, {"vertex has", "vertices have", " too large a coordinate", at_most.c_str()},
+           [&](int v) { return text(v) + " with " + three_digits(x.row(v).cwiseAbs().maxCoeff()) + " m"; });
   if (x.rows() == 0 || !faults.empty()) return faults;
   const double diagonal = bounding_box_diagonal(x);
   const double distance = x.cwiseAbs().maxCoeff();
@@ -170,11 +154,11 @@ std::vector<std::string> check_coordinates(const Positions& x) {
 }
 
 std::vector<std::string> check_mesh(const TriangleMesh& mesh) {
-  std::vector<std::string> lines;
+  Lines lines;
   if (mesh.vertices.rows() == 0) lines.push_back("the mesh has no vertices");
   if (mesh.triangles.rows() == 0) lines.push_back("the mesh has no triangles");
   if (!check_indices(mesh, lines)) return lines;
-  const std::vector<std::string> coordinates = check_coordinates(mesh.vertices);
+  const Lines coordinates = check_coordinates(mesh.vertices);
   const bool is_sound = coordinates.empty();  // elsewise no shape can be computed
   lines.insert(lines.end(), coordinates.begin(), coordinates.end());
 
@@ -184,9 +168,8 @@ std::vector<std::string> check_mesh(const TriangleMesh& mesh) {
   for (const int t : faults.repeating_triangles) removed[t] = 1;
   for (const MeshFaults::Pair& pair : faults.doubled_triangles) removed[pair.element] = 1;
   faults.find_connectivity(mesh.triangles, static_cast<int>(mesh.vertices.rows()), removed);
-  FaultLines all(lines);
-  check_elements(faults, mesh.triangles, all);
-  check_connectivity(faults, all);
+  check_elements(faults, mesh.triangles, lines);
+  check_connectivity(faults, lines);
   if (is_sound) check_borders(mesh, lines);
   if (lines.empty()) check_overlaps(mesh, lines);
   return lines;
@@ -195,13 +178,14 @@ std::vector<std::string> check_mesh(const TriangleMesh& mesh) {
 double smallest_angle(const TriangleMesh& mesh) {
   if (mesh.triangles.rows() == 0) return 0;
   double smallest = std::numbers::pi;
-  for (int t = 0; t < mesh.triangles.rows(); ++t) {
-    const auto p = corners(mesh, t);
+  for (const auto& v : mesh.triangles.rowwise())
     for (int k = 0; k < 3; ++k) {
-      const Eigen::Vector3d a = p[(k + 1) % 3] - p[k], b = p[(k + 2) % 3] - p[k];
+      const auto side_to = [&](int i) -> Eigen::Vector3d {
+        return mesh.vertices.row(v[i % 3]) - mesh.vertices.row(v[k]);
+      };
+      const Eigen::Vector3d a = side_to(k + 1), b = side_to(k + 2);
       smallest = std::min(smallest, std::atan2(a.cross(b).norm(), a.dot(b)));
     }
-  }
   return smallest * 180 / std::numbers::pi;
 }
 

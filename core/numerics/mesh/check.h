@@ -13,7 +13,7 @@ namespace drape {
 ///   check_coordinates;
 /// - the elements and the connectivity of mesh_faults.h;
 /// - triangles that are not joined where they meet (unjoined_borders.h);
-/// - in a flat mesh, triangles that overlap those around a vertex (flat_overlaps.h).
+/// - in a flat mesh, triangles that overlap those around a vertex (flat_overlaps).
 std::vector<std::string> check_mesh(const TriangleMesh& mesh);
 
 /// The faults of coordinates [m]: one that is not finite or too large, a mesh without extent, and a mesh so
