@@ -4,7 +4,6 @@
 #include <limits>
 
 #include "core/numerics/collision_detection/intersections.h"
-#include "core/numerics/collision_detection/surface_gap.h"
 #include "core/numerics/contact/contact_kernel.h"
 #include "core/numerics/contact/contact_stack.h"
 #include "core/numerics/contact/rim_contacts.h"

@@ -1,7 +1,7 @@
 #include <catch2/catch.hpp>
 
 #include "core/app/scene/scene_summary.h"
-#include "core/numerics/collision_detection/surface_gap.h"
+#include "core/numerics/collision_detection/intersections.h"
 #include "core/numerics/mesh_files/io.h"
 #include "core/numerics/patterns/generate.h"
 #include "core/numerics/patterns/primitives.h"
