@@ -29,44 +29,31 @@ SteppedSolve::~SteppedSolve() {
 }
 
 bool SteppedSolve::advance() {
-  if (turn_ == Turn::ended) return false;
-  std::unique_lock<std::mutex> lock(mutex_);
-  turn_ = Turn::solver;
+  if (ended_) return false;
   if (thread_.joinable())
-    changed_.notify_all();
+    solvers_turn_.release();
   else
     thread_ = std::thread([this] { run(); });
-  changed_.wait(lock, [this] { return turn_ != Turn::solver; });
+  callers_turn_.acquire();
   if (error_) std::rethrow_exception(std::exchange(error_, nullptr));
-  return turn_ == Turn::caller;
+  return !ended_;
 }
 
 void SteppedSolve::run() {
-  std::exception_ptr error;
   try {
     solver_.resume(problem_, from_, *this);
   } catch (...) {
-    error = std::current_exception();
+    error_ = std::current_exception();
   }
-  const std::lock_guard<std::mutex> lock(mutex_);
-  error_ = std::move(error);  // the caller alone owns it from here on
-  turn_ = Turn::ended;
-  changed_.notify_all();
+  ended_ = true;
+  callers_turn_.release();
 }
-
-void SteppedSolve::hand_over() {
-  std::unique_lock<std::mutex> lock(mutex_);
-  turn_ = Turn::caller;
-  changed_.notify_all();
-  changed_.wait(lock, [this] { return turn_ == Turn::solver; });
-}
-
-void SteppedSolve::level_started(int) { refine_ = false; }
 
 void SteppedSolve::iteration(const IterationRow& row, const Positions& x) {
   row_ = row;
   x_ = x;
-  hand_over();
+  callers_turn_.release();
+  solvers_turn_.acquire();
 }
 
 void SteppedSolve::level_finished(const LevelResult& result) {
@@ -74,8 +61,6 @@ void SteppedSolve::level_finished(const LevelResult& result) {
   if (result.outcome == Outcome::cancelled) return;  // its checkpoint stays, to be resumed
   checkpoint_ = {finished_, result.level + 1, std::nullopt, clock_.seconds()};
 }
-
-bool SteppedSolve::refine_requested() { return std::exchange(refine_, false); }
 
 void SteppedSolve::checkpoint(const NewtonState& state) {
   checkpoint_.level = state.so_far.level;

@@ -1,9 +1,9 @@
 #pragma once
 
-#include <condition_variable>
 #include <exception>
-#include <mutex>
+#include <semaphore>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include "core/kernel/interfaces/solver.h"
@@ -35,7 +35,7 @@ class SteppedSolve : private Observer {
 
   const IterationRow& row() const { return row_; }  ///< of the last iteration
   const Positions& x() const { return x_; }         ///< n×3, the state after it [m]
-  bool ended() const { return turn_ == Turn::ended; }
+  bool ended() const { return ended_; }
   const std::vector<LevelResult>& finished() const { return finished_; }  ///< levels, in order
   /// The state at the beginning of the step of the last iteration. Resuming from it repeats that step. Of a
   /// solver that cannot resume, only its finished levels.
@@ -47,16 +47,13 @@ class SteppedSolve : private Observer {
   void stop() { stop_ = true; }
 
  private:
-  enum class Turn { caller, solver, ended };
   void run();
-  /// Gives the turn to the caller and waits until it is back.
-  void hand_over();
 
-  void level_started(int level) override;
+  void level_started(int) override { refine_ = false; }
   void iteration(const IterationRow& row, const Positions& x) override;
   void level_finished(const LevelResult& result) override;
   bool stop_requested() override { return stop_; }
-  bool refine_requested() override;
+  bool refine_requested() override { return std::exchange(refine_, false); }
   bool checkpoint_due() override { return true; }
   void checkpoint(const NewtonState& state) override;
 
@@ -70,9 +67,8 @@ class SteppedSolve : private Observer {
   MethodState checkpoint_;
   bool refine_ = false, stop_ = false;
 
-  std::mutex mutex_;
-  std::condition_variable changed_;
-  Turn turn_ = Turn::caller;  // guarded by mutex_ while the solver runs
+  std::binary_semaphore solvers_turn_{0}, callers_turn_{0};
+  bool ended_ = false;
   std::exception_ptr error_;
   std::thread thread_;  // begins with the first advance
 };
