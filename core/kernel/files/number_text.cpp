@@ -24,4 +24,9 @@ std::string general_text(double value, int digits) {
   return text_of_number(value, std::chars_format::general, digits);
 }
 
+std::string exact_text(double value) {
+  char text[32];
+  return std::string(text, std::to_chars(text, text + sizeof text, value).ptr);
+}
+
 }  // namespace drape

@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <cctype>
-#include <charconv>
 #include <cstdio>
 #include <set>
 
 #include "core/kernel/files/message_text.h"
+#include "core/kernel/files/number_text.h"
 #include "core/kernel/plugin/parameters.h"
 
 namespace drape {
@@ -162,8 +162,7 @@ std::string ConfigNode::shown() const {
 }
 
 ConfigNode ConfigNode::of(double value) {
-  char text[32];
-  std::string digits(text, std::to_chars(text, text + sizeof text, value).ptr);
+  std::string digits = exact_text(value);
   // YAML 1.1, as in Python, reads "1e-05" as a text and "1.0e-05" as a number.
   const size_t exponent = digits.find('e');
   if (exponent != std::string::npos && digits.find('.') == std::string::npos) digits.insert(exponent, ".0");

@@ -2,12 +2,12 @@
 
 #include <algorithm>
 #include <cctype>
-#include <charconv>
 #include <cmath>
 #include <filesystem>
 #include <set>
 
 #include "core/kernel/files/message_text.h"
+#include "core/kernel/files/number_text.h"
 #include "core/kernel/files/string_utils.h"
 
 namespace drape {
@@ -16,14 +16,9 @@ namespace {
 using NodeKind = ConfigNode::Kind;
 
 template <class Number>
-std::optional<Number> parse_all(const std::string& text) {
-  // from_chars knows no plus sign.
-  const size_t skip = text.size() > 1 && text[0] == '+' && text[1] != '-' ? 1 : 0;
-  Number value;
-  const char* end = text.data() + text.size();
-  const auto [rest, error] = std::from_chars(text.data() + skip, end, value);
-  if (error != std::errc() || rest != end) return std::nullopt;
-  return value;
+std::optional<Number> parsed(const std::string& text) {
+  Number value{};
+  return read_number(text, value) == std::errc() ? std::optional(value) : std::nullopt;
 }
 
 std::string with_unit(double value, const Parameter& p) {
@@ -44,11 +39,11 @@ std::string range_fault(double value, const Parameter& p) {
 /// What a scalar must be if it is not, else "".
 std::string scalar_fault(const std::string& type, const ConfigNode& node, const Parameter& p) {
   const bool plain = node.kind == NodeKind::scalar && !node.quoted;
-  if (type == "number" || type == "integer") {
-    if (type == "integer") {
-      const auto value = plain ? parse_integer(node.scalar) : std::nullopt;
-      return value ? range_fault(*value, p) : "an integer";
-    }
+  if (type == "integer") {
+    const auto value = plain ? parse_integer(node.scalar) : std::nullopt;
+    return value ? range_fault(*value, p) : "an integer";
+  }
+  if (type == "number") {
     if (plain && (node.scalar == ".nan" || node.scalar == ".inf" || node.scalar == "-.inf"))
       return "a finite number";
     const auto value = plain ? parse_number(node.scalar) : std::nullopt;
@@ -178,8 +173,8 @@ std::string number_fault(const Parameter& p, double value) {
   return integer && value != std::rint(value) ? "an integer" : range_fault(value, p);
 }
 
-std::optional<double> parse_number(const std::string& text) { return parse_all<double>(text); }
-std::optional<int> parse_integer(const std::string& text) { return parse_all<int>(text); }
+std::optional<double> parse_number(const std::string& text) { return parsed<double>(text); }
+std::optional<int> parse_integer(const std::string& text) { return parsed<int>(text); }
 
 namespace parameter_detail {
 

@@ -24,7 +24,4 @@ std::string pvd_text(const std::vector<std::pair<double, std::string>>& frames);
 /// other than x, y and z.
 void require_fields(const std::filesystem::path& path, const TriangleMesh& mesh, const VertexFields& fields);
 
-/// The shortest text that reads back to the same bits.
-std::string exact_text(double value);
-
 }  // namespace drape

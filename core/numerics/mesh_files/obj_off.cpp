@@ -1,10 +1,10 @@
 // Wavefront OBJ and OFF.
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <iterator>
 
 #include "core/kernel/files/message_text.h"
+#include "core/kernel/files/number_text.h"
 #include "core/numerics/mesh/mesh_builder.h"
 #include "core/numerics/mesh/texture_coordinates.h"
 #include "core/numerics/mesh_files/io_formats.h"
@@ -147,11 +147,6 @@ TriangleMesh read_off(const std::filesystem::path& path, std::string_view bytes)
   }
   if (reader.next_line()) reader.fail("the file has data after its last face");
   return builder.mesh();
-}
-
-std::string exact_text(double value) {
-  char buffer[32];
-  return std::string(buffer, std::to_chars(buffer, buffer + sizeof buffer, value).ptr);
 }
 
 std::string obj_text(const TriangleMesh& mesh) {

@@ -1,7 +1,6 @@
 #include "core/numerics/mesh_files/text_reader.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <limits>
 #include <stdexcept>
@@ -9,18 +8,12 @@
 
 #include "core/kernel/files/file.h"
 #include "core/kernel/files/message_text.h"
+#include "core/kernel/files/number_text.h"
 
 namespace drape {
 namespace {
 
 constexpr std::string_view white_space = " \t\r\n\v\f";
-
-template <class Number>
-std::errc parse(std::string_view word, Number& number) {
-  if (word.size() > 1 && word[0] == '+' && word[1] != '-') word.remove_prefix(1);  // from_chars knows no plus
-  const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), number);
-  return end == word.data() + word.size() ? error : std::errc::invalid_argument;
-}
 
 std::string in_quotes(std::string_view word) { return "'" + excerpt(word) + "'"; }
 
@@ -64,7 +57,7 @@ std::string_view TextReader::next_word(const std::string& expected) {
 
 double TextReader::number(std::string_view word) const {
   double value = 0;
-  const std::errc error = parse(word, value);
+  const std::errc error = read_number(word, value);
   if (error == std::errc::result_out_of_range)
     fail(in_quotes(word) + " is too large or too small for a 64-bit number");
   if (error != std::errc()) fail(in_quotes(word) + " is not a number");
@@ -79,7 +72,7 @@ double TextReader::coordinate(std::string_view word) const {
 
 long long TextReader::integer(std::string_view word) const {
   long long value = 0;
-  if (parse(word, value) != std::errc()) fail(in_quotes(word) + " is not an integer");
+  if (read_number(word, value) != std::errc()) fail(in_quotes(word) + " is not an integer");
   return value;
 }
 

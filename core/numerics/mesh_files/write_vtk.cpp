@@ -5,6 +5,7 @@
 #include <cstring>
 
 #include "core/kernel/files/file.h"
+#include "core/kernel/files/number_text.h"
 #include "core/numerics/mesh_files/base64.h"
 #include "core/numerics/mesh_files/io.h"
 #include "core/numerics/mesh_files/io_formats.h"
