@@ -3,7 +3,6 @@
 #include <Eigen/Core>
 #include <filesystem>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "core/kernel/interfaces/triangle_mesh.h"
@@ -44,8 +43,5 @@ void write_ply(const std::filesystem::path& path, const TriangleMesh& mesh, cons
 /// Writes a VTK XML PolyData file, base64 inline, for ParaView; without texture coordinates, which VTK has
 /// no seams for.
 void write_vtp(const std::filesystem::path& path, const TriangleMesh& mesh, const VertexFields& fields = {});
-
-/// Writes a ParaView collection: time [s] and a .vtp path relative to the collection, one pair per frame.
-void write_pvd(const std::filesystem::path& path, const std::vector<std::pair<double, std::string>>& frames);
 
 }  // namespace drape

@@ -225,11 +225,7 @@ TriangleMesh read_ply(const std::filesystem::path& path, std::string_view bytes)
 }
 
 VertexFields read_ply_fields(const std::filesystem::path& path) {
-  return read_ply_fields(path, read_file(path));
-}
-
-VertexFields read_ply_fields(const std::filesystem::path& path, std::string_view bytes) {
-  const PlyContent content = read_content(path, bytes);
+  const PlyContent content = read_content(path, read_file(path));
   VertexFields fields;
   for (std::size_t i = 0; i < content.names.size(); ++i) {
     const std::string& name = content.names[i];

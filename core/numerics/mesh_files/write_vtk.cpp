@@ -75,8 +75,4 @@ std::string pvd_text(const std::vector<std::pair<double, std::string>>& frames) 
   return text + "</Collection>\n</VTKFile>\n";
 }
 
-void write_pvd(const std::filesystem::path& path, const std::vector<std::pair<double, std::string>>& frames) {
-  write_file(path, pvd_text(frames));
-}
-
 }  // namespace drape
