@@ -1,8 +1,7 @@
-#include "core/numerics/model/weak_barrier.h"
-
 #include <catch2/catch.hpp>
 
 #include "core/kernel/interfaces/gaps.h"
+#include "core/numerics/solve/newton_report.h"
 #include "tests/support/solve.h"
 
 using namespace drape;

@@ -6,7 +6,7 @@
 #include "core/app/scene/boundary_conditions.h"
 #include "core/app/scene/scene_summary.h"
 #include "core/kernel/files/string_utils.h"
-#include "core/numerics/mesh/coincident_border.h"
+#include "core/numerics/mesh/unjoined_borders.h"
 #include "core/numerics/model/required.h"
 #include "core/numerics/patterns/generate.h"
 #include "core/numerics/solve/start_fault.h"

@@ -3,7 +3,7 @@
 #include <array>
 #include <vector>
 
-#include "core/kernel/interfaces/triangle_mesh.h"
+#include "core/kernel/interfaces/level.h"
 
 namespace drape {
 
@@ -20,5 +20,14 @@ struct TJunction {
 /// The T-junctions within each connected part of a mesh: on one side of a line its triangles have a vertex
 /// that is missing on the other.
 std::vector<TJunction> t_junctions(const TriangleMesh& mesh);
+
+/// Two border vertices at one place at rest, and how many border vertices lie on another one.
+struct Coincidence {
+  int first = -1, second = -1, count = 0;
+};
+
+/// The first two border vertices of a level that are less than `tolerance` [m] apart, in the order of
+/// vertices; without any, the count is 0.
+Coincidence coincident_border(const Level& level, double tolerance);
 
 }  // namespace drape

@@ -5,7 +5,6 @@
 #include <optional>
 
 #include "core/kernel/files/message_text.h"
-#include "core/numerics/model/weak_barrier.h"
 #include "core/numerics/solve/dirichlet_predictor.h"
 #include "core/numerics/solve/newton_report.h"
 #include "core/numerics/solve/newton_state.h"

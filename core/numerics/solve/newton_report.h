@@ -26,4 +26,9 @@ std::string max_steps_text(int max_steps, double residual);
 /// Why a force residual above the tolerance, of which round-off explains `rounding`, counts as converged.
 std::string rounding_text(double residual, double tolerance, double rounding);
 
+/// A message that names the gap, the barrier stiffness and a suitable one, if a contact model's barrier is
+/// too weak for the load. Empty if no gap is far below d̂, or if a gap closed for another reason. Costs one
+/// search for contacts.
+std::string weak_barrier(const LevelModel& model, const Positions& x);
+
 }  // namespace drape
