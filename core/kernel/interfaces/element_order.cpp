@@ -3,7 +3,8 @@
 #include <algorithm>
 #include <bit>
 #include <cstdint>
-#include <numeric>
+
+#include "core/kernel/interfaces/topology.h"
 
 namespace drape {
 namespace {
@@ -67,16 +68,15 @@ ElementOrder ElementOrder::of(const Stencils& stencils, const Positions& rest) {
   const std::vector<int> order = along_morton_curve(stencils, rest);
   const std::vector<int> colours = colour_chunks(stencils, order, size, static_cast<int>(rest.rows()));
 
-  std::vector<int> chunks(colours.size());
-  std::iota(chunks.begin(), chunks.end(), 0);
-  std::stable_sort(chunks.begin(), chunks.end(), [&](int a, int b) { return colours[a] < colours[b]; });
-  ElementOrder result{{}, {0}, {0}};
-  for (std::size_t i = 0; i < chunks.size(); ++i) {
-    const int begin = chunks[i] * size, end = std::min(begin + size, count);
+  const int colour_count = *std::ranges::max_element(colours) + 1;
+  const AdjacencyList chunks = AdjacencyList::of(colour_count, [&](const auto& add) {
+    for (int chunk = 0; chunk < std::ssize(colours); ++chunk) add(colours[chunk], chunk);
+  });
+  ElementOrder result{{}, {0}, chunks.start};
+  for (const int chunk : chunks.items) {
+    const int begin = chunk * size, end = std::min(begin + size, count);
     result.elements.insert(result.elements.end(), order.begin() + begin, order.begin() + end);
     result.chunk_start.push_back(static_cast<int>(result.elements.size()));
-    if (i + 1 == chunks.size() || colours[chunks[i]] != colours[chunks[i + 1]])
-      result.colour_start.push_back(static_cast<int>(i + 1));
   }
   return result;
 }

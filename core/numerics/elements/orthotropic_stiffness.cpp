@@ -20,12 +20,6 @@ OrthotropicStiffness OrthotropicStiffness::of_strips(double warp, double weft, d
   return {c * warp, c * weft, c * nu * std::sqrt(warp * weft), shear};
 }
 
-OrthotropicStiffness OrthotropicStiffness::of_strips_with_bias(double warp, double weft, double nu,
-                                                               double bias) {
-  const double s66 = 4 / bias - 1 / warp - 1 / weft + 2 * nu / std::sqrt(warp * weft);
-  return of_strips(warp, weft, nu, 1 / s66);
-}
-
 double OrthotropicStiffness::strip(double angle) const {
   const double det = c11 * c22 - c12 * c12, s11 = c22 / det, s22 = c11 / det, s12 = -c12 / det;
   const double c = std::pow(std::cos(angle), 2), s = std::pow(std::sin(angle), 2);
@@ -45,8 +39,9 @@ OrthotropicStiffness plate_stiffness(const Material& m) {
   if (!m.bias_bending)
     return OrthotropicStiffness::of_strips(warp, weft, m.poisson_ratio,
                                            isotropic_shear(warp, weft, m.poisson_ratio));
-  const OrthotropicStiffness plate =
-      OrthotropicStiffness::of_strips_with_bias(warp, weft, m.poisson_ratio, *m.bias_bending);
+  const double nu = m.poisson_ratio,
+               s66 = 4 / *m.bias_bending - 1 / warp - 1 / weft + 2 * nu / std::sqrt(warp * weft);
+  const OrthotropicStiffness plate = OrthotropicStiffness::of_strips(warp, weft, nu, 1 / s66);
   if (plate.c66 > 0 && std::isfinite(plate.c66)) return plate;
   std::ostringstream message;
   message << "bending of the material is not positive definite: with \"bias_bending\" of " << *m.bias_bending

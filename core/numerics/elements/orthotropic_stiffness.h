@@ -16,8 +16,6 @@ struct OrthotropicStiffness {
 
   /// From the stiffness of strips along warp and weft, ν = √(ν12 ν21) < 1, and c66.
   static OrthotropicStiffness of_strips(double warp, double weft, double nu, double shear);
-  /// The same of a plate, from a strip at 45° in place of c66.
-  static OrthotropicStiffness of_strips_with_bias(double warp, double weft, double nu, double bias);
   /// Of a strip at an angle to warp [rad], whose sides are free.
   double strip(double angle) const;
 };

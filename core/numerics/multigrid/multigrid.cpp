@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
 
 #include "core/kernel/threads/parallel.h"
 
@@ -86,7 +85,5 @@ ConjugateGradients::End Multigrid::solve(const Positions& right_hand_side, Posit
       },
       {tolerance, most_cycles(f.size()), sufficient}, solution);
 }
-
-double Multigrid::take_flops() { return std::exchange(flops_, 0); }
 
 }  // namespace drape

@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <memory>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "core/kernel/interfaces/prolongation_matrix.h"
@@ -38,7 +39,7 @@ class Multigrid {
   ConjugateGradients::End solve(const Positions& right_hand_side, Positions& solution);
 
   /// Floating-point operations since the last call.
-  double take_flops();
+  double take_flops() { return std::exchange(flops_, 0); }
 
  private:
   void cycle(int mesh);

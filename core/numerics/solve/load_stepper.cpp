@@ -41,11 +41,6 @@ LoadStepper::LoadStepper(LoadStepping* load_stepping, Iterate& iterate, Dirichle
   s_.start.seconds = clock.seconds();
 }
 
-std::optional<double> LoadStepper::time() const {
-  if (!load_stepping_) return std::nullopt;
-  return load_stepping_->time();
-}
-
 void LoadStepper::store_progress(LevelResult& result) const {
   if (load_stepping_) result.load_stepping = load_stepping_->state();
 }

@@ -50,7 +50,9 @@ class LoadStepper {
   /// Steps of the current increment so far.
   int steps() const { return iterate_.result().steps - s_.start.steps; }
   /// Pseudo-time of the current increment; none without a schedule.
-  std::optional<double> time() const;
+  std::optional<double> time() const {
+    return load_stepping_ ? std::optional(load_stepping_->time()) : std::nullopt;
+  }
   /// Stores how far load stepping has come.
   void store_progress(LevelResult& result) const;
 
