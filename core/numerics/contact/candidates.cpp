@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "core/kernel/threads/parallel.h"
-#include "core/numerics/contact/candidate_pairs.h"
 #include "core/numerics/contact/moving_pairs.h"
 #include "core/numerics/contact/pair_geometry.h"
 

@@ -6,7 +6,6 @@
 #include <cstring>
 #include <limits>
 
-#include "core/numerics/collision_detection/linear_motion.h"
 #include "core/numerics/contact/pair_contacts.h"
 #include "core/numerics/linear_algebra/pack.h"
 

@@ -6,7 +6,7 @@
 
 #include "core/kernel/interfaces/contact_model.h"
 #include "core/numerics/collision_detection/closest.h"
-#include "core/numerics/contact_forces/barrier_parameters.h"
+#include "core/numerics/contact_forces/barrier.h"
 
 namespace drape {
 
@@ -26,6 +26,14 @@ struct ContactPair {
   double mollifier = 0;  ///< edge_edge, edge_end: ε of the mollifier, |u × v|² [m⁴]
   double friction = 0;   ///< μ
   bool at_rim = false;   ///< a cloth edge at a sharp edge of an obstacle (rim_contacts.h)
+};
+
+/// The linear motion of the cloth from x0 to x1 and of the obstacles' vertices, searched for pairs within d̂.
+struct LinearMotion {
+  const Positions& x0;
+  const Positions& x1;
+  double dhat;  ///< d̂ [m]
+  const Positions &obstacles0, &obstacles1;
 };
 
 /// The barrier potential κ Σ_pairs d̂ · weight · m · b(gap / d̂), b(s) = -(s - 1)² ln s, m the edge-edge

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "core/numerics/contact/pair_contacts.h"
-#include "core/numerics/contact_forces/barrier_parameters.h"
+#include "core/numerics/contact_forces/barrier.h"
 
 namespace drape {
 

@@ -5,7 +5,7 @@
 #include <tuple>
 
 #include "core/kernel/threads/parallel.h"
-#include "core/numerics/contact/candidate_pairs.h"
+#include "core/numerics/contact/candidates.h"
 #include "core/numerics/contact/moving_pairs.h"
 
 namespace drape {

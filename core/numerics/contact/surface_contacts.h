@@ -5,7 +5,7 @@
 
 #include "core/kernel/interfaces/contact_model.h"
 #include "core/numerics/contact/nearest_features.h"
-#include "core/numerics/contact_forces/barrier_parameters.h"
+#include "core/numerics/contact_forces/barrier.h"
 
 namespace drape {
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "core/numerics/collision_detection/obstacle_surface.h"
-#include "core/numerics/contact/obstacle_parameters.h"
+#include "core/numerics/contact/contact_parameters.h"
 #include "core/numerics/mesh/rotation.h"
 #include "core/numerics/mesh_files/file_coordinates.h"
 #include "plugins/contact/ipc/cages.h"

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "core/kernel/interfaces/contact_model.h"
-#include "core/numerics/contact/obstacle_parameters.h"
+#include "core/numerics/contact/contact_parameters.h"
 #include "plugins/contact/shapes/solid.h"
 
 namespace drape::shapes {

@@ -4,7 +4,7 @@
 #include <catch2/catch.hpp>
 #include <random>
 
-#include "core/numerics/contact/candidate_pairs.h"
+#include "core/numerics/contact/candidates.h"
 #include "core/numerics/contact/moving_pairs.h"
 #include "core/numerics/contact/pair_geometry.h"
 #include "core/numerics/patterns/generate.h"
