@@ -28,13 +28,8 @@ struct Descriptor {
   }
 };
 
-std::runtime_error failure(const char* what, const std::filesystem::path& path, int error) {
-  return std::runtime_error(std::string(what) + path.string() + ": " +
-                            std::generic_category().message(error));
-}
-
 WriteError unwritten(const std::filesystem::path& path, int error) {
-  return WriteError(failure("cannot write ", path, error).what());
+  return WriteError("cannot write " + path.string() + ": " + std::generic_category().message(error));
 }
 
 }  // namespace
@@ -115,12 +110,10 @@ std::uint32_t checksum_of(std::string_view bytes) {
 }
 
 void sync_to_disk(const std::filesystem::path& path) {
-  const int file = open(path.c_str(), O_RDONLY | O_CLOEXEC);
-  if (file < 0) throw unwritten(path, errno);
+  const Descriptor file{open(path.c_str(), O_RDONLY | O_CLOEXEC)};
+  if (file.number < 0) throw unwritten(path, errno);
   // EINVAL, EROFS: there is nothing behind this file that could be flushed.
-  const int error = fsync(file) == 0 || errno == EINVAL || errno == EROFS ? 0 : errno;
-  close(file);
-  if (error != 0) throw unwritten(path, error);
+  if (fsync(file.number) != 0 && errno != EINVAL && errno != EROFS) throw unwritten(path, errno);
 }
 
 }  // namespace drape

@@ -18,10 +18,7 @@ void require_indices(const Triangles& triangles, int vertex_count) {
   }
 }
 
-/// Triangles of an edge.
-enum class EdgeTriangles { at_most_two, any };
-
-void number_edges(const Triangles& triangles, int vertex_count, EdgeTriangles allowed, Topology& topology) {
+void number_edges(const Triangles& triangles, int vertex_count, bool is_manifold, Topology& topology) {
   const std::vector<int> order = half_edges_by_edge(triangles, vertex_count);
   std::vector<int> first(order.size());  // of each half-edge, the earliest on the same edge
   int edge_count = 0;
@@ -48,16 +45,16 @@ void number_edges(const Triangles& triangles, int vertex_count, EdgeTriangles al
     const int e = numbers[h] = numbers[first[h]];
     if (topology.edge_triangles(e, 1) == -1)
       topology.edge_triangles(e, 1) = h / 3;
-    else if (allowed == EdgeTriangles::at_most_two)
+    else if (is_manifold)
       throw std::runtime_error("topology: edge (" + std::to_string(topology.edges(e, 0)) + ", " +
                                std::to_string(topology.edges(e, 1)) + ") has more than two triangles");
   }
 }
 
-Topology make_topology(const Triangles& triangles, int vertex_count, EdgeTriangles allowed) {
+Topology make_topology(const Triangles& triangles, int vertex_count, bool is_manifold) {
   require_indices(triangles, vertex_count);
   Topology topology;
-  number_edges(triangles, vertex_count, allowed, topology);
+  number_edges(triangles, vertex_count, is_manifold, topology);
 
   topology.on_border.assign(vertex_count, 0);
   for (int e = 0; e < topology.edges.rows(); ++e) {
@@ -93,11 +90,11 @@ std::vector<int> half_edges_by_edge(const Triangles& triangles, int vertex_count
 }
 
 Topology Topology::of(const Triangles& triangles, int vertex_count) {
-  return make_topology(triangles, vertex_count, EdgeTriangles::at_most_two);
+  return make_topology(triangles, vertex_count, true);
 }
 
 Topology Topology::of_any(const Triangles& triangles, int vertex_count) {
-  return make_topology(triangles, vertex_count, EdgeTriangles::any);
+  return make_topology(triangles, vertex_count, false);
 }
 
 std::vector<int> Topology::components() const {

@@ -128,34 +128,19 @@ void ConfigNode::name_keys(const std::string& own) {
 }
 
 std::string ConfigNode::one_line() const {
+  if (kind == Kind::null) return "null";
+  if (kind == Kind::scalar)
+    return plainly_text(scalar) || (!quoted && plainly_scalar(scalar)) ? scalar : in_quotes(scalar);
   std::string text;
-  switch (kind) {
-    case Kind::null:
-      return "null";
-    case Kind::scalar:
-      return plainly_text(scalar) || (!quoted && plainly_scalar(scalar)) ? scalar : in_quotes(scalar);
-    case Kind::list:
-      for (const ConfigNode& item : items) text += (text.empty() ? "" : ", ") + item.one_line();
-      return "[" + text + "]";
-    case Kind::map:
-      for (const auto& [key, value] : entries)
-        text += (text.empty() ? "" : ", ") + of(key).one_line() + ": " + value.one_line();
-      return "{" + text + "}";
-  }
-  return text;
+  for (const ConfigNode& item : items) text += (text.empty() ? "" : ", ") + item.one_line();
+  for (const auto& [key, value] : entries)
+    text += (text.empty() ? "" : ", ") + of(key).one_line() + ": " + value.one_line();
+  return kind == Kind::list ? "[" + text + "]" : "{" + text + "}";
 }
 
 std::string ConfigNode::shown() const {
-  switch (kind) {
-    case Kind::null:
-      return "empty";
-    case Kind::list:
-      return "a list";
-    case Kind::map:
-      return "a map";
-    case Kind::scalar:
-      break;
-  }
+  if (kind == Kind::null) return "empty";
+  if (kind != Kind::scalar) return kind == Kind::list ? "a list" : "a map";
   const bool number = !quoted && parse_number(scalar);
   const std::string text = excerpt(scalar);
   return number ? text : (quoted ? "the text \"" : "\"") + text + "\"";

@@ -219,8 +219,8 @@ class Declaration {
   template <class Member, class Owner>
   Parameter& append(const std::string& name, const std::string& type, Member Owner::*member,
                     const std::string& description) {
-    for (const Parameter& p : schema.parameters)
-      if (p.name == name) throw std::runtime_error("parameter \"" + name + "\" is declared twice");
+    if (parameter_named(schema, name))
+      throw std::runtime_error("parameter \"" + name + "\" is declared twice");
     Parameter& p = schema.parameters.emplace_back();
     p.name = name;
     p.type = type;

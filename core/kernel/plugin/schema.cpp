@@ -52,12 +52,11 @@ void Schema::read(void* object, const ConfigNode& map, ConfigErrors& errors) con
   for (size_t i = 0; i < map.entries.size(); ++i) {
     const auto& [key, node] = map.entries[i];
     const size_t first = first_of.emplace(key, i).first->second;
-    const auto named = [&key = map.entries[i].first](const Parameter& p) { return p.name == key; };
-    const auto known = std::find_if(parameters.begin(), parameters.end(), named);
+    const Parameter* known = parameter_named(*this, key);
     if (first != i) {
       errors.push_back({map.key_locations[i], "repeated key \"" + excerpt(key) + "\"" + in +
                                                   "; it is first set at " + map.key_locations[first].text()});
-    } else if (known == parameters.end()) {
+    } else if (!known) {
       errors.push_back({map.key_locations[i],
                         "unknown key \"" + excerpt(key) + "\"" + in + "; " + hint_for(key, *this, map)});
     } else {

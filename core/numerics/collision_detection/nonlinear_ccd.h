@@ -45,15 +45,9 @@ double nonlinear_ccd(const Widest& widest, const Separation& separation, double 
   return t;
 }
 
-/// The minimum-gap policy of kinematic obstacles: the gap [m] that an obstacle step must leave, with
-/// `smallest_gap` the smallest one before it. A tenth of d̂, or most of a smaller gap. An obstacle that
-/// pressed on and took a large part of small gaps would take whatever the cloth gains, and gaps would shrink
-/// to zero.
-inline double min_gap_after_step(double dhat, double smallest_gap) {
-  return 0.8 * std::min(0.125 * dhat, smallest_gap);
-}
-
-/// The largest collision-free step of kinematic obstacles, which leaves the minimum gap.
+/// The largest collision-free step of kinematic obstacles, which leaves a minimum gap: a tenth of d̂ [m], or
+/// most of `smallest_gap` [m], the smallest one before it. An obstacle that pressed on and took a large part
+/// of small gaps would take whatever the cloth gains, and gaps would shrink to zero.
 /// `advance(min_gap, max_iterations)` gives the largest step that leaves min_gap [m].
 ///
 /// A full step is accepted if it leaves nine tenths of the minimum gap. Other steps are shortened to leave
@@ -62,7 +56,7 @@ template <class Advance>
 StepLimit max_obstacle_step(double dhat, double smallest_gap, const Advance& advance) {
   constexpr double full_step_min_gap_factor = 0.9;
   constexpr int full_step_max_iterations = 4096, partial_step_max_iterations = 256;
-  const double min_gap = min_gap_after_step(dhat, smallest_gap);
+  const double min_gap = 0.8 * std::min(0.125 * dhat, smallest_gap);
   const StepLimit full = advance(full_step_min_gap_factor * min_gap, full_step_max_iterations);
   if (full.fraction == 1) return {};
   const StepLimit partial = advance(min_gap, partial_step_max_iterations);

@@ -20,16 +20,9 @@ inline PairPositions positions_of(const ContactPair& pair, const Positions& x, c
 
 inline Closest closest(PairKind kind, const PairPositions& x) {
   const Eigen::Vector3d x0 = x.col(0), x1 = x.col(1), x2 = x.col(2), x3 = x.col(3);
-  switch (kind) {
-    case PairKind::point_triangle:
-      return closest_point_triangle(x0, x1, x2, x3);
-    case PairKind::edge_edge:
-      return closest_edge_edge(x0, x1, x2, x3);
-    case PairKind::edge_end:
-      return closest_edge_end(x0, x2, x3);
-    case PairKind::point_plane:
-      break;
-  }
+  if (kind == PairKind::point_triangle) return closest_point_triangle(x0, x1, x2, x3);
+  if (kind == PairKind::edge_edge) return closest_edge_edge(x0, x1, x2, x3);
+  if (kind == PairKind::edge_end) return closest_edge_end(x0, x2, x3);
   return closest_point_plane(x0, x1, x2, x3);
 }
 

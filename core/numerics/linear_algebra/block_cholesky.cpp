@@ -136,13 +136,9 @@ void BlockCholesky::restore(std::shared_ptr<const BlockPattern> pattern, Analysi
 }
 
 void BlockCholesky::forget() {
-  pattern_.reset();
-  fixed_.clear();
-  ordering_.clear();
-  reused_ordering_.clear();
-  factor_ = make_factor(solver_);
-  flops_ = entries_ = ordering_flops_ = 0;
-  has_factor_ = false;
+  const int analyses = analyses_;
+  *this = BlockCholesky(solver_);
+  analyses_ = analyses;
 }
 
 void BlockCholesky::order_and_analyse(std::vector<int> ordering, double max_flops) {

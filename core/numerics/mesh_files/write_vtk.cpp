@@ -17,16 +17,8 @@ static_assert(std::endian::native == std::endian::little, "numbers are written a
 
 std::string escaped(const std::string& text) {
   std::string result;
-  for (char c : text) {
-    if (c == '&')
-      result += "&amp;";
-    else if (c == '<')
-      result += "&lt;";
-    else if (c == '"')
-      result += "&quot;";
-    else
-      result += c;
-  }
+  for (const char c : text)
+    result += c == '&' ? "&amp;" : c == '<' ? "&lt;" : c == '"' ? "&quot;" : std::string(1, c);
   return result;
 }
 
