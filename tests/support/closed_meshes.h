@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "core/numerics/patterns/primitives.h"
+#include "core/numerics/patterns/generate.h"
 
 // Closed meshes to blow up, triangles counter-clockwise seen from outside.
 

@@ -30,7 +30,7 @@
 #include <string>
 #include <vector>
 
-#include "core/numerics/mesh/alpha_wrap.h"
+#include "core/numerics/mesh/repair.h"
 
 namespace {
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <map>
 #include <optional>
 #include <string>
@@ -56,6 +57,10 @@ struct ConfigNode {
   static ConfigNode of(const std::string& value);
   static ConfigNode of(const char* value) { return of(std::string(value)); }
 };
+
+/// The location of one byte of a scalar's text in the file that the text is from, whether it is plain, quoted
+/// or a block of several lines; the scalar's own location where the file does not show it, as for an option.
+Location location_in_text(const ConfigNode& scalar, std::size_t at);
 
 /// A fault of a config: its location, and a message with a remedy.
 struct ConfigError {

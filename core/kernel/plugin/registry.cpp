@@ -5,9 +5,9 @@
 
 #include "core/kernel/files/message_text.h"
 #include "core/kernel/files/string_utils.h"
+#include "core/kernel/plugin/config_node.h"
 #include "core/kernel/plugin/make.h"
 #include "core/kernel/plugin/refused_parameters.h"
-#include "core/kernel/plugin/text_location.h"
 
 namespace drape {
 

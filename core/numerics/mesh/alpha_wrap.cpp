@@ -1,5 +1,3 @@
-#include "core/numerics/mesh/alpha_wrap.h"
-
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <CGAL/Surface_mesh.h>
 #include <CGAL/alpha_wrap_3.h>
@@ -7,6 +5,8 @@
 #include <array>
 #include <cstddef>
 #include <vector>
+
+#include "core/numerics/mesh/repair.h"
 
 namespace drape {
 

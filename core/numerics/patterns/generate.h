@@ -46,4 +46,11 @@ TriangleMesh disc(double radius, int vertices_about);
 /// shrinks until all fit.
 TriangleMesh random_triangulation(Eigen::Vector2d size, int vertices, unsigned seed);
 
+// Closed surfaces with outward normals.
+
+/// Edge length 1 m, centred at the origin. Bit k of a vertex's index chooses the sign of its coordinate k.
+TriangleMesh unit_box();
+/// An icosphere of radius 1 m: a subdivided icosahedron with its vertices on the sphere.
+TriangleMesh unit_sphere(int subdivisions);
+
 }  // namespace drape

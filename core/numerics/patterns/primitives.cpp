@@ -1,8 +1,7 @@
-#include "core/numerics/patterns/primitives.h"
-
 #include <cmath>
 
 #include "core/numerics/mesh/split_triangles.h"
+#include "core/numerics/patterns/generate.h"
 
 namespace drape {
 namespace {

@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "core/numerics/collision_detection/intersections.h"
-#include "core/numerics/mesh/alpha_wrap.h"
 #include "core/numerics/mesh/check.h"
+#include "core/numerics/mesh/repair.h"
 
 namespace drape::ipc {
 namespace {

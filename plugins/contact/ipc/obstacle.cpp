@@ -10,7 +10,7 @@
 #include "core/numerics/mesh/check.h"
 #include "core/numerics/mesh/repair.h"
 #include "core/numerics/mesh_files/io.h"
-#include "core/numerics/patterns/primitives.h"
+#include "core/numerics/patterns/generate.h"
 
 namespace drape::ipc {
 namespace {

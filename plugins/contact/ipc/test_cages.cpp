@@ -3,7 +3,6 @@
 #include "core/numerics/collision_detection/intersections.h"
 #include "core/numerics/mesh_files/io.h"
 #include "core/numerics/patterns/generate.h"
-#include "core/numerics/patterns/primitives.h"
 #include "plugins/contact/ipc/bound_ipc.h"
 #include "tests/support/command.h"
 #include "tests/support/meshes.h"

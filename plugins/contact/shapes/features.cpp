@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "core/numerics/collision_detection/closest.h"
-#include "core/numerics/patterns/primitives.h"
+#include "core/numerics/patterns/generate.h"
 
 namespace drape::shapes {
 

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "core/kernel/interfaces/energy.h"
-#include "core/numerics/elements/element_pack.h"
+#include "core/numerics/elements/packed_elements.h"
 #include "plugins/energy/midedge_bending/shape_operators.h"
 
 namespace drape {

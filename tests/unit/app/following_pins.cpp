@@ -5,7 +5,7 @@
 
 #include "core/app/scene/boundary_conditions.h"
 #include "core/numerics/mesh_files/io.h"
-#include "core/numerics/patterns/primitives.h"
+#include "core/numerics/patterns/generate.h"
 #include "tests/support/command.h"
 #include "tests/support/refusal.h"
 #include "tests/support/solve.h"

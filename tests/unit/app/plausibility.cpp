@@ -4,7 +4,6 @@
 #include "core/numerics/collision_detection/intersections.h"
 #include "core/numerics/mesh_files/io.h"
 #include "core/numerics/patterns/generate.h"
-#include "core/numerics/patterns/primitives.h"
 #include "tests/support/command.h"
 #include "tests/support/meshes.h"
 #include "tests/support/solve.h"

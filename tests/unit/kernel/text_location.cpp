@@ -1,8 +1,7 @@
-#include "core/kernel/plugin/text_location.h"
-
 #include <catch2/catch.hpp>
 
 #include "core/app/files/yaml_file.h"
+#include "core/kernel/plugin/config_node.h"
 #include "tests/support/command.h"
 
 using namespace drape;

@@ -5,7 +5,6 @@
 #include "core/numerics/mesh/rotation.h"
 #include "core/numerics/mesh_files/io.h"
 #include "core/numerics/patterns/generate.h"
-#include "core/numerics/patterns/primitives.h"
 #include "tests/support/command.h"
 #include "tests/support/refusal.h"
 #include "tests/support/solve.h"
