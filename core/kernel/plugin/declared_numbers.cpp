@@ -60,10 +60,6 @@ void* DeclaredNumbers::owner(void* object) const {
   return object;
 }
 
-double* DeclaredNumbers::at(void* object, std::size_t k) const {
-  return parameter_->number(owner(object), first_ + k);
-}
-
 void DeclaredNumbers::set(void* object, const double* values, ConfigErrors& errors) const {
   const std::size_t before = errors.size();
   for (std::size_t c = 0; c < count_; ++c)

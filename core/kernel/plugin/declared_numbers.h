@@ -21,7 +21,7 @@ class DeclaredNumbers {
 
   std::size_t count() const { return count_; }
   /// Number k in a struct whose lists are as long as in find's; null for an integer.
-  double* at(void* object, std::size_t k) const;
+  double* at(void* object, std::size_t k) const { return parameter_->number(owner(object), first_ + k); }
   /// Writes `count` values. Appends an error, without a location, for each that the parameter refuses, and
   /// then writes none.
   void set(void* object, const double* values, ConfigErrors& errors) const;

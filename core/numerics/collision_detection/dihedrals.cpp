@@ -85,10 +85,6 @@ Dihedrals Dihedrals::of(const Surface& surface, const Positions& vertices) {
   return d;
 }
 
-double Dihedrals::sagitta(double angle, double curvature, double length) {
-  return length / 8 * std::max(2 * angle, curvature * length);
-}
-
 OperatorCoefficients OperatorCoefficients::of(const Surface& surface, const Dihedrals& dihedrals,
                                               double dhat) {
   constexpr double full = 0.25, none = 1;  // largest curvature with coefficient 1, smallest with 0 [1/d̂]

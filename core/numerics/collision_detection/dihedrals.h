@@ -1,6 +1,8 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
+#include <vector>
 
 #include "core/numerics/collision_detection/surface.h"
 
@@ -31,7 +33,9 @@ struct Dihedrals {
   }
 
  private:
-  static double sagitta(double angle, double curvature, double length);
+  static double sagitta(double angle, double curvature, double length) {
+    return length / 8 * std::max(2 * angle, curvature * length);
+  }
 };
 
 /// Coefficients of the improved maximum operator (Li et al. 2023). Triangles have 1; the coefficients of

@@ -25,7 +25,7 @@ struct ContactPair {
   double offset = 0;     ///< a rounded obstacle's radius: gap = distance - offset [m]
   double mollifier = 0;  ///< edge_edge, edge_end: ε of the mollifier, |u × v|² [m⁴]
   double friction = 0;   ///< μ
-  bool at_rim = false;   ///< a cloth edge at a sharp edge of an obstacle (rim_contacts.h)
+  bool at_rim = false;   ///< a cloth edge at a sharp edge of an obstacle (make_rim_contacts)
 };
 
 /// The linear motion of the cloth from x0 to x1 and of the obstacles' vertices, searched for pairs within d̂.
@@ -42,6 +42,21 @@ struct LinearMotion {
 std::unique_ptr<Collisions> make_pair_contacts(const Positions& x, const Positions& obstacle_vertices,
                                                const std::vector<ContactPair>& pairs,
                                                const BarrierParameters& parameters);
+
+/// The barrier between edges of the cloth and sharp edges of obstacles,
+///
+///     κ d̂ Σ_pairs weight · m · (b - b_0)(b - b_1) / b,
+///
+/// with b of the distance of the two edges, b_k of that from end k of the cloth's edge to the obstacle's, and
+/// m the edge-edge mollifier. Obstacle vertices are static. +∞ if a gap is not positive.
+///
+/// The barrier of the cloth's vertices acts on the ends already. Where an end is nearest, and over the whole
+/// of a surface up to its rim, the sum is therefore 0; while an end passes beyond the rim, it grows by what
+/// that of the vertex loses. With b alone a cloth would have to climb its rim's barrier before it can slide
+/// over it.
+std::unique_ptr<Collisions> make_rim_contacts(const Positions& x, const Positions& obstacle_vertices,
+                                              const std::vector<ContactPair>& pairs,
+                                              const BarrierParameters& parameters);
 
 /// A fraction of the motion x0 → x1 that keeps at least `min_gap_fraction` of every pair's gap at x0, by
 /// additive CCD (Li et al. 2021). Safe under rounding. Departure from the paper: each iteration also advances

@@ -1,5 +1,3 @@
-#include "core/numerics/contact/rim_contacts.h"
-
 #include <algorithm>
 #include <array>
 #include <limits>
@@ -7,6 +5,7 @@
 
 #include "core/kernel/threads/parallel.h"
 #include "core/numerics/contact/contact_kernel.h"
+#include "core/numerics/contact/pair_contacts.h"
 #include "core/numerics/contact/projected_matrix.h"
 #include "core/numerics/contact_forces/friction.h"
 

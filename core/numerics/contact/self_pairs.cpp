@@ -1,4 +1,3 @@
-#include "core/numerics/contact/self_pairs.h"
 
 #include <algorithm>
 #include <atomic>

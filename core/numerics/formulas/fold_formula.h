@@ -10,7 +10,6 @@
 #include "core/numerics/elements/jet_functions.h"
 #include "core/numerics/formulas/formula_law.h"
 #include "core/numerics/formulas/formula_properties.h"
-#include "core/numerics/formulas/formula_trace.h"
 
 namespace drape {
 

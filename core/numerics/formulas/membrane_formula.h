@@ -11,7 +11,6 @@
 #include "core/numerics/elements/green_strain.h"
 #include "core/numerics/formulas/formula_law.h"
 #include "core/numerics/formulas/formula_properties.h"
-#include "core/numerics/formulas/formula_trace.h"
 
 namespace drape {
 

@@ -7,7 +7,6 @@
 #include "core/numerics/elements/vertex_energy.h"
 #include "core/numerics/formulas/formula_law.h"
 #include "core/numerics/formulas/formula_properties.h"
-#include "core/numerics/formulas/formula_trace.h"
 
 namespace drape {
 

@@ -76,8 +76,6 @@ std::string text_of(double error) {
 
 }  // namespace
 
-double DerivativeCheck::worst() const { return std::max({gradient.error, hessian.error, asymmetry}); }
-
 std::string DerivativeCheck::text() const {
   const std::string of_gradient =
       "gradient: " + text_of(gradient.error) + " at vertex " + place_of(gradient.row) + "\nhessian: ";

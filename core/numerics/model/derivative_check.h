@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <string>
 
 #include "core/kernel/interfaces/energy.h"
@@ -19,7 +20,7 @@ struct DerivativeCheck {
   double asymmetry = 0;      ///< of a finite Hessian's diagonal blocks, relative to its largest entry [1]
 
   /// The largest of the three.
-  double worst() const;
+  double worst() const { return std::max({gradient.error, hessian.error, asymmetry}); }
   bool agrees() const { return worst() <= 1e-5; }
   /// Two lines that say how large the errors are, and at which vertices.
   std::string text() const;

@@ -208,8 +208,6 @@ bool LevelModel::is_held() const {
   });
 }
 
-double LevelModel::energy(const Positions& x) const { return energy_without_contact(x) + barrier(x); }
-
 std::vector<std::pair<std::string, double>> LevelModel::energy_parts(const Positions& x) const {
   std::vector<std::pair<std::string, double>> parts;
   for (const Term& term : terms_) parts.emplace_back(term.name, term.energy->value(x));

@@ -86,7 +86,7 @@ class LevelModel {
   /// E_l with its limits and without contact [J].
   double energy_without_contact(const Positions& x) const;
   /// All of E_l: energies, limits and the contacts' barrier, without friction [J].
-  double energy(const Positions& x) const;
+  double energy(const Positions& x) const { return energy_without_contact(x) + barrier(x); }
   /// Overwrites g (n×3) with the gradient of energy(x) [N], fixed vertices included, and returns energy(x).
   double energy_gradient(const Positions& x, Positions& g) const;
   /// Norm of the contacts' forces on each vertex at x, without friction, over its area at rest (n) [Pa];

@@ -23,10 +23,6 @@ double Objective::gradient(const Positions& x, Positions& g) {
   return std::isfinite(sum) ? sum + contacts_.add_gradient(x, g) : sum;
 }
 
-double Objective::plain_energy(const Positions& x) {
-  return model_->energy_without_contact(x) + contacts_.barrier(x);
-}
-
 const BlockMatrix& Objective::matrix(const Positions& x, Projection projection) {
   BlockMatrix& smooth = smooth_matrix(x, projection);
   std::vector<const BoundEnergy*> transient = contacts_.energies(x);

@@ -28,7 +28,7 @@ class Objective {
   /// F(x) [J]; overwrites g with ∇F(x) [N]. +∞ outside the domain.
   double gradient(const Positions& x, Positions& g);
   /// The plain energy E_l(x) of the level [J], without friction, even if F is a proxy.
-  double plain_energy(const Positions& x);
+  double plain_energy(const Positions& x) { return model_->energy_without_contact(x) + contacts_.barrier(x); }
   /// The matrix at x [N/m]; valid until the next call. Its pattern object stays the same while its sparsity
   /// does.
   const BlockMatrix& matrix(const Positions& x, Projection projection);

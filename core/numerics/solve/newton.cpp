@@ -69,7 +69,7 @@ class Newton {
       if (!step_.solve()) {
         stuck_ = step_.factor().fault().empty() && (dirichlet_.active() || is_at_rounding_floor());
         if (!stuck_) return finish({Outcome::stalled, step_.failure()});
-        step_.abandon();
+        step_.controller().abandon_step();
       }
       // A resumed run repeats the step, from the last checkpoint.
       if (step_.interrupted() && run_.observer.stop_requested())
@@ -209,14 +209,14 @@ class Newton {
 
   /// Steps repeat each other: damps the lag of friction, which such steps mostly come from, or h.
   void damp_cycle() {
-    if (!f_.contacts().damp_lag()) step_.limit_step_size();
+    if (!f_.contacts().damp_lag()) step_.controller().limit_step_size();
     check_.restart_cycle();
   }
 
   void advance_increment(bool at_equilibrium) {
     note_unreached_targets();
     f_.contacts().end_lag_damping();
-    step_.end_limit();
+    step_.controller().end_limit();
     load_.advance(at_equilibrium);
     check_.restart();
     step_.factor().invalidate();

@@ -24,10 +24,6 @@ bool EquilibriumCheck::is_at_rounding_floor(FactorCache& factor) {
   return floor.reached;
 }
 
-double EquilibriumCheck::drift() const {
-  return (iterate_.free_centroid() - s_.initial_centroid).norm() / iterate_.rest_diagonal();
-}
-
 void EquilibriumCheck::note_step(double inertia) {
   s_.idle.note(iterate_.energy(), iterate_.force_residual(), iterate_.energy_noise(inertia));
   s_.cycle.note(iterate_.energy_without_friction(), iterate_.force_residual());

@@ -46,7 +46,9 @@ class EquilibriumCheck {
   /// Bound on the force residual by round-off at the last such check [1].
   double rounding_residual() const { return rounding_residual_; }
   /// Distance of the free vertices' centroid from where the drift begins, in diagonals of the rest shape.
-  double drift() const;
+  double drift() const {
+    return (iterate_.free_centroid() - s_.initial_centroid).norm() / iterate_.rest_diagonal();
+  }
 
   /// Notes the decrement of an iteration, before the iteration is counted.
   void note_decrement(double decrement) { s_.decrements[iterate_.result().iterations % 3] = decrement; }

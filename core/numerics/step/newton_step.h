@@ -41,11 +41,7 @@ class NewtonStep {
   const std::string& failure() const { return failure_; }
   /// Whether `interrupt` ended the last step.
   bool interrupted() const { return interrupted_; }
-  /// Resets the damping of a step without descent.
-  void abandon() { controller_.abandon_step(); }
-  /// Limits h, since steps repeat each other; until end_limit().
-  void limit_step_size() { controller_.limit_step_size(); }
-  void end_limit() { controller_.end_limit(); }
+  StepController& controller() { return controller_; }
   /// Starts over, for another objective.
   void restart();
 

@@ -6,7 +6,7 @@
 #include "core/numerics/collision_detection/intersections.h"
 #include "core/numerics/contact/contact_kernel.h"
 #include "core/numerics/contact/contact_stack.h"
-#include "core/numerics/contact/rim_contacts.h"
+#include "core/numerics/contact/pair_contacts.h"
 #include "core/numerics/contact/surface_contacts.h"
 #include "plugins/contact/ipc/obstacle_trajectory.h"
 

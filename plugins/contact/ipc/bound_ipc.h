@@ -6,7 +6,7 @@
 
 #include "core/kernel/interfaces/gaps.h"
 #include "core/numerics/collision_detection/broad_phase.h"
-#include "core/numerics/contact/self_pairs.h"
+#include "core/numerics/contact/candidates.h"
 #include "plugins/contact/ipc/ipc.h"
 #include "plugins/contact/ipc/rest_layers.h"
 

@@ -4,8 +4,8 @@
 #include <set>
 
 #include "core/numerics/contact/contact_stack.h"
+#include "core/numerics/contact/pair_contacts.h"
 #include "core/numerics/contact/pair_geometry.h"
-#include "core/numerics/contact/rim_contacts.h"
 #include "core/numerics/contact_forces/contact_stiffness.h"
 #include "core/numerics/contact_forces/friction.h"
 #include "core/numerics/patterns/generate.h"

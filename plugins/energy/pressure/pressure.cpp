@@ -8,7 +8,7 @@
 #include "core/kernel/plugin/parameters.h"
 #include "core/kernel/plugin/plugin.h"
 #include "core/kernel/threads/parallel.h"
-#include "core/numerics/elements/element_pack.h"
+#include "core/numerics/elements/packed_elements.h"
 
 namespace drape {
 namespace {

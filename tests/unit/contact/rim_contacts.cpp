@@ -1,8 +1,7 @@
-#include "core/numerics/contact/rim_contacts.h"
-
 #include <catch2/catch.hpp>
 #include <random>
 
+#include "core/numerics/contact/pair_contacts.h"
 #include "core/numerics/contact_forces/barrier.h"
 #include "tests/support/decompositions.h"
 #include "tests/support/kernel_check.h"

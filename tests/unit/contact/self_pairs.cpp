@@ -1,4 +1,3 @@
-#include "core/numerics/contact/self_pairs.h"
 
 #include <Eigen/Geometry>
 #include <catch2/catch.hpp>
