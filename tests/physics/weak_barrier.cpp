@@ -1,6 +1,6 @@
 #include <catch2/catch.hpp>
 
-#include "core/kernel/interfaces/gaps.h"
+#include "core/kernel/interfaces/contact_model.h"
 #include "core/numerics/solve/newton_report.h"
 #include "tests/support/solve.h"
 

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "core/kernel/files/number_text.h"
-#include "core/kernel/interfaces/gaps.h"
+#include "core/kernel/interfaces/contact_model.h"
 #include "core/numerics/elements/orthotropic_stiffness.h"
 #include "core/numerics/model/required.h"
 

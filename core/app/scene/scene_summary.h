@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "core/app/scene/scene.h"
-#include "core/kernel/interfaces/gaps.h"
+#include "core/kernel/interfaces/contact_model.h"
 
 namespace drape {
 

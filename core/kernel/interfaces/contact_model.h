@@ -1,13 +1,14 @@
 #pragma once
 
+#include <Eigen/Core>
+#include <array>
 #include <cmath>
+#include <limits>
 #include <memory>
 #include <string>
 #include <vector>
 
 #include "core/kernel/interfaces/energy.h"
-#include "core/kernel/interfaces/friction_contact.h"
-#include "core/kernel/interfaces/gaps.h"
 #include "core/kernel/interfaces/level.h"
 #include "core/kernel/interfaces/material.h"
 
@@ -40,6 +41,30 @@ struct NormalForces {
   double mean_pressure() const { return sum > 0 ? weighted / sum : 0; }
 };
 
+/// Identifies a contact of one contact model from one state to the next.
+using ContactKey = std::array<int, 5>;
+
+/// The point of an obstacle that a contact touches: Σ weights_k vertex_k + offset.
+struct ObstaclePoint {
+  int obstacle = -1;                           ///< index in the contact model; -1: the contact has none
+  std::array<int, 3> vertices = {-1, -1, -1};  ///< of the model's obstacles, padded with -1
+  Eigen::Vector3d weights = Eigen::Vector3d::Zero();
+  Eigen::Vector3d offset = Eigen::Vector3d::Zero();  ///< [m]
+};
+
+/// A collision as friction needs it. Σ c_k x_k is the position of one side relative to the other.
+struct FrictionContact {
+  ContactKey key = {};
+  std::array<int, 4> vertices;  ///< of the cloth; -1 for an obstacle's
+  Eigen::Vector4d c = Eigen::Vector4d::Zero();
+  Eigen::Vector3d normal = Eigen::Vector3d::Zero();  ///< unit length
+  double force = 0;                                  ///< μ times the normal force [N]
+  ObstaclePoint touched = {};                        ///< none where the cloth touches itself
+};
+
+/// Friction contacts in groups whose energies are summed apart: one for each part of the collisions.
+using FrictionContacts = std::vector<std::vector<FrictionContact>>;
+
 /// The collisions closer than d̂ at one state, immutable (`Collisions` of ipc-toolkit). As an energy it is
 /// their barrier potential B, and every x passed to it must be the state that it was built for. A stencil's
 /// columns without a cloth vertex are -1. Collisions may refer to the BoundContact, which outlives them, but
@@ -69,6 +94,21 @@ class CollisionCandidates {
   virtual StepLimit max_step() const = 0;
   /// The collisions at x, a state of this motion no farther than max_step.
   virtual std::unique_ptr<Collisions> build_collisions(const Positions& x) const = 0;
+};
+
+/// The smallest gap of a state and the parameters of the barrier that acts on it.
+struct SmallestGap {
+  std::string between;  ///< "cloth triangle 12 and ball: sphere"; empty without a gap below d̂
+  double gap = std::numeric_limits<double>::infinity();  ///< [m]
+  double dhat = 0;                                       ///< d̂, below which the barrier acts [m]
+  double stiffness = 0;                                  ///< κ of the barrier [Pa]
+};
+
+/// How far the cloth is from an obstacle.
+struct ObstacleGap {
+  std::string obstacle;       ///< its name in messages
+  double gap = 0;             ///< the shortest distance [m]
+  Eigen::Vector3d direction;  ///< unit, from the obstacle towards the cloth there
 };
 
 /// A contact model bound to one level and its obstacles. Immutable.

@@ -4,7 +4,7 @@
 #include <memory>
 #include <mutex>
 
-#include "core/kernel/interfaces/gaps.h"
+#include "core/kernel/interfaces/contact_model.h"
 #include "core/numerics/collision_detection/broad_phase.h"
 #include "core/numerics/contact/candidates.h"
 #include "plugins/contact/ipc/ipc.h"

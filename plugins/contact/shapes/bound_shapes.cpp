@@ -3,7 +3,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "core/kernel/interfaces/gaps.h"
+#include "core/kernel/interfaces/contact_model.h"
 #include "core/kernel/threads/parallel.h"
 #include "core/numerics/collision_detection/nonlinear_ccd.h"
 #include "core/numerics/contact/contact_stack.h"
