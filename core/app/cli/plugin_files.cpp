@@ -27,7 +27,7 @@ std::string variable(const char* name) {
 /// The folder for temporary files. Throws std::runtime_error without one.
 fs::path temporary_folder() {
   std::error_code error;
-  const fs::path folder = fs::temp_directory_path(error);
+  fs::path folder = fs::temp_directory_path(error);
   if (!error) return folder;
   std::string where = "/tmp";
   for (const char* name : {"TEMPDIR", "TEMP", "TMP", "TMPDIR"})  // the last that is set counts

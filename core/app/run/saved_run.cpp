@@ -48,6 +48,17 @@ nlohmann::ordered_json results_of(const fs::path& folder) {
   return results;
 }
 
+/// Reads the experiment and the scene of a run. Returns false, with errors appended, if that is not possible.
+bool read_scene(const fs::path& folder, const Registry& registry, LargeMemory large, SavedRun& run,
+                ConfigErrors& errors) {
+  std::optional<Experiment> experiment = read_experiment(folder / "config.yaml", {}, registry, errors);
+  if (!experiment) return false;
+  run.experiment = std::move(*experiment);
+  refuse_too_large(run.experiment, large, errors);
+  if (errors.empty()) run.scene = build_scene(run.experiment, errors, IntersectingStart::allowed);
+  return run.scene != nullptr;
+}
+
 }  // namespace
 
 ConfigNode saved_config(const Experiment& experiment) {
@@ -158,28 +169,22 @@ InterruptedRun interrupted_run(RunFolder run, std::string& warning) {
 std::optional<SavedRun> read_saved_run(const fs::path& folder, const Registry& registry, LargeMemory large,
                                        std::vector<std::string>& warnings, ConfigErrors& errors) {
   RunFolder locked = RunFolder::of_run(folder);
-  const bool complete = is_complete(folder);
-  std::optional<InterruptedRun> interrupted;
-  if (complete) {
+  SavedRun run;
+  if (is_complete(folder)) {
     refuse_damaged_results(folder);
-  } else {
-    std::string warning;
-    interrupted = interrupted_run(std::move(locked), warning);
-    if (!warning.empty()) warnings = split(warning, '\n');
-  }
-  std::optional<Experiment> experiment = read_experiment(folder / "config.yaml", {}, registry, errors);
-  if (experiment && interrupted) refuse_too_large(*experiment, large, errors);
-  if (!errors.empty()) return {};
-  std::unique_ptr<Scene> scene = build_scene(*experiment, errors, IntersectingStart::allowed);
-  if (!scene) return {};
-  if (complete) {
-    const std::vector<std::string> again = write_rest(locked, *scene);
+    if (!read_scene(folder, registry, LargeMemory::allowed, run, errors)) return {};
+    const std::vector<std::string> again = write_rest(locked, *run.scene);
     if (!again.empty()) warnings.push_back("damaged or missing files were written again: " + joined(again));
-  } else if (const Checkpoint& checkpoint = interrupted->checkpoint; checkpoint.start.rows() > 0) {
-    warm_start_scene(*experiment, *scene, checkpoint.first_level, checkpoint.start, errors);
-    if (!errors.empty()) return {};
+    return run;
   }
-  return SavedRun{std::move(*experiment), std::move(scene), std::move(interrupted)};
+  std::string warning;
+  run.interrupted = interrupted_run(std::move(locked), warning);
+  if (!warning.empty()) warnings = split(warning, '\n');
+  if (!read_scene(folder, registry, large, run, errors)) return {};
+  if (const Checkpoint& checkpoint = run.interrupted->checkpoint; checkpoint.start.rows() > 0)
+    warm_start_scene(run.experiment, *run.scene, checkpoint.first_level, checkpoint.start, errors);
+  if (!errors.empty()) return {};
+  return run;
 }
 
 SavedState saved_state(const fs::path& folder, const std::string& method, std::optional<int> level) {
