@@ -160,11 +160,10 @@ RunData read_run(const std::filesystem::path& folder) {
     run.config = parse_yaml(run.configuration, "config.yaml", unread);
   }
   const JsonFile file(folder / "results.json", "run the experiment again");
-  if (const Json& methods = member_of(json, "methods"); methods.is_object())
-    for (const auto& [name, value] : methods.items()) {
-      run.methods.push_back(method_of(name, value, file));
-      run.methods.back().step_size = step_size(run.config, name);
-    }
+  for (const auto& [name, value] : member_of(json, "methods").items()) {
+    run.methods.push_back(method_of(name, value, file));
+    run.methods.back().step_size = step_size(run.config, name);
+  }
   // The progressive method comes first; the others stay in file order.
   std::stable_partition(run.methods.begin(), run.methods.end(),
                         [](const MethodRecord& m) { return m.name == "pcs"; });
