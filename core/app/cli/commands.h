@@ -64,11 +64,11 @@ void compile_plugins(const std::vector<std::string>& files);
 /// Makes SIGINT, SIGTERM and SIGHUP (a lost terminal) request a stop; a second one ends the process at once.
 /// SIGHUP stays ignored under nohup. SIGPIPE is ignored: a run goes on where nobody reads its progress.
 void stop_on_signals();
+/// The signal that requested the stop, 0 before.
+int stop_signal();
+
 /// For a command whose results are files: if what it printed cannot be written, as into a pipe that was
 /// closed, warns, and discards that and what follows.
 void allow_lost_output();
-
-/// The signal that requested the stop, 0 before.
-int stop_signal();
 
 }  // namespace drape
