@@ -7,6 +7,7 @@
 
 #include "core/app/files/json_file.h"
 #include "core/kernel/files/file.h"
+#include "core/kernel/files/string_utils.h"
 #include "core/numerics/mesh_files/io_formats.h"
 
 namespace drape {
@@ -53,6 +54,10 @@ std::vector<std::string> write_rest(const RunFolder& folder, const Scene& scene)
     if (write_where_other(folder.file(name), ply_bytes(level.rest))) written.push_back(name);
   }
   return written;
+}
+
+std::string written_again_text(const std::vector<std::string>& files) {
+  return "damaged or missing files were written again: " + joined(files);
 }
 
 void refuse_short_files(const RunFolder& folder, const Recorder::State& state) {

@@ -30,6 +30,8 @@ void truncate_file(const std::filesystem::path& file, std::uint64_t bytes);
 
 /// Writes the rest shapes that differ from their files, and returns their names.
 std::vector<std::string> write_rest(const RunFolder& folder, const Scene& scene);
+/// The warning that names files of a run that were written again.
+std::string written_again_text(const std::vector<std::string>& files);
 
 /// Throws std::runtime_error if iterations.csv or log.jsonl is shorter than in the state.
 void refuse_short_files(const RunFolder& folder, const Recorder::State& state);

@@ -12,7 +12,6 @@
 #include "core/app/view/live_view.h"
 #include "core/kernel/files/file.h"
 #include "core/kernel/files/message_text.h"
-#include "core/kernel/files/string_utils.h"
 #include "core/kernel/threads/stopwatch.h"
 #include "core/numerics/mesh_files/io.h"
 
@@ -192,8 +191,7 @@ bool resume_experiment(const Experiment& experiment, const Scene& scene, const R
   return with_folder(folder, options, [&] {
     Recorder recorder(folder, experiment, scene, checkpoint.recorder);
     if (!recorder.restored().empty())
-      std::fprintf(stderr, "warning: damaged or missing files were written again: %s\n",
-                   joined(recorder.restored()).c_str());
+      std::fprintf(stderr, "warning: %s\n", written_again_text(recorder.restored()).c_str());
     return run(experiment, scene, options, folder, recorder, checkpoint, true);
   });
 }

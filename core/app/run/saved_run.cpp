@@ -174,7 +174,7 @@ std::optional<SavedRun> read_saved_run(const fs::path& folder, const Registry& r
     refuse_damaged_results(folder);
     if (!read_scene(folder, registry, LargeMemory::allowed, run, errors)) return {};
     const std::vector<std::string> again = write_rest(locked, *run.scene);
-    if (!again.empty()) warnings.push_back("damaged or missing files were written again: " + joined(again));
+    if (!again.empty()) warnings.push_back(written_again_text(again));
     return run;
   }
   std::string warning;
