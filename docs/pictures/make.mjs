@@ -40,18 +40,21 @@ function hasRun(results) {
   return complete && commit === build;
 }
 
-/// Runs every experiment that has no results of this build yet; the curtain's is the README's own.
-function runAll() {
-  fs.mkdirSync(runs, {recursive: true});
-  const readme = fs.readFileSync(path.join(root, 'README.md'), 'utf8');
-  fs.writeFileSync(path.join(runs, 'my_curtain.yaml'), readme.match(/```yaml my_curtain.yaml\n(.*?)```/s)[1]);
-  for (const [name, options] of Object.entries({...galleryRuns, ...otherRuns}))
-    if (!hasRun(path.join(runs, name))) drape('run', ...options, '-o', path.join(runs, name), '--overwrite', '--no-report');
-  for (const results of [sphere, path.join(runs, 'tablecloth')]) drape('report', results);
+/// The folder of a run's results, which is run unless it has some of this build; the curtain's experiment is the README's own.
+function resultsOf(name) {
+  const results = path.join(runs, name);
+  if (hasRun(results)) return results;
+  if (name === 'curtain') {
+    const readme = fs.readFileSync(path.join(root, 'README.md'), 'utf8');
+    fs.writeFileSync(path.join(runs, 'my_curtain.yaml'), readme.match(/```yaml my_curtain.yaml\n(.*?)```/s)[1]);
+  }
+  drape('run', ...{...galleryRuns, ...otherRuns}[name], '-o', results, '--overwrite', '--no-report');
+  return results;
 }
 
 /// A part of a run's report as it looks on the page.
 async function reportPart(results, selector, name, margin = 12) {
+  drape('report', results);
   const {page} = await openPage('file://' + path.join(results, 'report.html'),
     {viewport: {width: 1100, height: 900}, deviceScaleFactor: 1.5});
   if (selector.startsWith('#distance')) await page.locator('#distance-target').selectOption('own');
@@ -65,7 +68,7 @@ async function reportPart(results, selector, name, margin = 12) {
 }
 
 const plot = () => reportPart(sphere, '#distance .plot', 'speed_against_error', 0);
-const viewer = () => reportPart(path.join(runs, 'tablecloth'), '#in-3d', 'viewer');
+const viewer = () => reportPart(resultsOf('tablecloth'), '#in-3d', 'viewer');
 
 /// A state as `drape export` draws it, half as wide, so that edges are smooth.
 async function still(results, name, width, ...options) {
@@ -78,8 +81,8 @@ async function still(results, name, width, ...options) {
 async function gallery() {
   const views = {bunny_shawl: '--view=-0.5,-1,0.6', ribbon: '--view=0.3,-1,0.5'};
   for (const name of Object.keys(galleryRuns))
-    await still(path.join(runs, name), name, name === 'bunny_shawl' ? 640 : 480, ...(views[name] ? [views[name]] : []));
-  await still(path.join(runs, 'bunny_shawl'), 'bunny_shawl_l0', 640, views.bunny_shawl, '--level', '0');
+    await still(resultsOf(name), name, name === 'bunny_shawl' ? 640 : 480, ...(views[name] ? [views[name]] : []));
+  await still(resultsOf('bunny_shawl'), 'bunny_shawl_l0', 640, views.bunny_shawl, '--level', '0');
 }
 
 /// Levels beside each other in pages: the coarsest and the finest of the sphere, all of the locking's, previews at lone pins and their end.
@@ -88,9 +91,9 @@ async function levels() {
     for (const level of ['0', '3']) await still(sphere, `sphere_${method}_l${level}`, 480, '--method', method, '--level', level);
   for (const method of ['pcs', 'pcs_loop', 'unrelaxed', 'cascadic'])
     for (const level of ['0', '1', '2'])
-      await still(path.join(runs, 'locking'), `locking_${method}_l${level}`, 480, '--method', method, '--level', level);
+      await still(resultsOf('locking'), `locking_${method}_l${level}`, 480, '--method', method, '--level', level);
   for (const [method, level] of [['plain', '0'], ['pcs', '0'], ['pcs', '3']])
-    await still(path.join(runs, 'lone_pins'), `lone_pins_${method}_l${level}`, 480, '--method', method, '--level', level, '--view=1,-2,0.15');
+    await still(resultsOf('lone_pins'), `lone_pins_${method}_l${level}`, 480, '--method', method, '--level', level, '--view=1,-2,0.15');
 }
 
 const seconds = s => s < 9.95 ? s.toFixed(1) : s.toFixed(0);
@@ -99,7 +102,7 @@ const thousands = n => (n / 1000).toFixed(n < 9950 ? 1 : 0);
 /// The snapshots of the tablecloth as an animation that rests at the end of every level. Each frame has its clock and its number of
 /// vertices, and the last one those of all levels.
 async function progression() {
-  const results = path.join(runs, 'tablecloth');
+  const results = resultsOf('tablecloth');
   const all = JSON.parse(fs.readFileSync(path.join(results, 'results.json'), 'utf8')).methods.pcs.levels;
   await run(folder, 'export', results, '--to', 'frame.png', '--frames', '--width', '1280', '--view=0.5,-1,0.5');
   const names = fs.readdirSync(folder).filter(name => /^frame_.*png$/.test(name)).sort();
@@ -127,7 +130,7 @@ async function progression() {
     {cwd: folder, stdio: 'pipe'});
 }
 
-runAll();
+fs.mkdirSync(runs, {recursive: true});
 const parts = {plot, viewer, levels, gallery, progression};
 for (const name of process.argv[4] ? process.argv[4].split(',') : Object.keys(parts)) await parts[name]();
 await (await browser()).close();
