@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <map>
+#include <optional>
 
 #include "core/app/experiment/read_experiment.h"
 #include "core/app/files/yaml_file.h"
@@ -18,19 +19,20 @@ std::vector<ConfigNode> contact_sections(const ExperimentParameters& p) {
   return p.contact.kind == NodeKind::list ? p.contact.items : std::vector<ConfigNode>{p.contact};
 }
 
-/// The model's declared list of obstacles, or null.
-const Parameter* obstacles_of(const RegistryEntry& model) {
-  for (const Parameter& p : model.schema.parameters)
-    if (p.from_experiment && p.section) return &p;
-  return nullptr;
+/// The keys by which the model knows its obstacles.
+std::vector<std::string> identifying_keys(const RegistryEntry& model) {
+  std::vector<std::string> keys;
+  for (const Parameter& list : model.schema.parameters)
+    if (list.from_experiment && list.section)
+      for (const Parameter& p : list.section->parameters)
+        if (p.identifies_item) keys.push_back(p.name);
+  return keys;
 }
 
 /// The first key of an obstacle by which the model knows it; "" without one.
 std::string known_key(const RegistryEntry& model, const ConfigNode& obstacle) {
-  const Parameter* list = obstacles_of(model);
-  if (!list) return "";
-  for (const Parameter& p : list->section->parameters)
-    if (p.identifies_item && obstacle.find(p.name)) return p.name;
+  for (const std::string& key : identifying_keys(model))
+    if (obstacle.find(key)) return key;
   return "";
 }
 
@@ -48,30 +50,10 @@ std::string refusal(const Registry& registry, const ConfigNode& obstacle, std::s
     if (const std::string key = known_key(*model, obstacle); !key.empty())
       return label_of(obstacle, index) + ": no contact model of this experiment takes \"" + key + "\"; add " +
              model->name + " to \"contact\"";
-    const Parameter* list = obstacles_of(*model);
-    for (std::size_t k = 0; list && k < list->section->parameters.size(); ++k)
-      if (const Parameter& p = list->section->parameters[k]; p.identifies_item) keys.push_back(p.name);
+    for (const std::string& key : identifying_keys(*model)) keys.push_back(key);
   }
   if (keys.empty()) return label_of(obstacle, index) + ": no contact model that is loaded takes obstacles";
   return label_of(obstacle, index) + " must be a map with " + quoted_choice(keys);
-}
-
-/// A model's section without the keys that stand at the top of the experiment; calls found(i) for each.
-template <class Found>
-ConfigNode own_keys(const RegistryEntry* model, const ConfigNode& section, const Found& found) {
-  ConfigNode own = section;
-  own.entries.clear();
-  own.key_locations.clear();
-  for (std::size_t i = 0; i < section.entries.size(); ++i) {
-    const Parameter* p = model ? parameter_named(model->schema, section.entries[i].first) : nullptr;
-    if (p && p->from_experiment) {
-      found(i);
-      continue;
-    }
-    own.entries.push_back(section.entries[i]);
-    own.key_locations.push_back(section.key_locations[i]);
-  }
-  return own;
 }
 
 bool has_friction(const RegistryEntry& model) {
@@ -149,14 +131,18 @@ ConfigNode read_contact(const Experiment& e, const ConfigNode& written, const Re
       }
     }
   };
-  const ConfigNode section = own_keys(model, written, [&](std::size_t i) {
-    errors.push_back({written.key_locations[i], "\"" + written.entries[i].first + "\" in " + model->name +
-                                                    " belongs at the top of the experiment, once for all "
-                                                    "contact models"});
-  });
-  ConfigNode all;
+  std::vector<std::string> shared_keys;
+  if (model)
+    for (const Parameter& p : model->schema.parameters)
+      if (p.from_experiment) shared_keys.push_back(p.name);
+  ConfigNode section = written, all;
+  for (const std::string& key : shared_keys)
+    while (const std::optional<Location> where = section.remove(key))
+      errors.push_back({*where, "\"" + key + "\" in " + model->name +
+                                    " belongs at the top of the experiment, once for all contact models"});
   config.parameters = read_plugin_parameters(*e.registry, "contact", section, errors, &all, read_shared);
-  return own_keys(model, all, [](std::size_t) {});
+  for (const std::string& key : shared_keys) all.remove(key);
+  return all;
 }
 
 /// The location of a model's refused parameter, in its own section or in one of its obstacles. Refers to all

@@ -201,14 +201,6 @@ bool replaced_by(const ConfigNode& written, const std::string& key) {
   return (key == "warp_bending" || key == "weft_bending" || key == "bias_bending") && has("bending_modulus");
 }
 
-void remove(ConfigNode& map, const std::string& key) {
-  const auto at = std::find_if(map.entries.begin(), map.entries.end(),
-                               [&](const auto& entry) { return entry.first == key; });
-  if (at == map.entries.end()) return;
-  map.key_locations.erase(map.key_locations.begin() + (at - map.entries.begin()));
-  map.entries.erase(at);
-}
-
 /// Adds a fabric's numbers to a material, and the fabric's name as `from_fabric`. Refuses a fabric that gives
 /// none, as beside the numbers that a run has saved.
 void add_fabric(ConfigNode& material, const ConfigNode& fabric, ConfigErrors& errors) {
@@ -251,8 +243,8 @@ void apply_fabric(ConfigNode& experiment, ConfigErrors& errors) {
     const ConfigNode* written = material.find("fabric");
     if (key != "material" || !written || written->kind == ConfigNode::Kind::null) continue;
     const ConfigNode fabric = *written;
-    remove(material, "fabric");
-    remove(material, "from_fabric");
+    material.remove("fabric");
+    material.remove("from_fabric");
     add_fabric(material, fabric, errors);
   }
 }

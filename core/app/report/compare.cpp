@@ -151,8 +151,7 @@ ConfigNode model_part(const ConfigNode& config) {
                           "contact", "obstacles", "friction"})
     if (const ConfigNode* part = config.find(key)) model.add(key, *part);
   for (auto& [key, part] : model.entries)
-    if (key == "material")
-      std::erase_if(part.entries, [](const auto& e) { return e.first == "from_fabric"; });
+    if (key == "material") part.remove("from_fabric");
   return model;
 }
 

@@ -144,6 +144,16 @@ void ConfigNode::add(const std::string& key, ConfigNode value) {
   entries.emplace_back(key, std::move(value));
 }
 
+std::optional<Location> ConfigNode::remove(const std::string& key) {
+  const auto entry = std::ranges::find(entries, key, &std::pair<std::string, ConfigNode>::first);
+  if (entry == entries.end()) return std::nullopt;
+  const auto place = key_locations.begin() + (entry - entries.begin());
+  Location where = *place;
+  key_locations.erase(place);
+  entries.erase(entry);
+  return where;
+}
+
 void ConfigNode::name_keys(const std::string& own) {
   const std::string before = own.empty() ? "" : own + ".";
   where.key = own;

@@ -45,6 +45,8 @@ struct ConfigNode {
   const std::string& plugin_name() const;
 
   void add(const std::string& key, ConfigNode value);  ///< appends an entry, making a null node a map
+  /// Removes a map's first entry of this key. Returns the key's location; nothing without the entry.
+  std::optional<Location> remove(const std::string& key);
 
   void name_keys(const std::string& own = "");  ///< sets each location's key; own: this node's
 
