@@ -53,16 +53,52 @@ bool is_inside(const Positions& points, const TriangleMesh& mesh) {
 
 namespace {
 
-class StartProbe {
+/// Searches for a translation of the start without intersections.
+class TranslationSearch {
  public:
-  explicit StartProbe(const Scene& scene)
+  explicit TranslationSearch(const Scene& scene)
       : scene_(scene),
+        diagonal_(bounding_box_diagonal(scene.starts[0])),
         points_(scene.starts[0](scene.hierarchy.levels[0].topology.components(), Eigen::all)),
-        obstacles_(obstacles_of(scene.model(0)->contacts())) {}
+        obstacles_(obstacles_of(scene.model(0)->contacts())) {
+    start = persistent_ = clearance_at(Vector3d::Zero());
+    found = start.intersections.empty();
+    best_contacts_ = start.contacts;
+  }
 
-  double diagonal() const { return bounding_box_diagonal(scene_.starts[0]); }
+  Clearance start;
+  bool found = false;
+  Vector3d translation = Vector3d::Zero();
 
-  Clearance at(const Vector3d& translation) const {
+  void run() {
+    for (const Vector3d& direction :
+         {Vector3d(0, 0, 1), Vector3d(1, 0, 0), Vector3d(-1, 0, 0), Vector3d(0, 1, 0), Vector3d(0, -1, 0)}) {
+      double before = 0;
+      for (double part = shortest_part; part < growth; part *= growth) {
+        const double distance = std::min(part, 1.0) * diagonal_;
+        if (is_better(distance * direction)) {
+          shorten(direction, before, distance);
+          // Without contacts this is the best; otherwise another direction may be better.
+          if (best_contacts_ == 0) return;
+        }
+        before = distance;
+      }
+    }
+  }
+
+  /// Why run() has found none.
+  std::string failure() const {
+    const std::string attempt = "moving the start by up to " + three_digits(diagonal_) + " m up or to a side";
+    const std::string level = " on level " + std::to_string(start.level);
+    if (const auto& pairs = persistent_.intersections; !pairs.empty())
+      return attempt + " does not part " + to_string(pairs[0]) + level +
+             "; change the start's shape or the obstacle";
+    return attempt + " finds no position without intersections; at the start these intersect: " +
+           to_string(start.intersections[0]) + level;
+  }
+
+ private:
+  Clearance clearance_at(const Vector3d& translation) const {
     Clearance clearance;
     for (std::size_t l = 0; l < scene_.starts.size(); ++l) {
       const Positions x = scene_.starts[l].rowwise() + translation.transpose();
@@ -79,55 +115,20 @@ class StartProbe {
   }
 
   /// Whether a component of the cloth lies inside an obstacle without intersecting it.
-  bool enclosed(const Vector3d& translation) const {
-    const Positions points = points_.rowwise() + translation.transpose();
+  bool enclosed(const Vector3d& trial) const {
+    const Positions points = points_.rowwise() + trial.transpose();
     return std::ranges::any_of(obstacles_, [&](const TriangleMesh& mesh) { return is_inside(points, mesh); });
   }
 
- private:
-  const Scene& scene_;
-  const Positions points_;  // at the start, a vertex of each component
-  std::vector<TriangleMesh> obstacles_;
-};
-
-/// Searches for a translation; remembers pairs that intersect after every one.
-class TranslationSearch {
- public:
-  TranslationSearch(const StartProbe& probe, const Clearance& start) : persistent(start), probe_(probe) {
-    if (start.intersections.empty()) best_contacts_ = start.contacts, found = true;
-  }
-
-  bool found = false;
-  Vector3d translation = Vector3d::Zero();
-  Clearance persistent;  ///< with the pairs that intersected initially and after every trial
-
-  void run() {
-    const double diagonal = probe_.diagonal();
-    for (const Vector3d& direction :
-         {Vector3d(0, 0, 1), Vector3d(1, 0, 0), Vector3d(-1, 0, 0), Vector3d(0, 1, 0), Vector3d(0, -1, 0)}) {
-      double before = 0;
-      for (double part = shortest_part; part < growth; part *= growth) {
-        const double distance = std::min(part, 1.0) * diagonal;
-        if (is_better(distance * direction)) {
-          shorten(direction, before, distance);
-          // Without contacts this is the best; otherwise another direction may be better.
-          if (best_contacts_ == 0) return;
-        }
-        before = distance;
-      }
-    }
-  }
-
- private:
   /// Accepts a translation without intersections if it has fewer contacts than any before.
   bool is_better(const Vector3d& trial, bool or_as_good = false) {
-    const Clearance clearance = probe_.at(trial);
+    const Clearance clearance = clearance_at(trial);
     if (!clearance.intersections.empty()) {
       intersect_persistent(clearance);
       return false;
     }
     if (found && clearance.contacts >= best_contacts_ + (or_as_good ? 1 : 0)) return false;
-    if (probe_.enclosed(trial)) return false;
+    if (enclosed(trial)) return false;
     found = true;
     best_contacts_ = clearance.contacts;
     translation = trial;
@@ -142,56 +143,43 @@ class TranslationSearch {
   }
 
   void intersect_persistent(const Clearance& other) {
-    if (other.level != persistent.level) return;  // the triangles of another level are not comparable
-    std::erase_if(persistent.intersections, [&](const Intersection& pair) {
+    if (other.level != persistent_.level) return;  // the triangles of another level are not comparable
+    std::erase_if(persistent_.intersections, [&](const Intersection& pair) {
       return std::ranges::none_of(other.intersections, [&](const Intersection& now) {
         return now.first == pair.first && now.second == pair.second;
       });
     });
   }
 
-  const StartProbe& probe_;
+  const Scene& scene_;
+  const double diagonal_;   // of the coarsest level's start [m]
+  const Positions points_;  // at the start, a vertex of each component
+  const std::vector<TriangleMesh> obstacles_;
+  Clearance persistent_;  // with the pairs that intersected initially and after every trial
   int best_contacts_ = 0;
 };
-
-std::string hopeless_text(const Clearance& start, const TranslationSearch& search, double diagonal) {
-  const std::string attempt = "moving the start by up to " + three_digits(diagonal) + " m up or to a side";
-  const std::string level = " on level " + std::to_string(start.level);
-  if (const auto& pairs = search.persistent.intersections; !pairs.empty())
-    return attempt + " does not part " + to_string(pairs[0]) + level +
-           "; change the start's shape or the obstacle";
-  return attempt + " finds no position without intersections; at the start these intersect: " +
-         to_string(start.intersections[0]) + level;
-}
-
-void move(Experiment& experiment, const Vector3d& translation) {
-  StartParameters& start = experiment.parameters.start;
-  start.translate += translation;
-  set_path(experiment.resolved, "start", schema_of<StartParameters>().write(&start));
-}
 
 }  // namespace
 
 Vector3d repair_start(Experiment& experiment, const Scene& scene, ConfigErrors& errors) {
-  const StartProbe probe(scene);
-  const Clearance start = probe.at(Vector3d::Zero());
+  TranslationSearch search(scene);
+  const Clearance& start = search.start;
+  const Location& where = experiment.location_of("start");
   const bool intersects = !start.intersections.empty();
   if (!intersects && !(start.smallest_gap < tiny_gap)) return Vector3d::Zero();
   if (!experiment.parameters.pins.empty()) {
     if (intersects)
-      errors.push_back({experiment.location_of("start"),
-                        "the start of level " + std::to_string(start.level) +
-                            " touches: " + to_string(start.intersections[0]) +
-                            "; a cloth with pins is not moved: move the pins or the obstacle"});
+      errors.push_back({where, "the start of level " + std::to_string(start.level) +
+                                   " touches: " + to_string(start.intersections[0]) +
+                                   "; a cloth with pins is not moved: move the pins or the obstacle"});
     return Vector3d::Zero();
   }
-  TranslationSearch search(probe, start);
   search.run();
-  if (!search.found) {
-    errors.push_back({experiment.location_of("start"), hopeless_text(start, search, probe.diagonal())});
-    return Vector3d::Zero();
-  }
-  if (!search.translation.isZero(0)) move(experiment, search.translation);
+  if (!search.found) errors.push_back({where, search.failure()});
+  if (!search.found || search.translation.isZero(0)) return Vector3d::Zero();
+  StartParameters& moved = experiment.parameters.start;
+  moved.translate += search.translation;
+  set_path(experiment.resolved, "start", schema_of<StartParameters>().write(&moved));
   return search.translation;
 }
 
