@@ -125,7 +125,7 @@ class BoundShapes final : public BoundContact {
     smallest.stiffness = scene_->barrier.stiffness;
     for (const SolidPair& pair : find_triangles(*scene_, x, x)) {
       const Solid& solid = scene_->solids[pair.solid];
-      const double gap = separate(solid, scene_->corners(pair.element, x)).gap;
+      const double gap = separate(solid, scene_->corners(pair.element, x)).separation;
       if (gap >= std::min(smallest.gap, smallest.dhat)) continue;
       smallest.gap = gap;
       smallest.between = triangle_name(pair.element) + " and " + solid.name;
@@ -136,12 +136,12 @@ class BoundShapes final : public BoundContact {
   std::vector<ObstacleGap> obstacle_gaps(const Positions& x) const override {
     std::vector<ObstacleGap> gaps;
     for (const Solid& solid : scene_->solids) {
-      Separation nearest{{}, std::numeric_limits<double>::infinity()};
+      SeparatingPlane nearest{Eigen::Vector3d::UnitZ(), std::numeric_limits<double>::infinity()};
       for (int t = 0; t < scene_->cloth.triangles.rows(); ++t) {
-        const Separation separation = separate(solid, scene_->corners(t, x));
-        if (separation.gap < nearest.gap) nearest = separation;
+        const SeparatingPlane plane = separate(solid, scene_->corners(t, x));
+        if (plane.separation < nearest.separation) nearest = plane;
       }
-      gaps.push_back({solid.name, nearest.gap, nearest.normal});
+      gaps.push_back({solid.name, nearest.separation, nearest.normal});
     }
     return gaps;
   }

@@ -42,13 +42,15 @@ double separation_along(const Solid& solid, const Corners& triangle, const Vecto
          solid.support(normal);
 }
 
-Separation separate(const Solid& solid, const Corners& triangle) {
-  const auto with = [&](const Vector3d& n) { return Separation{n, separation_along(solid, triangle, n)}; };
+SeparatingPlane separate(const Solid& solid, const Corners& triangle) {
+  const auto with = [&](const Vector3d& n) {
+    return SeparatingPlane{n, separation_along(solid, triangle, n)};
+  };
   if (solid.kind == SolidKind::half_space) return with(solid.axes.col(2));
-  Separation best = with(solid.nearest(triangle[0]).normal);
+  SeparatingPlane best = with(solid.nearest(triangle[0]).normal);
   const auto take = [&](const Vector3d& n) {
-    const Separation s = with(n);
-    if (s.gap > best.gap) best = s;
+    const SeparatingPlane s = with(n);
+    if (s.separation > best.separation) best = s;
   };
   Vector3d across[3];  // normals of each edge and the solid's edge or rim next to it
   for (int k = 0; k < 3; ++k) {
@@ -65,7 +67,7 @@ Separation separate(const Solid& solid, const Corners& triangle) {
   }
   // Close to an edge or a rim, the direction to its nearest point is mostly round-off; the normal of both
   // edges is accurate.
-  if (best.gap < unreliable_gap)
+  if (best.separation < unreliable_gap)
     for (const Vector3d& n : across)
       if (const double size = n.norm(); size > 0) {
         take(n / size);
@@ -76,7 +78,7 @@ Separation separate(const Solid& solid, const Corners& triangle) {
 
 bool intersects(const Solid& solid, const Corners& triangle) {
   return !(separation_along(solid, triangle, solid.nearest(centroid(triangle)).normal) > 0) &&
-         !(separate(solid, triangle).gap > 0);
+         !(separate(solid, triangle).separation > 0);
 }
 
 double advance(const Solid& solid, const Corners& from, const Corners& to, double min_gap_fraction) {
@@ -87,11 +89,12 @@ double advance(const Solid& solid, const Corners& from, const Corners& to, doubl
       separation_along(solid, to, at_centroid.normal) >= sufficient)
     return 1;
 
-  Separation s = separate(solid, from);
-  if (!(s.gap > 0)) return 0;
-  const double min_gap = std::max(min_gap_fraction * s.gap, std::min(tiny_gap_fraction * s.gap, tiny_gap));
+  SeparatingPlane s = separate(solid, from);
+  if (!(s.separation > 0)) return 0;
+  const double min_gap =
+      std::max(min_gap_fraction * s.separation, std::min(tiny_gap_fraction * s.separation, tiny_gap));
   double t = 0;
-  for (int iteration = 0; iteration < 128 && s.gap > 1.01 * min_gap; ++iteration) {
+  for (int iteration = 0; iteration < 128 && s.separation > 1.01 * min_gap; ++iteration) {
     t = separation_end(solid, from, to, t, s.normal, min_gap);
     if (t >= 1) return 1;
     s = separate(solid, corners_between(from, to, t));

@@ -2,6 +2,7 @@
 
 #include <array>
 
+#include "core/numerics/collision_detection/nonlinear_ccd.h"
 #include "plugins/contact/shapes/solid.h"
 
 namespace drape::shapes {
@@ -9,14 +10,8 @@ namespace drape::shapes {
 /// Corners of a triangle [m].
 using Corners = std::array<Eigen::Vector3d, 3>;
 
-/// A separating plane of a solid and a triangle, and the separation along its normal: at most their distance
-/// for any normal, negative if it does not separate them.
-struct Separation {
-  Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();  ///< from the solid to the triangle
-  double gap = 0;                                     ///< [m]
-};
-
-/// The separation along one unit normal [m].
+/// The separation along one unit normal [m], which points from the solid to the triangle: at most their
+/// distance, negative if it does not separate them.
 double separation_along(const Solid& solid, const Corners& triangle, const Eigen::Vector3d& normal);
 
 /// The separating plane with the largest separation. It equals the distance, or is not positive if solid and
@@ -26,7 +21,7 @@ double separation_along(const Solid& solid, const Corners& triangle, const Eigen
 /// triangle's, or on an edge, and the normal is that of the edge's nearest point. Four normals therefore
 /// suffice for any convex solid. An inaccurate normal only reduces the separation, which keeps the result
 /// safe.
-Separation separate(const Solid& solid, const Corners& triangle);
+SeparatingPlane separate(const Solid& solid, const Corners& triangle);
 
 /// Whether solid and triangle touch or intersect. Tests one cheap normal before `separate`.
 bool intersects(const Solid& solid, const Corners& triangle);

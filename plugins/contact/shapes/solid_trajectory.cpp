@@ -66,17 +66,14 @@ Solid SolidTrajectory::at(double t) const {
 
 double SolidTrajectory::gap(const Corners& triangle, double dhat) const {
   const double lower_bound = ball_distance(from_, triangle);
-  return lower_bound > dhat ? lower_bound : separate(from_, triangle).gap;
+  return lower_bound > dhat ? lower_bound : separate(from_, triangle).separation;
 }
 
 double SolidTrajectory::advance(const Corners& triangle, double min_gap, int max_iterations) const {
   if (!(min_gap > 0)) return 0;
   if (from_.kind == SolidKind::half_space) return advance_plane(triangle, min_gap);
   if (ball_distance(from_, triangle) > displacement_bound_ + 2 * min_gap) return 1;
-  const auto widest = [&](double t) {
-    const Separation s = separate(at(t), triangle);
-    return SeparatingPlane{s.normal, s.gap};
-  };
+  const auto widest = [&](double t) { return separate(at(t), triangle); };
   const auto separation = [&](const Vector3d& n, double t) { return separation_along(at(t), triangle, n); };
   return nonlinear_ccd(widest, separation, min_gap, acceleration_bound_, max_iterations);
 }

@@ -155,7 +155,7 @@ double cloth_distance(const Solid& s, const Level& level, const Positions& x) {
   double d = std::numeric_limits<double>::infinity();
   for (int i = 0; i < level.triangle_count(); ++i) {
     const auto t = level.rest.triangles.row(i);
-    d = std::min(d, separate(s, {x.row(t[0]), x.row(t[1]), x.row(t[2])}).gap);
+    d = std::min(d, separate(s, {x.row(t[0]), x.row(t[1]), x.row(t[2])}).separation);
   }
   return d;
 }
@@ -246,7 +246,7 @@ TEST_CASE("shapes: the distance of a triangle is the largest separation") {
     int small = 0;
     for (int i = 0; i < 300; ++i) {
       const Corners c = some_triangle(s, i % 2 ? 0.02 : 0.3);
-      const double d = searched_distance(s, c), gap = separate(s, c).gap;
+      const double d = searched_distance(s, c), gap = separate(s, c).separation;
       INFO(to_string(kind) << " " << i << " distance " << d << " separation " << gap);
       CHECK(gap <= d * (1 + 1e-9) + 1e-14);
       CHECK(gap >= d * (1 - 1e-4) - 1e-10);
@@ -488,8 +488,8 @@ TEST_CASE("shapes: gaps near round-off are resolved at edges and rims") {
         const Vector3d near = on + gap * up;
         const Corners c{s.to_world(near - 0.3 * edge), s.to_world(near + 0.7 * edge),
                         s.to_world(near + 0.02 * up)};
-        INFO(to_string(kind) << " " << i << ", gap " << gap << ", separation " << separate(s, c).gap);
-        CHECK(separate(s, c).gap == Approx(gap).epsilon(1e-3).margin(2e-16));
+        INFO(to_string(kind) << " " << i << ", gap " << gap << ", separation " << separate(s, c).separation);
+        CHECK(separate(s, c).separation == Approx(gap).epsilon(1e-3).margin(2e-16));
         CHECK(!intersects(s, c));
       }
     }
