@@ -48,7 +48,7 @@ void projected_hessian(const Kernel& kernel, const Eigen::Matrix<T, 3, 1>* d, co
 /// All are static, or const members of a kernel that holds numbers which all elements share. NaN values count
 /// as +∞.
 template <class Kernel, int W = native_pack_width>
-class ElementEnergy final : public BoundEnergy {
+class ElementEnergy : public BoundEnergy {
  public:
   /// Vertices m×k of the elements, their rest data, and an order of the elements.
   ElementEnergy(const Stencils& elements, const std::vector<typename Kernel::Rest>& rest, ElementOrder order,

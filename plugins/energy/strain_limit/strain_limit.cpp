@@ -28,20 +28,13 @@ struct Limited {
   std::shared_ptr<const Positions> rest_positions;
 };
 
-class BoundStrainLimit final : public BoundEnergy, public StretchLimited {
+class BoundStrainLimit final : public ElementEnergy<Kernel>, public StretchLimited {
  public:
   /// `order` orders limited.corners.
   BoundStrainLimit(double limit, Limited limited, ElementOrder order)
-      : limit_(limit),
-        limited_(std::move(limited)),
-        energy_(limited_.corners, limited_.rest, std::move(order)) {}
-
-  double value(const Positions& x) const override { return energy_.value(x); }
-  double add_gradient(const Positions& x, Positions& g) const override { return energy_.add_gradient(x, g); }
-  Stencils stencils() const override { return energy_.stencils(); }
-  void add_hessian(const Positions& x, Projection projection, BlockSink& sink) const override {
-    energy_.add_hessian(x, projection, sink);
-  }
+      : ElementEnergy(limited.corners, limited.rest, std::move(order)),
+        limit_(limit),
+        limited_(std::move(limited)) {}
 
   const StretchLimited* stretch_limit() const override { return this; }
   StepLimit max_step(const Positions& x0, const Positions& x1) const override {
@@ -144,7 +137,6 @@ class BoundStrainLimit final : public BoundEnergy, public StretchLimited {
 
   double limit_;
   Limited limited_;
-  ElementEnergy<Kernel> energy_;
 };
 
 }  // namespace
