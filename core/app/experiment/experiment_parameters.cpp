@@ -130,32 +130,29 @@ namespace {
 /// The parameters that pins and handles share.
 template <class Condition>
 void declare_selection(Declaration<Condition>& d) {
-  const auto member = [](auto VertexSelection::*m) {
-    return static_cast<std::decay_t<decltype(std::declval<Condition>().*m)> Condition::*>(m);
-  };
-  d.add("region", member(&VertexSelection::region),
+  d.add("region", &VertexSelection::region,
         "selects vertices by their rest positions: the coarsest level's vertex nearest to `point`, all "
         "within `radius` of `point`, all in a box, the boundary, or coarsest-level indices")
       .choices({"nearest", "ball", "box", "border", "vertices"});
-  coordinate(d.add("point", member(&VertexSelection::point),
-                   "point of `nearest`, centre of `ball`, in the rest shape"))
+  coordinate(
+      d.add("point", &VertexSelection::point, "point of `nearest`, centre of `ball`, in the rest shape"))
       .only_with("region", {"nearest", "ball"});
-  d.add("radius", member(&VertexSelection::radius), "radius of `ball`")
+  d.add("radius", &VertexSelection::radius, "radius of `ball`")
       .unit("m")
       .between(0, bounds::largest_coordinate)
       .only_with("region", {"ball"});
-  coordinate(d.add("lower", member(&VertexSelection::lower), "lower corner of `box`, in the rest shape"))
+  coordinate(d.add("lower", &VertexSelection::lower, "lower corner of `box`, in the rest shape"))
       .only_with("region", {"box"});
-  coordinate(d.add("upper", member(&VertexSelection::upper), "upper corner of `box`, in the rest shape"))
+  coordinate(d.add("upper", &VertexSelection::upper, "upper corner of `box`, in the rest shape"))
       .only_with("region", {"box"});
-  natural(d.add("vertices", member(&VertexSelection::vertices), "indices on the coarsest level, from 0"))
+  natural(d.add("vertices", &VertexSelection::vertices, "indices on the coarsest level, from 0"))
       .only_with("region", {"vertices"});
-  coordinate(d.add("translate", member(&VertexSelection::translate),
+  coordinate(d.add("translate", &VertexSelection::translate,
                    "translation from the rest position to the target, applied after `rotate`; without both, "
                    "the target is the position at the start, without its noise"));
-  angle(d.add("rotate", member(&VertexSelection::rotate),
+  angle(d.add("rotate", &VertexSelection::rotate,
               "rotation of the rest position about x, then y, then z through `centre`"));
-  coordinate(d.add("centre", member(&VertexSelection::centre), "centre of `rotate`, in the rest shape"));
+  coordinate(d.add("centre", &VertexSelection::centre, "centre of `rotate`, in the rest shape"));
 }
 
 }  // namespace
