@@ -49,10 +49,6 @@ void check_start_coordinates(const Experiment& e, ConfigErrors& errors) {
                         "or set it in cloth if the cloth is of a file"});
 }
 
-bool contains(const std::vector<std::string>& names, const std::string& name) {
-  return std::ranges::find(names, name) != names.end();
-}
-
 /// A number of the material that others hide or that has no meaning without them is refused, unless it is the
 /// default, which a saved config has. So is bending that is not positive definite.
 void check_material(const Experiment& e, ConfigErrors& errors) {
@@ -171,16 +167,16 @@ std::vector<std::string> Experiment::obstacle_names() const {
 }
 
 std::string default_method(const std::vector<std::string>& methods) {
-  if (contains(methods, "pcs")) return "pcs";
+  if (is_one_of("pcs", methods)) return "pcs";
   return methods.size() == 1 ? methods[0] : "";
 }
 
 std::vector<std::string> chosen_methods(const Experiment& experiment, const std::vector<std::string>& asked) {
   std::vector<std::string> known = experiment.method_names();
   for (const std::string& name : asked)
-    if (name != all_methods && !contains(known, name))
+    if (name != all_methods && !is_one_of(name, known))
       throw std::runtime_error("--method " + name + ": the experiment's methods are " + joined(known));
-  if (contains(asked, all_methods)) return known;
+  if (is_one_of(all_methods, asked)) return known;
   if (asked.empty()) {
     const std::string name = default_method(known);
     if (name.empty())
@@ -189,7 +185,7 @@ std::vector<std::string> chosen_methods(const Experiment& experiment, const std:
     return {name};
   }
   std::vector<std::string> chosen = known;
-  std::erase_if(chosen, [&](const std::string& name) { return !contains(asked, name); });
+  std::erase_if(chosen, [&](const std::string& name) { return !is_one_of(name, asked); });
   return chosen;
 }
 

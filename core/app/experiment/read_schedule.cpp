@@ -18,9 +18,7 @@ using NodeKind = ConfigNode::Kind;
 const std::vector<std::string> changeable = {"material", "energies", "contact", "obstacles",
                                              "friction", "pins",     "handles"};
 
-bool is_changeable(const std::string& path) {
-  return std::ranges::find(changeable, path.substr(0, path.find('.'))) != changeable.end();
-}
+bool is_changeable(const std::string& path) { return is_one_of(path.substr(0, path.find('.')), changeable); }
 
 /// A number or a list of them; empty for anything else.
 std::vector<double> numbers_of(const ConfigNode& node) {

@@ -115,7 +115,7 @@ std::map<std::string, double> parsed(const Names& bounds, const Names& known) {
     if (equals == std::string::npos || equals == 0)
       throw std::runtime_error("--bound " + text + ": write it as KEY=RATIO, as in --bound seconds=1.1");
     const std::string key = text.substr(0, equals);
-    if (std::find(known.begin(), known.end(), key) == known.end())
+    if (!is_one_of(key, known))
       throw std::runtime_error("--bound " + excerpt(text) + ": there is no quantity \"" + excerpt(key) +
                                "\"; " + did_you_mean(key, known, "there are " + joined(known)));
     const std::optional<double> ratio = parse_number(text.substr(equals + 1));
@@ -125,10 +125,6 @@ std::map<std::string, double> parsed(const Names& bounds, const Names& known) {
     ratios[key] = *ratio;
   }
   return ratios;
-}
-
-void add_new(Names& names, const std::string& name) {
-  if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
 }
 
 /// At most so many names, then how many more there are.

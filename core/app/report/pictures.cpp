@@ -1,13 +1,13 @@
 #include "core/app/report/pictures.h"
 
 #include <Eigen/Geometry>
-#include <algorithm>
 #include <cctype>
 #include <cmath>
 #include <list>
 
 #include "core/kernel/files/file.h"
 #include "core/kernel/files/message_text.h"
+#include "core/kernel/files/string_utils.h"
 
 namespace drape {
 
@@ -36,8 +36,7 @@ std::optional<TriangleMesh> mesh_or_note(const RunData& run, const std::string& 
   try {
     return run.mesh(name);
   } catch (const std::exception& error) {
-    const std::string note = reason_of(error);
-    if (std::find(notes.begin(), notes.end(), note) == notes.end()) notes.push_back(note);
+    add_new(notes, reason_of(error));
     return {};
   }
 }

@@ -2,7 +2,6 @@
 
 #include <unistd.h>
 
-#include <algorithm>
 #include <cerrno>
 #include <map>
 #include <nlohmann/json.hpp>
@@ -17,6 +16,7 @@
 #include "core/app/view/page.h"
 #include "core/app/view/view_document.h"
 #include "core/kernel/files/file.h"
+#include "core/kernel/files/string_utils.h"
 #include "core/numerics/mesh_files/base64.h"
 
 namespace drape {
@@ -148,8 +148,7 @@ std::vector<std::string> write_report(const fs::path& folder, const std::functio
   const RunData& run = *collection.runs.front().data;
   PictureSet set = draw_pictures(run, cancelled, picture_width);
   const ReportView view = report_view(run);
-  for (const std::string& note : view.notes)
-    if (std::find(set.notes.begin(), set.notes.end(), note) == set.notes.end()) set.notes.push_back(note);
+  for (const std::string& note : view.notes) add_new(set.notes, note);
   Json step_sizes = Json::object();
   for (const MethodRecord& method : run.methods)
     if (method.step_size) step_sizes[method.name] = *method.step_size;

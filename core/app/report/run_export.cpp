@@ -2,7 +2,6 @@
 
 #include <unistd.h>
 
-#include <algorithm>
 #include <stdexcept>
 #include <utility>
 
@@ -202,8 +201,7 @@ std::vector<fs::path> export_pictures(const RunData& run, const MethodRecord& me
 /// Throws std::runtime_error for a file of an unknown format, and for options that its format does not have.
 void check_options(const fs::path& file, const ExportOptions& options) {
   const std::string extension = lower_extension(file);
-  const std::vector<std::string> known = {".glb", ".obj", ".ply", ".vtp", ".png"};
-  if (std::find(known.begin(), known.end(), extension) == known.end())
+  if (!is_one_of(extension, {".glb", ".obj", ".ply", ".vtp", ".png"}))
     throw std::runtime_error("--to " + file.string() +
                              ": the formats are .glb (glTF 2.0), .obj, .ply, .vtp and .png (pictures)");
   if (options.frames && extension != ".glb" && extension != ".png")

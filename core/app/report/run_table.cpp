@@ -109,8 +109,7 @@ std::vector<std::string> varied_keys(const RunCollection& collection) {
   std::vector<std::string> keys;
   for (const RunRecord& run : collection.runs)
     for (const auto& [key, value] : run.settings.items())
-      if (key != "methods" && key != "start.seed" && std::find(keys.begin(), keys.end(), key) == keys.end())
-        keys.push_back(key);
+      if (key != "methods" && key != "start.seed") add_new(keys, key);
   return keys;
 }
 
@@ -193,7 +192,7 @@ RunTable table_of(const RunCollection& collection) {
     for (const MetricColumn& column : columns_of(metrics, scope, Shown::summary))
       table.columns.push_back(column.name);
   const auto add_to_files = [&](const std::string& name) {
-    if (std::find(table.columns.begin(), table.columns.end(), name) != table.columns.end()) return;
+    if (is_one_of(name, table.columns)) return;
     table.columns.push_back(name);
     table.in_files.push_back(name);
   };

@@ -49,7 +49,7 @@ std::vector<std::string> chosen_columns(const RunTable& table, const std::vector
                                         TableFormat format) {
   const std::vector<std::string>& known = table.columns;
   for (const std::string& column : chosen) {
-    if (std::find(known.begin(), known.end(), column) != known.end()) continue;
+    if (is_one_of(column, known)) continue;
     if (!table.has_results) continue;  // a metric might declare it
     throw std::runtime_error("there is no column \"" + excerpt(column) + "\"; " +
                              did_you_mean(column, known, "the columns are " + joined(known)));
@@ -57,8 +57,7 @@ std::vector<std::string> chosen_columns(const RunTable& table, const std::vector
   if (!chosen.empty()) return chosen;
   std::vector<std::string> columns;
   const auto left_out = [&](const std::string& column) {
-    return format == TableFormat::markdown &&
-           std::find(table.in_files.begin(), table.in_files.end(), column) != table.in_files.end();
+    return format == TableFormat::markdown && is_one_of(column, table.in_files);
   };
   for (const std::string& column : known)
     if (!left_out(column) && std::any_of(table.rows.begin(), table.rows.end(), [&](const TableRow& row) {
@@ -103,9 +102,7 @@ std::string table_text(const RunTable& table, std::vector<std::string> columns, 
 std::string methods_text(const RunTable& table) {
   std::vector<std::string> columns = {"method",  "status",    "preview_seconds", "preview_rms",
                                       "seconds", "error_rms", "energy_gap"};
-  std::erase_if(columns, [&](const std::string& column) {
-    return std::find(table.columns.begin(), table.columns.end(), column) == table.columns.end();
-  });
+  std::erase_if(columns, [&](const std::string& column) { return !is_one_of(column, table.columns); });
   std::vector<std::vector<std::string>> lines = {columns};
   for (const TableRow& row : table.rows) {
     std::vector<std::string>& cells = lines.emplace_back();

@@ -62,6 +62,14 @@ std::string only_word_with(const std::string& part, const std::vector<std::strin
   return only;
 }
 
+bool is_one_of(const std::string& word, const std::vector<std::string>& words) {
+  return std::ranges::find(words, word) != words.end();
+}
+
+void add_new(std::vector<std::string>& words, const std::string& word) {
+  if (!is_one_of(word, words)) words.push_back(word);
+}
+
 std::vector<std::string> split(const std::string& text, char separator) {
   std::vector<std::string> parts;
   std::size_t begin = 0;

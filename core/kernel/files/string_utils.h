@@ -16,6 +16,12 @@ std::string did_you_mean(const std::string& typed, const std::vector<std::string
 /// case and treats - as _.
 std::string only_word_with(const std::string& part, const std::vector<std::string>& words);
 
+/// Whether the word is one of them.
+bool is_one_of(const std::string& word, const std::vector<std::string>& words);
+
+/// Appends the word, unless it is one of them.
+void add_new(std::vector<std::string>& words, const std::string& word);
+
 /// The parts between separators; empty ones too, so one more than there are separators.
 std::vector<std::string> split(const std::string& text, char separator);
 

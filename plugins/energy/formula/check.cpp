@@ -221,12 +221,11 @@ void append_part(Law& law, const std::string& name, const std::string& text, boo
 bool Law::uses(const std::string& symbol) const {
   std::vector<std::string> used;  // names that the energy needs
   for (auto part = parts.rbegin(); part != parts.rend(); ++part) {
-    const bool needed =
-        part == parts.rbegin() || std::find(used.begin(), used.end(), part->name) != used.end();
+    const bool needed = part == parts.rbegin() || is_one_of(part->name, used);
     for (const Node& node : part->tree)
       if (needed && node.kind == Node::Kind::name) used.push_back(node.word);
   }
-  return std::find(used.begin(), used.end(), symbol) != used.end();
+  return is_one_of(symbol, used);
 }
 
 std::string with_caret(const std::string& text, const Fault& fault) {
