@@ -102,23 +102,18 @@ class Parser {
   }
 
  private:
-  /// Counts how deep the parser is, for as long as it lives.
-  class Depth {
-   public:
-    Depth(int& depth, std::size_t at) : depth_(depth) {
-      if (++depth_ > deepest_formula) {
-        --depth_;
-        throw Fault(at, "the formula is nested more than " + std::to_string(deepest_formula) +
-                            " deep; name its parts in \"where\"");
-      }
-    }
-    ~Depth() { --depth_; }
-    Depth(const Depth&) = delete;
-    Depth& operator=(const Depth&) = delete;
-
-   private:
-    int& depth_;
-  };
+  /// The node that `parse` makes from behind the current token, one level deeper; `at` is the place of what
+  /// goes deeper.
+  template <class Parse>
+  int nested(std::size_t at, const Parse& parse) {
+    if (++depth_ > deepest_formula)
+      throw Fault(at, "the formula is nested more than " + std::to_string(deepest_formula) +
+                          " deep; name its parts in \"where\"");
+    advance();
+    const int node = parse();
+    --depth_;
+    return node;
+  }
 
   static std::string shown(const Token& token) {
     return token.kind == Token::Kind::end ? "the end" : "\"" + excerpt(token.text) + "\"";
@@ -145,10 +140,7 @@ class Parser {
   int negated() {
     if (!is("not")) return compared();
     const Token word = token_;
-    const Depth depth(depth_, word.at);
-    advance();
-    const int argument = negated();
-    return call(word, {argument});
+    return call(word, {nested(word.at, [this] { return negated(); })});
   }
   int compared() {
     const int left = sum();
@@ -184,18 +176,14 @@ class Parser {
   int sign() {
     if (!is("-") && !is("+")) return power();
     const Token word = token_;
-    const Depth depth(depth_, word.at);
-    advance();
-    const int argument = sign();
+    const int argument = nested(word.at, [this] { return sign(); });
     return word.text == "-" ? call(word, {argument}) : argument;
   }
   int power() {
     const int base = primary();
     if (!is("^")) return base;
     const Token word = token_;
-    const Depth depth(depth_, word.at);
-    advance();
-    const int exponent = sign();
+    const int exponent = nested(word.at, [this] { return sign(); });
     return call(word, {base, exponent});
   }
 
@@ -206,9 +194,7 @@ class Parser {
       return add({Node::Kind::number, token.at, token.number, "", {}});
     }
     if (is("(")) {
-      const Depth depth(depth_, token.at);
-      advance();
-      const int inner = any_of();
+      const int inner = nested(token.at, [this] { return any_of(); });
       close(token);
       return inner;
     }
@@ -216,19 +202,16 @@ class Parser {
       throw Fault(token.at, "expected a number, a name or \"(\", not " + shown(token));
     advance();
     if (!is("(")) return add({Node::Kind::name, token.at, 0, token.text, {}});
-    const Depth depth(depth_, token.at);
     const Token open = token_;
-    advance();
-    std::vector<int> arguments;
-    if (!is(")")) {
-      arguments.push_back(any_of());
-      while (is(",")) {
-        advance();
+    return nested(token.at, [&] {
+      std::vector<int> arguments;
+      for (bool more = !is(")"); more; more = is(",")) {
+        if (!arguments.empty()) advance();
         arguments.push_back(any_of());
       }
-    }
-    close(open);
-    return call(token, std::move(arguments));
+      close(open);
+      return call(token, std::move(arguments));
+    });
   }
 
   void close(const Token& open) {
