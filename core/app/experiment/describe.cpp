@@ -1,7 +1,5 @@
 #include "core/app/experiment/describe.h"
 
-#include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "core/kernel/files/string_utils.h"
@@ -79,20 +77,16 @@ std::string cell(const std::string& text) {
 }  // namespace
 
 std::string describe(const Schema& schema) {
-  std::vector<std::array<std::string, 5>> table = {{"name", "type", "default", "unit", "range"}};
+  std::vector<std::vector<std::string>> table = {{"name", "type", "default", "unit", "range"}};
   const std::vector<Row> rows = rows_of(schema);
   for (const Row& row : rows)
     table.push_back({std::string(2 * size_t(row.depth), ' ') + row.parameter->name, row.type, row.initial,
                      unit_of(*row.parameter), row.range});
   if (rows.empty()) return "  no parameters\n";
-  std::array<size_t, 5> widths{};
-  for (const auto& line : table)
-    for (size_t k = 0; k < 5; ++k) widths[k] = std::max(widths[k], display_width(line[k]));
+  const std::vector<std::string> lines = split(text_table(table), '\n');
   std::string text;
   for (size_t i = 0; i < table.size(); ++i) {
-    std::string line = "  ";
-    for (size_t k = 0; k < 5; ++k) line += padded(table[i][k], widths[k] + 2);
-    text += line.substr(0, line.find_last_not_of(' ') + 1) + "\n";
+    text += "  " + lines[i] + "\n";
     if (i == 0) continue;
     const Parameter& p = *rows[i - 1].parameter;
     std::string note = description_of(p);

@@ -38,4 +38,7 @@ std::size_t display_width(const std::string& text);
 /// The text with as many spaces behind it as make it `width` columns wide; a wider one stays as it is.
 std::string padded(const std::string& text, std::size_t width);
 
+/// Rows of equally many cells for a terminal, each a line, in columns two spaces apart; at least one row.
+std::string text_table(const std::vector<std::vector<std::string>>& rows);
+
 }  // namespace drape
