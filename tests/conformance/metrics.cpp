@@ -65,8 +65,7 @@ void check_form(const Metric& metric, const MetricResult& result, int vertices) 
   for (const MetricColumn& c : declared.columns) {
     INFO(c.name);
     CHECK_FALSE(c.unit.empty());
-    CHECK_FALSE(c.label.empty());
-    CHECK(labels.insert(c.label).second);
+    CHECK(labels.insert(c.label.empty() ? c.name : c.label).second);
     CHECK((c.error.empty() || metric.scope() == MetricScope::pair));
     CHECK(std::any_of(result.values.begin(), result.values.end(),
                       [&](const MetricValue& v) { return &column_of(declared.columns, v.name) == &c; }));

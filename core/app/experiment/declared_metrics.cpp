@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <utility>
@@ -74,6 +75,10 @@ std::vector<DeclaredMetric> declared_metrics(
   std::vector<DeclaredMetric> declared;
   for (const auto& [name, metric] : metrics)
     add_new(declared, {DeclaredMetric{name, metric->scope(), metric->declaration()}});
+  for (DeclaredMetric& metric : declared)
+    for (MetricColumn& column : metric.declaration.columns)
+      if (column.label.empty())
+        std::ranges::replace_copy(column.name, std::back_inserter(column.label), '_', ' ');
   return declared;
 }
 

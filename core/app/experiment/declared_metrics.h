@@ -23,7 +23,8 @@ struct DeclaredMetric {
 /// The metrics of an experiment that names none: all that need no parameter.
 std::vector<std::string> default_metrics(const Registry& registry);
 
-/// The declarations of an experiment's metrics. Of two metrics with one name, the first counts.
+/// The declarations of an experiment's metrics, each column with a label. Of two metrics with one name, the
+/// first counts.
 std::vector<DeclaredMetric> declared_metrics(
     const std::vector<std::pair<std::string, std::shared_ptr<Metric>>>& metrics);
 

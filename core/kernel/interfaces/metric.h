@@ -30,9 +30,10 @@ enum class ErrorUse {
 
 /// Declares a value of a metric.
 struct MetricColumn {
-  std::string name = {};   ///< of the value
-  std::string label = {};  ///< for a reader: "d_H^fit" has a subscript and a superscript
-  std::string unit = {};   ///< "1" if dimensionless
+  std::string name = {};  ///< of the value
+  /// For a reader: "d_H^fit" has a subscript and a superscript. By default the name, with spaces.
+  std::string label = {};
+  std::string unit = {};  ///< "1" if dimensionless
   Better better = Better::lower;
   Shown shown = Shown::tables;
   std::string error = {};  ///< name of the value as an error, in errors.csv; empty if it is none

@@ -1,8 +1,5 @@
 #pragma once
 
-#include <algorithm>
-#include <string>
-
 #include "core/kernel/interfaces/metric.h"
 #include "core/kernel/plugin/plugin.h"
 
@@ -49,12 +46,8 @@ namespace drape::formulas {
 template <class Own = NoParameters>
 struct MetricFormula : Metric, Own {
  protected:
-  /// Tables call the value by its name, with spaces.
-  static MetricDeclaration of(std::string name, const char* summary, const char* unit, Better better) {
-    std::string label = name;
-    std::replace(label.begin(), label.end(), '_', ' ');
-    return {.columns = {{.name = std::move(name), .label = std::move(label), .unit = unit, .better = better}},
-            .text = summary};
+  static MetricDeclaration of(const char* name, const char* summary, const char* unit, Better better) {
+    return {.columns = {{.name = name, .unit = unit, .better = better}}, .text = summary};
   }
 };
 

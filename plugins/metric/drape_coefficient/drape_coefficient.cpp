@@ -94,19 +94,11 @@ class DrapeCoefficient : public Metric {
 
   MetricDeclaration declaration() const override {
     return {.columns = {{.name = "drape_coefficient",
-                         .label = "drape coefficient",
                          .unit = "%",
                          .better = Better::neither,
                          .shown = Shown::summary},
-                        {.name = "folds",
-                         .label = "folds",
-                         .unit = "1",
-                         .better = Better::neither,
-                         .shown = Shown::summary},
-                        {.name = "fold_amplitude",
-                         .label = "fold amplitude",
-                         .unit = "m",
-                         .better = Better::neither}},
+                        {.name = "folds", .unit = "1", .better = Better::neither, .shown = Shown::summary},
+                        {.name = "fold_amplitude", .unit = "m", .better = Better::neither}},
             .text =
                 "The drape coefficient is the part of the overhanging ring that the cloth's shadow covers "
                 "(BS 5058, ISO 9073-9): 100 % does not drape. Fold amplitude is half the mean difference of "

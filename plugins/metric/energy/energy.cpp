@@ -10,7 +10,7 @@ class EnergyByPart : public Metric {
   /// Reports show the energies that the run itself records.
   MetricDeclaration declaration() const override {
     return {.columns = {
-                {.name = "energy", .label = "energy", .unit = "J", .shown = Shown::stored},
+                {.name = "energy", .unit = "J", .shown = Shown::stored},
                 {.name = "energy_parts", .label = "energy of a part", .unit = "J", .shown = Shown::stored}}};
   }
 

@@ -127,7 +127,6 @@ class Silhouette : public Metric {
   MetricScope scope() const override { return MetricScope::pair; }
   MetricDeclaration declaration() const override {
     return {.columns = {{.name = "silhouette_overlap",
-                         .label = "silhouette overlap",
                          .unit = "1",
                          .better = Better::higher,
                          .error = "silhouette_mismatch"},

@@ -13,21 +13,10 @@ namespace drape {
 class Stretch : public Metric {
  public:
   MetricDeclaration declaration() const override {
-    return {.columns = {{.name = "largest_stretch",
-                         .label = "largest stretch",
-                         .unit = "1",
-                         .better = Better::neither,
-                         .shown = Shown::summary},
-                        {.name = "smallest_stretch",
-                         .label = "smallest stretch",
-                         .unit = "1",
-                         .better = Better::neither,
-                         .shown = Shown::stored},
-                        {.name = "mean_stretch",
-                         .label = "mean stretch",
-                         .unit = "1",
-                         .better = Better::neither,
-                         .shown = Shown::stored}},
+    return {.columns =
+                {{.name = "largest_stretch", .unit = "1", .better = Better::neither, .shown = Shown::summary},
+                 {.name = "smallest_stretch", .unit = "1", .better = Better::neither, .shown = Shown::stored},
+                 {.name = "mean_stretch", .unit = "1", .better = Better::neither, .shown = Shown::stored}},
             .text = "Stretch is the largest principal stretch (1 is unstretched)."};
   }
 
