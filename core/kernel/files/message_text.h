@@ -1,6 +1,7 @@
 #pragma once
 
 #include <exception>
+#include <stdexcept>
 #include <string>
 #include <string_view>
 
@@ -28,5 +29,23 @@ std::string reason_of(const std::exception& error);
 
 /// The same of the exception that is being handled, whatever it is: plugins throw anything.
 std::string message_in_flight();
+
+/// What `call` returns. The message of a runtime_error that it throws, and of what is no std::exception,
+/// begins with `name`, such as "energy hinge", or with the name's last words; other exceptions, as of memory
+/// or of Python, pass.
+template <class Call>
+auto with_name(const std::string& name, const Call& call) {
+  try {
+    return call();
+  } catch (const std::runtime_error& error) {
+    const std::string message = error.what();
+    const bool named = message.starts_with(name.substr(name.find(' ') + 1));
+    throw std::runtime_error(named ? message : name + ": " + message);
+  } catch (const std::exception&) {
+    throw;
+  } catch (...) {
+    throw std::runtime_error(name + ": " + message_in_flight());
+  }
+}
 
 }  // namespace drape

@@ -24,18 +24,6 @@ Level checked_level(int index, TriangleMesh rest) {
   return Level::of(index, std::move(rest));
 }
 
-ProlongationMatrix weights_of(const Refiner& refiner, const Level& coarse) {
-  try {
-    return refiner.weights(coarse);
-  } catch (const std::runtime_error& error) {
-    throw std::runtime_error(std::string("the refiner: ") + error.what());
-  } catch (const std::exception&) {
-    throw;
-  } catch (...) {
-    throw std::runtime_error("the refiner: " + message_in_flight());
-  }
-}
-
 /// Refuses what only a faulty refiner returns, before anything is computed from it.
 void require_prolongation(const Level& coarse, const ProlongationMatrix& weights) {
   const auto fail = [&](const std::string& what) {
@@ -63,7 +51,7 @@ Hierarchy Hierarchy::of(TriangleMesh coarsest, const Refiner& refiner, int level
   hierarchy.levels.push_back(checked_level(0, std::move(coarsest)));
   for (int l = 1; l < level_count; ++l) {
     const Level& coarse = hierarchy.levels.back();
-    ProlongationMatrix weights = weights_of(refiner, coarse);
+    ProlongationMatrix weights = with_name("the refiner", [&] { return refiner.weights(coarse); });
     require_prolongation(coarse, weights);
     weights.makeCompressed();
     Level fine = checked_level(l, refined_rest(coarse, weights));

@@ -23,24 +23,6 @@ double norm_where(const Positions& g, const std::vector<char>& flags, char flag)
   return std::sqrt(sum);
 }
 
-/// What `bind` returns. The message of a runtime_error, and of what is no std::exception, begins with the
-/// name of what was bound; other exceptions, as of memory or of Python, pass.
-template <class Bind>
-auto bound(const std::string& name, const Bind& bind)
-    -> std::shared_ptr<const typename decltype(bind())::element_type> {
-  try {
-    return bind();
-  } catch (const std::runtime_error& error) {
-    const std::string message = error.what();
-    const bool named = message.starts_with(name.substr(name.find(' ') + 1));
-    throw std::runtime_error(named ? message : name + ": " + message);
-  } catch (const std::exception&) {
-    throw;
-  } catch (...) {
-    throw std::runtime_error(name + ": " + message_in_flight());
-  }
-}
-
 }  // namespace
 
 double free_norm(const Positions& g, const std::vector<char>& fixed) { return norm_where(g, fixed, 0); }
@@ -103,7 +85,8 @@ void LevelModel::bind_energies(const std::vector<NamedEnergy>& energies, const L
       terms_.push_back(*old);
     } else {
       Term term{unused_name(e.name), e.energy->role(), e.energy, nullptr, nullptr};
-      term.energy = bound("energy " + term.name, [&] { return bound_energy(*e.energy, *level_, material_); });
+      term.energy =
+          with_name("energy " + term.name, [&] { return bound_energy(*e.energy, *level_, material_); });
       Stencils own = term.energy->stencils();
       if (old && !same_entries(own, old->energy->stencils()))
         throw std::runtime_error("energy " + term.name +
@@ -134,7 +117,7 @@ void LevelModel::bind_contacts(const std::vector<std::shared_ptr<ContactModel>>&
     if (before && before->contact_kinds_[k] == contacts[k] && before->material_ == material_)
       bound_.push_back(before->bound_[k]);
     else
-      bound_.push_back(bound(name, [&] {
+      bound_.push_back(with_name(name, [&] {
         return old ? contacts[k]->rebind(*level_, material_, *old) : contacts[k]->bind(*level_, material_);
       }));
     if (before && (old == nullptr) != (bound_.back() == nullptr))
