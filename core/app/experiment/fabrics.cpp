@@ -155,9 +155,8 @@ ConfigNode material_of(const Table& table, std::size_t row, const std::string& n
 }
 
 std::string remedy(const std::string& name, const std::vector<std::string>& names) {
-  const std::string only = only_word_with(name, names);
   return did_you_mean(name, names,
-                      only.empty() ? "it has " + joined(names) : "did you mean \"" + only + "\"?");
+                      did_you_mean(only_word_with(name, names), names, "it has " + joined(names)));
 }
 
 ConfigNode row_of_file(const ConfigNode& fabric, std::optional<double> thickness, ConfigErrors& errors) {
