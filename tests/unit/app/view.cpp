@@ -7,7 +7,6 @@
 #include "core/app/report/report.h"
 #include "core/app/view/surface_fields.h"
 #include "core/app/view/view_document.h"
-#include "core/numerics/elements/vertex_fields.h"
 #include "core/numerics/patterns/generate.h"
 
 using namespace drape;
@@ -82,26 +81,6 @@ TEST_CASE("scalars include their range's ends, and 255 is missing") {
   CHECK(at<std::uint8_t>(bytes, 9) == 127);
   CHECK(at<std::uint8_t>(bytes, 10) == 255);
   CHECK(at<std::uint8_t>(bytes, 11) == 254);
-}
-
-TEST_CASE("mean curvature of a cylinder bent downwards is half its inverse radius") {
-  const Level level = sheet(40);
-  Positions x = level.rest.vertices;
-  const double radius = 0.5;
-  for (Eigen::Index i = 0; i < x.rows(); ++i) {
-    const double angle = (level.rest.vertices(i, 0) - 0.5) / radius;
-    x.row(i) << radius * std::sin(angle), level.rest.vertices(i, 1), radius * std::cos(angle);
-  }
-  const Eigen::VectorXd h = mean_curvature(x, level.rest.triangles, level.hinges);
-  for (Eigen::Index i = 0; i < x.rows(); ++i)
-    if (!level.topology.on_border[i]) REQUIRE(h[i] == Approx(0.5 / radius).epsilon(0.02));
-  CHECK(mean_curvature(level.rest.vertices, level.rest.triangles, level.hinges).isZero(0));
-}
-
-TEST_CASE("largest stretch is the larger of two") {
-  const Level level = sheet(4);
-  const Positions x = level.rest.vertices * Eigen::DiagonalMatrix<double, 3>(1.2, 0.9, 1);
-  CHECK(largest_stretch(level, x).isApproxToConstant(1.2, 1e-12));
 }
 
 TEST_CASE("the gap is the distance to an obstacle, or to the cloth folded over itself") {
