@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "core/app/picture/render.h"
+#include "core/numerics/patterns/generate.h"
 
 using namespace drape;
 
@@ -11,12 +12,7 @@ namespace {
 constexpr int size = 200;  // of the pictures [pixels]
 const Eigen::Vector3f red(1, 0, 0);
 
-TriangleMesh unit_square() {
-  TriangleMesh mesh{Positions(4, 3), Triangles(2, 3)};
-  mesh.vertices << 0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0;
-  mesh.triangles << 0, 1, 2, 0, 2, 3;
-  return mesh;
-}
+TriangleMesh unit_square() { return grid({1, 1}, 2, 2, Diagonals::one_way); }
 
 Image grey() { return {size, size, std::vector<unsigned char>(3 * size * size, 128)}; }
 

@@ -24,38 +24,9 @@ TriangleMesh dome(int n) {
   return mesh;
 }
 
-/// A sphere of radius 1 about the origin, poles on the z axis.
-TriangleMesh round_ball(int meridians, int rings) {
-  TriangleMesh mesh{Positions(meridians * rings + 2, 3), Triangles(2 * meridians * rings, 3)};
-  const int north = meridians * rings, south = north + 1;
-  mesh.vertices.row(north) << 0, 0, 1;
-  mesh.vertices.row(south) << 0, 0, -1;
-  int t = 0;
-  for (int j = 0; j < meridians; ++j) {
-    const int next = (j + 1) % meridians, last = (rings - 1) * meridians;
-    const double longitude = 2 * M_PI * j / meridians;
-    for (int k = 0; k < rings; ++k) {
-      const double polar = M_PI * (k + 1) / (rings + 1);
-      const int here = k * meridians, below = here + meridians;
-      mesh.vertices.row(here + j) << std::sin(polar) * std::cos(longitude),
-          std::sin(polar) * std::sin(longitude), std::cos(polar);
-      if (k + 1 == rings) continue;
-      mesh.triangles.row(t++) << here + j, below + j, below + next;
-      mesh.triangles.row(t++) << here + j, below + next, here + next;
-    }
-    mesh.triangles.row(t++) << north, j, next;
-    mesh.triangles.row(t++) << south, last + next, last + j;
-  }
-  return mesh;
-}
-
-/// A cube about the origin, eight vertices.
-TriangleMesh cube(double half_edge) {
-  TriangleMesh mesh{Positions(8, 3), Triangles(12, 3)};
-  for (int i = 0; i < 8; ++i) mesh.vertices.row(i) << (i & 1) - 0.5, (i >> 1 & 1) - 0.5, (i >> 2) - 0.5;
-  mesh.vertices *= 2 * half_edge;
-  mesh.triangles << 0, 2, 3, 0, 3, 1, 4, 5, 7, 4, 7, 6, 0, 1, 5, 0, 5, 4, 2, 6, 7, 2, 7, 3, 0, 4, 6, 0, 6, 2,
-      1, 3, 7, 1, 7, 5;
+TriangleMesh cube(double edge) {
+  TriangleMesh mesh = unit_box();
+  mesh.vertices *= edge;
   return mesh;
 }
 
@@ -118,7 +89,7 @@ TEST_CASE("a drawing shows both sides of the cloth") {
 }
 
 TEST_CASE("a picture has the same bits on any number of threads, and from one drawing to the next") {
-  const TriangleMesh cloth = dome(12), block = cube(0.2);
+  const TriangleMesh cloth = dome(12), block = cube(0.4);
   Drawing drawing{cloth};
   drawing.obstacles = {&block};
   drawing.floor = -0.2;
@@ -160,7 +131,7 @@ TEST_CASE("a floor shows shadows and nothing else") {
 }
 
 TEST_CASE("a coarse ball's flat triangles do not shadow the light that reaches its smooth normals") {
-  const TriangleMesh mesh = round_ball(16, 9);
+  const TriangleMesh mesh = unit_sphere(2);
   const RayScene scene(Drawing{mesh});
   const Eigen::Vector3f light = Eigen::Vector3f(-0.6f, 0.1f, 0.5f).normalized();
   int lit = 0, blocked = 0, dark = 0;
@@ -181,7 +152,7 @@ TEST_CASE("a coarse ball's flat triangles do not shadow the light that reaches i
 
 TEST_CASE("an obstacle shows through cloth under X-rays alone") {
   const TriangleMesh cloth = dome(12);
-  TriangleMesh block = cube(0.1);
+  TriangleMesh block = cube(0.2);
   block.vertices.rowwise() += Eigen::RowVector3d(0.5, 0.5, 0.1);
   const Camera camera = Camera::around({&cloth.vertices}, {0.2, -0.3, 1}, 1);
   const auto taken = [&](bool xray, const Eigen::Vector3d& point) {
@@ -228,7 +199,7 @@ TEST_CASE("a picture is left when asked, and triangles that are not finite are l
 
 TEST_CASE("normals are smooth over a dome and stop at a cube's edges") {
   Positions normals;
-  const TriangleMesh split = split_at_creases(cube(1), normals);
+  const TriangleMesh split = split_at_creases(unit_box(), normals);
   REQUIRE(split.vertices.rows() == 36);
   for (int i = 0; i < 36; ++i) CHECK(normals.row(i).cwiseAbs().maxCoeff() == Approx(1));
   const TriangleMesh round = dome(12);
