@@ -3,6 +3,7 @@
 #include "core/app/experiment/experiment.h"
 #include "core/app/scene/load_schedule.h"
 #include "core/numerics/patterns/generate.h"
+#include "tests/support/command.h"
 #include "tests/support/solve.h"
 
 using namespace drape;
@@ -60,10 +61,8 @@ TEST_CASE("The obstacles' names are in the order of their meshes, model by model
 }
 
 TEST_CASE("Two obstacles of one name are refused, whichever model takes them") {
-  std::string twice = mixed;
-  twice.replace(twice.find("{name: shell"), 12, "{name: ball");
   CHECK_THROWS_WITH(
-      experiment_from(twice),
+      experiment_from(replaced(mixed, "name: shell", "name: ball")),
       Contains(":11:12: \"ball\" is also the name of obstacles[1]; give each obstacle its own"));
 }
 
@@ -78,9 +77,8 @@ TEST_CASE("Without the key, or with an empty list, there is no contact") {
 }
 
 TEST_CASE("A contact model is listed once") {
-  std::string twice = mixed;
-  twice.replace(twice.find("[shapes,"), 8, "[shapes, shapes,");
-  CHECK_THROWS_WITH(experiment_from(twice), Contains("\"contact\" lists shapes twice; list each model once"));
+  CHECK_THROWS_WITH(experiment_from(replaced(mixed, "[shapes,", "[shapes, shapes,")),
+                    Contains("\"contact\" lists shapes twice; list each model once"));
 }
 
 TEST_CASE("Friction is refused where no contact model has it, also where only a schedule's key sets it") {
