@@ -11,6 +11,7 @@
 #include "tests/support/solve.h"
 
 using namespace drape;
+using Catch::Contains;
 
 namespace {
 
@@ -25,8 +26,17 @@ Material material_of(const std::string& material) {
 
 void check_refused(const std::string& material, const std::string& message) {
   INFO(material);
-  CHECK_THROWS_WITH(material_of(material), Catch::Contains(message));
+  CHECK_THROWS_WITH(material_of(material), Contains(message));
 }
+
+/// A file with fabrics of one's own.
+struct OwnFabrics : Scratch {
+  explicit OwnFabrics(const std::string& table) { write("own.csv", table); }
+  std::string file() const { return (*this / "own.csv").string(); }
+  std::string row(const std::string& name) const {
+    return "fabric: {file: " + file() + ", row: " + name + "}";
+  }
+};
 
 }  // namespace
 
@@ -68,10 +78,9 @@ TEST_CASE("fabrics: a fabric beside the numbers that a run has saved gives nothi
   const ConfigNode saved = experiment_from(experiment("fabric: cotton")).resolved;
   const std::string numbers =
       replaced(saved.find("material")->one_line(), "fabric: null", "fabric: wool-lycra");
-  CHECK_THROWS_WITH(
-      material_of(numbers.substr(1, numbers.size() - 2)),
-      Catch::Contains("\"fabric\" gives nothing: every number of wool-lycra is written beside it; "
-                      "leave out those that it is to give"));
+  CHECK_THROWS_WITH(material_of(numbers.substr(1, numbers.size() - 2)),
+                    Contains("\"fabric\" gives nothing: every number of wool-lycra is written beside it; "
+                             "leave out those that it is to give"));
   const Experiment e = experiment_from(experiment("from_fabric: cotton, fabric: wool-lycra"));
   CHECK(e.resolved.find("material")->find("from_fabric")->scalar == "wool-lycra");
 }
@@ -87,27 +96,25 @@ TEST_CASE("fabrics: a name is no difference between two models") {
 }
 
 TEST_CASE("fabrics: a thickness beside a fabric keeps the sheet's mass and stiffness") {
-  const Scratch folder;
-  const std::string file = (folder / "own.csv").string();
-  folder.write("own.csv",
-               "name, density, thickness, membrane_modulus, bending_modulus, warp_stiffness, warp_bending\n"
-               "measured, 500, 4e-4, 1e6, 2e6, , \nper volume, 500, , 1e6, 2e6, , \n"
-               "per width, 500, 4e-4, , , 300, 2e-6\n");
-  const auto row = [&](const std::string& name) { return "fabric: {file: " + file + ", row: " + name + "}"; };
-  for (const std::string& fabric : {std::string("fabric: white-dots-on-blk"), std::string("fabric: cotton"),
-                                    std::string("fabric: cotton-broad"), row("measured"), row("per width")}) {
+  const OwnFabrics own(
+      "name, density, thickness, membrane_modulus, bending_modulus, warp_stiffness, warp_bending\n"
+      "measured, 500, 4e-4, 1e6, 2e6, , \nper volume, 500, , 1e6, 2e6, , \n"
+      "per width, 500, 4e-4, , , 300, 2e-6\n");
+  for (const std::string& fabric :
+       {std::string("fabric: white-dots-on-blk"), std::string("fabric: cotton"),
+        std::string("fabric: cotton-broad"), own.row("measured"), own.row("per width")}) {
     INFO(fabric);
-    const Material own = material_of(fabric), thick = material_of(fabric + ", thickness: 6e-4");
+    const Material usual = material_of(fabric), thick = material_of(fabric + ", thickness: 6e-4");
     CHECK(thick.thickness == 6e-4);
-    CHECK(thick.area_density() == Approx(own.area_density()));
+    CHECK(thick.area_density() == Approx(usual.area_density()));
     for (const double angle : {0.0, 0.8, 1.5}) {
-      CHECK(membrane_stiffness(thick).strip(angle) == Approx(membrane_stiffness(own).strip(angle)));
-      CHECK(plate_stiffness(thick).strip(angle) == Approx(plate_stiffness(own).strip(angle)));
+      CHECK(membrane_stiffness(thick).strip(angle) == Approx(membrane_stiffness(usual).strip(angle)));
+      CHECK(plate_stiffness(thick).strip(angle) == Approx(plate_stiffness(usual).strip(angle)));
     }
-    CHECK(bending_stiffness(thick) == Approx(bending_stiffness(own)));
+    CHECK(bending_stiffness(thick) == Approx(bending_stiffness(usual)));
   }
   // Numbers of the bulk whose thickness the source does not give, and what is written beside the fabric.
-  const Material bulk = material_of(row("per volume") + ", thickness: 6e-4");
+  const Material bulk = material_of(own.row("per volume") + ", thickness: 6e-4");
   CHECK(bulk.density == 500);
   CHECK(bulk.membrane_modulus == 1e6);
   CHECK(bulk.bending_modulus == 2e6);
@@ -120,12 +127,10 @@ TEST_CASE("fabrics: a thickness beside a fabric keeps the sheet's mass and stiff
 }
 
 TEST_CASE("fabrics: a modulus beside a fabric replaces its stiffness by direction, and the other way round") {
-  const Scratch folder;
-  const std::string file = (folder / "own.csv").string();
-  folder.write("own.csv",
-               "name, mass, warp_stiffness, weft_stiffness, shear_stiffness, warp_bending, weft_bending\n"
-               "own, 0.3, 300, 200, 40, 2e-5, 9e-6\n");
-  const std::string row = "fabric: {file: " + file + ", row: own}";
+  const OwnFabrics own(
+      "name, mass, warp_stiffness, weft_stiffness, shear_stiffness, warp_bending, weft_bending\n"
+      "twill, 0.3, 300, 200, 40, 2e-5, 9e-6\n");
+  const std::string row = own.row("twill");
   const Material bent = material_of("fabric: white-dots-on-blk, bending_modulus: 9e4");
   CHECK(bent.bending_modulus == 9e4);
   CHECK_FALSE((bent.warp_bending || bent.weft_bending || bent.bias_bending));
@@ -164,46 +169,42 @@ TEST_CASE("fabrics: a name that the table does not have is refused with the near
 }
 
 TEST_CASE("fabrics: a row of a file, whose faults are named") {
-  const Scratch folder;
-  const std::string file = (folder / "own.csv").string();
-  folder.write("own.csv",
-               "name, mass, thickness, warp_bending, weft_bending\n"
-               "twill, 0.3, 5e-4, 2e-5, 9e-6\nlight, , , 1e-6,\nworse, 0.1, 5e-4, stiff, 1e-6\nbare, 0.2, "
-               "5e-4, , 1e-6\n");
-  const auto row = [&](const std::string& name) { return "fabric: {file: " + file + ", row: " + name + "}"; };
-  const Material m = material_of(row("twill"));
+  const OwnFabrics own(
+      "name, mass, thickness, warp_bending, weft_bending\n"
+      "twill, 0.3, 5e-4, 2e-5, 9e-6\nlight, , , 1e-6,\nworse, 0.1, 5e-4, stiff, 1e-6\nbare, 0.2, "
+      "5e-4, , 1e-6\n");
+  const Material m = material_of(own.row("twill"));
   CHECK(m.density == Approx(600));
   CHECK(m.warp_bending == 2e-5);
   CHECK(m.weft_bending == 9e-6);
   CHECK_FALSE(m.bias_bending);
-  CHECK(material_of(row("1")) == m);
+  CHECK(material_of(own.row("1")) == m);
   // As spreadsheets save it.
-  const std::string saved = "\xEF\xBB\xBF" + text_of(file);
+  const std::string saved = "\xEF\xBB\xBF" + text_of(own.file());
   std::string by_semicolons = saved;
   std::ranges::replace(by_semicolons, ',', ';');
   for (const std::string& text : {by_semicolons, saved}) {
-    folder.write("own.csv", text);
-    CHECK(material_of(row("twill")) == m);
-    CHECK(drape_ends("fabric --file own.csv", folder).out == "twill\nlight\nworse\nbare\n");
+    own.write("own.csv", text);
+    CHECK(material_of(own.row("twill")) == m);
+    CHECK(drape_ends("fabric --file own.csv", own).out == "twill\nlight\nworse\nbare\n");
   }
-  const Experiment e = experiment_from(experiment(row("twill")));
-  CHECK(e.parameters.material.from_fabric == "{file: " + file + ", row: twill}");
+  const Experiment e = experiment_from(experiment(own.row("twill")));
+  CHECK(e.parameters.material.from_fabric == "{file: " + own.file() + ", row: twill}");
   CHECK(to_yaml(experiment_from(to_yaml(e.resolved)).resolved) == to_yaml(e.resolved));
-  check_refused(row("twil"), "own.csv has 4 rows and none named \"twil\"; did you mean \"twill\"?");
-  check_refused(row("light"), "row \"light\" lacks column \"mass\" [kg/m²]");
-  check_refused(row("worse"),
+  check_refused(own.row("twil"), "own.csv has 4 rows and none named \"twil\"; did you mean \"twill\"?");
+  check_refused(own.row("light"), "row \"light\" lacks column \"mass\" [kg/m²]");
+  check_refused(own.row("worse"),
                 "row \"worse\" has \"stiff\" in column \"warp_bending\", which is not a number");
-  check_refused(row("bare"), "row \"bare\" lacks column \"warp_bending\" [N m]");
-  check_refused("fabric: {file: " + (folder / "none.csv").string() + ", row: 1}", "is not a file");
+  check_refused(own.row("bare"), "row \"bare\" lacks column \"warp_bending\" [N m]");
+  check_refused("fabric: {file: " + (own / "none.csv").string() + ", row: 1}", "is not a file");
 }
 
 TEST_CASE("fabrics: rows of ClothDrapeTester's table are read by number") {
-  const Scratch folder;
-  folder.write("dataset.csv",
-               "density[kg.m-2], linear warp[SI*1e9], linear weft[SI*1e9], linear diag[SI*1e9], nonlinear "
-               "warp[SI*1e12]\n"
-               "0.2, 9000, 7000, 4000, -44000\n");
-  const Material m = material_of("fabric: {file: " + (folder / "dataset.csv").string() + ", row: 1}");
+  const OwnFabrics own(
+      "density[kg.m-2], linear warp[SI*1e9], linear weft[SI*1e9], linear diag[SI*1e9], nonlinear "
+      "warp[SI*1e12]\n"
+      "0.2, 9000, 7000, 4000, -44000\n");
+  const Material m = material_of(own.row("1"));
   CHECK(m.area_density() == Approx(0.2));
   CHECK(*m.warp_bending == Approx(9e-6));
   CHECK(*m.weft_bending == Approx(7e-6));
@@ -219,27 +220,17 @@ TEST_CASE("fabrics: numbers that hide each other, or that no cloth has, are refu
 
 TEST_CASE("drape fabric prints what a laboratory measures, and lists the table") {
   const Scratch folder;
-  const Ended list = drape_ends("fabric", folder);
-  CHECK(list.out.find("11oz-black-denim      Wang et al. 2011") != std::string::npos);
-  const Ended sheet = drape_ends("fabric gray-interlock", folder);
-  CHECK(sheet.out.find("187 g/m²") != std::string::npos);
-  // c = (23.19e-6 / (0.187 · 9.81))^⅓, in mm
-  CHECK(sheet.out.find("bending length c             23.3") != std::string::npos);
-  const Ended cotton = drape_with("fabric cotton-broad", folder.path);
-  CHECK(cotton.out.find("hysteresis 2HB        1.216 mN, 0.12") != std::string::npos);
-  CHECK(cotton.out.find("drape run configs/tests/cusick.yaml --set 'material.fabric=cotton-broad'") !=
-        std::string::npos);
-  // What is a default says so.
-  const auto has = [](const Ended& run, const std::string& text) {
-    INFO(run.out);
-    CHECK(run.out.find(text) != std::string::npos);
-  };
-  has(sheet, "thickness             0.318 mm (default, not measured)\n");
-  has(sheet, "N/m (default, not measured)\n");
-  CHECK(sheet.out.find("as of an isotropic cloth") == std::string::npos);
-  has(cotton, "thickness             0.497 mm\n");
-  has(cotton, "weft and bias not measured: as of an isotropic cloth\n");
-  has(drape_with("fabric wool-lycra", folder.path), "N/m\n");
-  const Ended wrong = drape_ends("fabric denim", folder, 2);
-  CHECK(wrong.err.find("unknown fabric \"denim\"") != std::string::npos);
+  CHECK_THAT(shown_by("fabric", folder.path), Contains("11oz-black-denim      Wang et al. 2011"));
+  // c = (23.19e-6 / (0.187 · 9.81))^⅓, in mm. What is a default says so.
+  CHECK_THAT(shown_by("fabric gray-interlock", folder.path),
+             Contains("187 g/m²") && Contains("bending length c             23.3") &&
+                 Contains("thickness             0.318 mm (default, not measured)\n") &&
+                 Contains("N/m (default, not measured)\n") && !Contains("as of an isotropic cloth"));
+  CHECK_THAT(shown_by("fabric cotton-broad", folder.path),
+             Contains("hysteresis 2HB        1.216 mN, 0.12") &&
+                 Contains("drape run configs/tests/cusick.yaml --set 'material.fabric=cotton-broad'") &&
+                 Contains("thickness             0.497 mm\n") &&
+                 Contains("weft and bias not measured: as of an isotropic cloth\n"));
+  CHECK_THAT(shown_by("fabric wool-lycra", folder.path), Contains("N/m\n"));
+  CHECK_THAT(refused_by("fabric denim", folder.path), Contains("unknown fabric \"denim\""));
 }
