@@ -72,7 +72,9 @@ struct IncrementObserver : Observer {
   double most_changed = 0, most_moved = 0, most_violated = 0;
 };
 
-void run_observed(Solved& s, IncrementObserver& observer) {
+void check_distances_are_kept(Solved& s, bool rigid) {
+  IncrementObserver observer(s);
+  observer.rigid = rigid;
   s.levels = s.experiment.methods[0].second->solve(*s.scene, observer);
   for (const LevelResult& level : s.levels) {
     INFO("level " << level.level << ": " << level.message);
@@ -99,8 +101,7 @@ TEST_CASE("a patch that follows a turning mesh or shape keeps its distances from
     Solved s = scene_from(sheet_on(meshed ? ball : shape, turn, "body", meshed ? "ipc" : "shapes", shift));
     CHECK(s.scene->following[0].size() >= 4);
     CHECK(s.scene->following[1].size() > s.scene->following[0].size());
-    IncrementObserver observer(s);
-    run_observed(s, observer);
+    check_distances_are_kept(s, true);
   }
 }
 
@@ -124,9 +125,7 @@ TEST_CASE("a patch that follows an animation keeps its distance from the same po
   Solved s =
       scene_from(sheet_on("{name: body, animation: [" + files + "]}",
                           "parameter: obstacles.body.frame, times: [0, 1], values: [0, 2]", "{obstacle: 0}"));
-  IncrementObserver observer(s);
-  observer.rigid = false;
-  run_observed(s, observer);
+  check_distances_are_kept(s, false);
 }
 
 TEST_CASE("where the obstacle is as at the start the targets are too, and a state has them again") {

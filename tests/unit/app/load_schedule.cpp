@@ -3,6 +3,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
+#include "tests/support/command.h"
 #include "tests/support/solve.h"
 
 using namespace drape;
@@ -232,13 +233,12 @@ TEST_CASE("A key is refused before the run if it changes the stencils of an ener
       scene_from(with_keys("{parameter: handles.0.lower, times: [0, 2], values: [[-1, 0.35, -1], [-1, 0.1, "
                            "-1]]}")),
       Catch::Contains("key \"handles.0.lower\" at pseudo-time 2: energy handles changes its stencils"));
-  std::string random = with_keys(
-      "{parameter: energies.midedge_bending.correction_tolerance, times: [0, 1, 2], values: [1, 0, 1]}");
-  random.replace(random.find("triangulation: one_way, columns: 5, rows: 5"), 43,
-                 "triangulation: random, vertices: 40");
-  CHECK_THROWS_WITH(scene_from(random),
-                    Catch::Contains("key \"energies.midedge_bending.correction_tolerance\" at pseudo-time 1: "
-                                    "energy midedge_bending changes its stencils"));
+  const std::string tolerance =
+      "{parameter: energies.midedge_bending.correction_tolerance, times: [0, 1, 2], values: [1, 0, 1]}";
+  CHECK_THROWS_WITH(
+      scene_from(replaced(with_keys(tolerance), "one_way, columns: 5, rows: 5", "random, vertices: 40")),
+      Catch::Contains("key \"energies.midedge_bending.correction_tolerance\" at pseudo-time 1: "
+                      "energy midedge_bending changes its stencils"));
 }
 
 TEST_CASE("A load at which a pin has no vertex is refused between the keys' times too") {
