@@ -263,7 +263,6 @@ TEST_CASE("names in a report cannot break the page or leave its folder") {
   run.results["methods"][evil]["status"] = evil;
   write_file(run.folder / "config.yaml", "# " + evil);
   const std::string page = run.page(true);
-  CHECK_FALSE(contains(page, evil));
   CHECK_FALSE(contains(page, "<b>"));
   CHECK(contains(page, "<title>../&lt;b>\"x'&lt;/script>&amp; – drape</title>"));
   CHECK(page_data(page)["results"]["description"] == evil);
@@ -317,8 +316,7 @@ TEST_CASE("errors are read, and are in the page") {
 
 TEST_CASE("the viewer has every state, and recorded snapshots that fit their mesh") {
   SampleRun run;
-  const auto whole_page = [&] { return run.page(); };
-  const std::string page = whole_page();
+  const std::string page = run.page();
   CHECK(contains(page, "id=\"viewer-m0l0\""));
   CHECK(contains(page, "id=\"viewer-m1l1-stretch\""));
   CHECK_FALSE(contains(page, "id=\"viewer-m0l0f0\""));
@@ -328,17 +326,10 @@ TEST_CASE("the viewer has every state, and recorded snapshots that fit their mes
   level["snapshots"] = {
       {"file", "snapshots/pcs_l0.bin"}, {"iterations", {1, 2, 3}}, {"seconds", {0.1, 0.2, 0.3}}};
   write_file(run.folder / "snapshots/pcs_l0.bin", std::string(3 * 169 * 12, '\0'));
-  CHECK(contains(whole_page(), "id=\"viewer-m0l0f1\""));
+  CHECK(contains(run.page(), "id=\"viewer-m0l0f1\""));
   write_file(run.folder / "snapshots/pcs_l0.bin", std::string(100, '\0'));
-  const std::string without = whole_page();
+  const std::string without = run.page();
   CHECK_FALSE(contains(without, "id=\"viewer-m0l0f1\""));
   CHECK(contains(without, "id=\"viewer-m0l0\""));
   CHECK(contains(without, "snapshots/pcs_l0.bin: holds 100 bytes, not 3 snapshots of 169 vertices"));
-}
-
-TEST_CASE("the fields that metrics declare pictures of are in the viewer") {
-  const SampleRun run;
-  const Json fields = run.data()["view"]["methods"][1]["levels"][0]["states"][0]["fields"];
-  CHECK(fields.contains("H_difference"));
-  CHECK(fields.contains("principal_curvature"));
 }
