@@ -26,15 +26,9 @@ struct Served {
                       [this] { ++stops; }, [] { return ""; }};
   std::optional<LiveServer> server;
   LiveAddress address{server->url()};
-  std::string path = address.path;
-  int port = address.port;
 
-  std::string request(const std::string& method, const std::string& target,
-                      const std::string& more = "") const {
-    return address.request(method, target, more);
-  }
   std::string answer(const std::string& request) const {
-    const LiveClient client(port);
+    const LiveClient client(address.port);
     client.send(request);
     return client.answer();
   }
@@ -43,8 +37,11 @@ struct Served {
     const std::string text = answer(request);
     return text.starts_with("HTTP/1.1 ") ? std::stoi(text.substr(9)) : 0;
   }
+  int status(const std::string& method, const std::string& target, const std::string& more = "") const {
+    return status(address.request(method, target, more));
+  }
   bool serves_page() const {
-    const std::string text = answer(request("GET", path));
+    const std::string text = answer(address.request("GET", address.path));
     return text.starts_with("HTTP/1.1 200") && text.ends_with(body);
   }
 };
@@ -56,7 +53,7 @@ TEST_CASE("slow peers delay neither the page nor the shutdown") {
   REQUIRE(served.serves_page());
   std::vector<std::unique_ptr<LiveClient>> slow;
   for (int k = 0; k < 10; ++k) {
-    slow.push_back(std::make_unique<LiveClient>(served.port));
+    slow.push_back(std::make_unique<LiveClient>(served.address.port));
     slow.back()->send("GET / HTTP/1.1\r\n");
   }
   for (int page = 0; page < 5; ++page) {
@@ -71,17 +68,17 @@ TEST_CASE("a peer that reads none of its answer does not delay the shutdown") {
   served.body = std::string(50000000, 'p');
   std::vector<std::unique_ptr<LiveClient>> deaf;
   for (int k = 0; k < 4; ++k) {
-    deaf.push_back(std::make_unique<LiveClient>(served.port));
-    deaf.back()->send(served.request("GET", served.path + "block/b"));
+    deaf.push_back(std::make_unique<LiveClient>(served.address.port));
+    deaf.back()->send(served.address.request("GET", served.address.path + "block/b"));
   }
-  CHECK(served.status(served.request("GET", "/")) == 404);
+  CHECK(served.status("GET", "/") == 404);
   served.server.reset();
 }
 
 TEST_CASE("a request that does not arrive in time is given up") {
   const Stopwatch watch;
   const Served served(0.5);
-  const LiveClient idle(served.port);
+  const LiveClient idle(served.address.port);
   CHECK(idle.answer() == "");
   CHECK(watch.seconds() > 0.5);
 }
@@ -89,7 +86,7 @@ TEST_CASE("a request that does not arrive in time is given up") {
 TEST_CASE("lengths that are none, bodies of any size and long lines are refused") {
   const Served served(0.2);
   const auto post = [&](const std::string& more, const std::string& body = "") {
-    return served.status(served.request("POST", served.path + "stop", more) + body);
+    return served.status(served.address.request("POST", served.address.path + "stop", more) + body);
   };
   for (const std::string length : {"-1", "1025", "99999999999999999999", "18446744073709551615"}) {
     CAPTURE(length);
@@ -98,13 +95,13 @@ TEST_CASE("lengths that are none, bodies of any size and long lines are refused"
   CHECK(served.stops == 0);
   CHECK(post("Content-Length: 5\r\n", "hello") == 204);
   CHECK(served.stops == 1);
-  CHECK(served.status(served.request("GET", "/" + std::string(9000, 'a'))) == 414);
-  CHECK(served.status(served.request("GET", served.path, "X-A: " + std::string(9000, 'a') + "\r\n")) == 400);
+  CHECK(served.status("GET", "/" + std::string(9000, 'a')) == 414);
+  CHECK(served.status("GET", served.address.path, "X-A: " + std::string(9000, 'a') + "\r\n") == 400);
   CHECK(served.status("GET " + std::string(100000, 'a')) == 0);
   // These go through regular expressions, which must not run out of stack.
   std::string ranges = "bytes=0-1";
   while (ranges.size() < 8000) ranges += ",0-1";
-  CHECK(served.status(served.request("GET", "/", "Range: " + ranges + "\r\n")) >= 400);
-  CHECK(served.status(served.request("GET", served.path + "block/" + std::string(8000, 'a'))) == 200);
+  CHECK(served.status("GET", "/", "Range: " + ranges + "\r\n") >= 400);
+  CHECK(served.status("GET", served.address.path + "block/" + std::string(8000, 'a')) == 200);
   CHECK(served.serves_page());
 }

@@ -1,37 +1,35 @@
 // What the built libraries need and export, as the dynamic linker sees it.
 
-#include <algorithm>
-#include <array>
 #include <catch2/catch.hpp>
-#include <cstdio>
 #include <filesystem>
 #include <set>
 #include <sstream>
 #include <string>
 #include <vector>
 
+#include "tests/support/command.h"
 #include "tests/support/folders.h"
 
 namespace fs = std::filesystem;
 
 namespace {
 
-std::string output_of(const std::string& command) {
-  std::string output;
-  FILE* pipe = popen(command.c_str(), "r");
-  REQUIRE(pipe != nullptr);
-  std::array<char, 4096> buffer;
-  while (const std::size_t count = std::fread(buffer.data(), 1, buffer.size(), pipe))
-    output.append(buffer.data(), count);
-  REQUIRE(pclose(pipe) == 0);
-  return output;
+/// The lines that a command prints.
+std::vector<std::string> lines_by(const std::string& command) {
+  const Ended ended = Command(command, folders::commands()).wait();
+  INFO(command << ": " << ended.err);
+  REQUIRE(ended.exit_code == 0);
+  std::istringstream text(ended.out);
+  std::vector<std::string> lines;
+  for (std::string line; std::getline(text, line);)
+    if (!line.empty()) lines.push_back(line);
+  return lines;
 }
 
 /// The libraries that a library names as needed, without version and path: "libdrape.so".
 std::set<std::string> needed_by(const fs::path& library) {
-  std::istringstream lines(output_of("readelf -d -W '" + library.string() + "'"));
   std::set<std::string> needed;
-  for (std::string line; std::getline(lines, line);) {
+  for (const std::string& line : lines_by("readelf -d -W '" + library.string() + "'")) {
     if (line.find("(NEEDED)") == std::string::npos) continue;
     const std::size_t open = line.find('[') + 1, end = line.find(".so", open);
     needed.insert(line.substr(open, end - open) + ".so");
@@ -41,20 +39,14 @@ std::set<std::string> needed_by(const fs::path& library) {
 
 /// Names of the symbols that a library defines for others (`nm --defined-only`) or takes from others.
 std::vector<std::string> symbols_of(const fs::path& library, const std::string& which) {
-  std::istringstream lines(output_of("nm -D -j " + which + " '" + library.string() + "'"));
-  std::vector<std::string> names;
-  for (std::string line; std::getline(lines, line);)
-    if (!line.empty()) names.push_back(line);
-  return names;
+  return lines_by("nm -D -j " + which + " '" + library.string() + "'");
 }
 
 /// Symbols of the project that a library defines for others; headers of other libraries make some of theirs
 /// visible.
 std::vector<std::string> own_symbols_of(const fs::path& library) {
   std::vector<std::string> names = symbols_of(library, "--defined-only");
-  names.erase(std::remove_if(names.begin(), names.end(),
-                             [](const std::string& name) { return name.find("drape") == std::string::npos; }),
-              names.end());
+  std::erase_if(names, [](const std::string& name) { return name.find("drape") == std::string::npos; });
   return names;
 }
 
