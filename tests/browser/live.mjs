@@ -11,10 +11,7 @@ const endless = ['force_tolerance=1e-300', 'max_steps=100000000', 'step_size=2e-
   .flatMap(set => ['--set', 'newton.' + set]).concat('--method', 'all');
 
 /// A run with a live view, once its address is known.
-async function startViewed(out, ...more) {
-  return startViewedOf(contactConfig, out, ...more);
-}
-async function startViewedOf(experiment, out, ...more) {
+async function startViewed(experiment, out, ...more) {
   const command = start(folder, 'run', experiment, '--out', out, '--quiet', '--threads', '1', '--no-report', '--view', ...more);
   const url = await until('the address', () => /^view: (\S+)\n/.exec(command.text.out)?.[1]);
   return Object.assign(command, {url});
@@ -43,7 +40,7 @@ async function drawnAtRest(running, page, selector) {
 const results = out => JSON.parse(fs.readFileSync(path.join(folder, out, 'results.json')));
 
 test('levels appear and move; "refine now" goes on to the next; "stop" ends the run as Ctrl-C does', async () => {
-  const running = await startViewed('stopped', '--view-keep', ...endless);
+  const running = await startViewed(contactConfig, 'stopped', '--view-keep', ...endless);
   assert.match(running.url, /^http:\/\/127\.0\.0\.1:\d+\/[0-9a-f]{32}\/$/);
   const {page, heard, state} = await openPage(running.url);
   const status = () => page.locator('#live-status').textContent();
@@ -94,7 +91,7 @@ schedule: {steps: 100000, equilibrate: true, keys: [
   {parameter: obstacles.0.translate, times: [0, 0.01, 1], values: [[0, 0, -0.1], [0, 0, 0], [0, 0, 0.1]]}]}
 methods: {newton: {}}
 `);
-  const running = await startViewedOf('risen.yaml', 'risen');
+  const running = await startViewed('risen.yaml', 'risen');
   const {page, heard, state} = await openPage(running.url);
   const first = (await state()).panels[0].obstacles;
   await until('it has risen', async () => (await state()).panels[0].obstacles[0] > first[0] + .01);
@@ -105,7 +102,7 @@ methods: {newton: {}}
 });
 
 test('others can neither look nor stop the run', async () => {
-  const running = await startViewed('guarded', ...endless);
+  const running = await startViewed(contactConfig, 'guarded', ...endless);
   const {origin, host, port} = new URL(running.url);
   for (const action of ['stop', 'refine']) {
     const elsewhere = await request(running.url + action, 'POST', {Origin: 'http://elsewhere.example'});
@@ -134,7 +131,7 @@ test('others can neither look nor stop the run', async () => {
 
 test('a run has the same bits with a view, looked at, and without', async () => {
   const short = ['--method', 'pcs,newton', '--set', 'newton.force_tolerance=0.1'];
-  const running = await startViewed('viewed', '--view-keep', ...short);
+  const running = await startViewed(contactConfig, 'viewed', '--view-keep', ...short);
   const {page, heard} = await openPage(running.url);
   await until('the end', () => running.text.out.includes('the view stays at'));
   await until('the page says so', async () => /^The run has ended: /.test(await page.locator('#live-status').textContent()));

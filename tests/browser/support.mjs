@@ -16,7 +16,7 @@ export const contactConfig = path.join(source, 'tests/configs/data/contact.yaml'
 const factor = Number(process.env.DRAPE_TEST_PATIENCE || 1);
 const patience = {cpu: 100 * factor, idle: 40 * factor, looks: 30 * factor, work: 10 * factor};
 let at = {test: '', step: '', begun: taken()};
-const commands = new Set();
+const commands = new Set(), complaints = [];  // of pages from the disk in the test under way
 let chrome, closes = false;
 
 function taken() {
@@ -39,6 +39,7 @@ function excess() {
 /// Runs part of a test. It fails when a step of it exceeds the patience, and names the step; what it has started ends with it.
 export async function guarded(name, body) {
   at = {test: name};
+  complaints.length = 0;
   begin('its beginning');
   let timer;
   const overdue = new Promise((_, reject) => {
@@ -46,6 +47,7 @@ export async function guarded(name, body) {
   });
   try {
     await Promise.race([body(), overdue]);
+    if (complaints.length) throw new Error('a page complains: ' + complaints.join('; '));
   } finally {
     clearInterval(timer);
     at = {...at, test: ''};
@@ -157,13 +159,23 @@ export async function newPage(options = {}) {
   return context.newPage();
 }
 
-/// A page that takes down everything it complains about and every address it asks for.
-export async function openPage(url, options = {}) {
-  const page = await newPage({viewport: {width: 1200, height: 900}, ...options});
+/// Takes down everything that a page complains about and every address that it asks for. A page from the disk that complains fails
+/// the test.
+export function listenTo(page) {
   const heard = {errors: [], requests: []};
-  page.on('console', message => { if (['error', 'warning'].includes(message.type())) heard.errors.push(message.text()); });
-  page.on('pageerror', error => heard.errors.push(String(error)));
+  const complain = text => {
+    heard.errors.push(text);
+    if (page.url().startsWith('file:')) complaints.push(text);
+  };
+  page.on('console', message => { if (['error', 'warning'].includes(message.type())) complain(message.text()); });
+  page.on('pageerror', error => complain(String(error)));
   page.on('request', request => heard.requests.push(request.url()));
+  return heard;
+}
+
+/// A page with a 3D view that shows a state, and what is heard of it.
+export async function openPage(url, options = {}) {
+  const page = await newPage({viewport: {width: 1200, height: 900}, ...options}), heard = listenTo(page);
   await page.goto(url);
   await page.locator('#viewer').scrollIntoViewIfNeeded();
   await until('a state is shown', async () => {
