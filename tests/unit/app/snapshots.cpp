@@ -1,8 +1,7 @@
 #include <catch2/catch.hpp>
+#include <vector>
 
-#include "core/app/files/snapshot_file.h"
 #include "core/app/run/errors.h"
-#include "tests/support/command.h"
 
 using namespace drape;
 
@@ -41,21 +40,4 @@ TEST_CASE("snapshots are spread evenly, never more than asked for, the last stat
       REQUIRE(static_cast<int>(all.size()) <= most);
       REQUIRE(all.back() == n);
     }
-}
-
-TEST_CASE("a snapshots file reads back in single precision; one cut short or damaged is refused") {
-  const Scratch folder;
-  const std::filesystem::path file = folder / "f.bin";
-  const std::uint32_t checksum = write_snapshots(file, {{{}, positions_at(1)}, {{}, positions_at(2)}});
-  CHECK(std::filesystem::file_size(file) == 2 * 4 * 3 * 4);
-  const SnapshotFile read(file, 2, 4, checksum);
-  REQUIRE(read.count() == 2);
-  CHECK((read.positions(0) - positions_at(1)).norm() < 1e-6);
-  CHECK((read.positions(1) - positions_at(2)).norm() < 1e-6);
-  CHECK(SnapshotFile(file, 2, 4, std::nullopt).count() == 2);
-  CHECK_THROWS_WITH(SnapshotFile(file, 2, 5, checksum),
-                    Catch::EndsWith("f.bin: holds 96 bytes, not 2 snapshots of 5 vertices"));
-  folder.damage("f.bin");
-  CHECK_THROWS_WITH(SnapshotFile(file, 2, 4, checksum),
-                    Catch::EndsWith("f.bin: is damaged: its checksum does not fit"));
 }
