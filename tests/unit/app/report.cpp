@@ -127,17 +127,13 @@ bool contains(const std::string& text, const std::string& part) {
   return text.find(part) != std::string::npos;
 }
 
-/// Standard deviation of the brightness in the picture's middle.
+/// Standard deviation of the green in the picture's middle.
 double contrast(const Image& image) {
-  double sum = 0, squares = 0;
-  int count = 0;
-  for (int y = image.height / 3; y < 2 * image.height / 3; ++y) {
-    for (int x = image.width / 3; x < 2 * image.width / 3; ++x) {
-      const double value = image.pixels[3 * (std::size_t(y) * image.width + x) + 1];
-      sum += value, squares += value * value, ++count;
-    }
-  }
-  return std::sqrt(squares / count - sum / count * sum / count);
+  using Bytes = Eigen::Array<unsigned char, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+  const Eigen::Map<const Bytes> bytes(image.pixels.data(), image.height, 3 * image.width);
+  const int h = image.height / 3, w = image.width / 3;
+  const Eigen::ArrayXXd green = bytes(Eigen::seqN(h, h), Eigen::seqN(3 * w + 1, w, 3)).cast<double>();
+  return std::sqrt((green - green.mean()).square().mean());
 }
 
 }  // namespace
