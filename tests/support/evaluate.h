@@ -1,5 +1,7 @@
 #pragma once
 
+#include <type_traits>
+
 #include "core/kernel/interfaces/energy.h"
 #include "core/numerics/mesh/grain.h"
 #include "core/numerics/model/hessian_assembler.h"
@@ -24,30 +26,21 @@ inline drape::Positions warp_at(const drape::TriangleMesh& mesh, double angle) {
 
 /// ∂f/∂x by central differences of fourth order with step h [m]; f is a number or an Eigen vector or matrix,
 /// and column (or entry) 3 i + c of the result is its derivative by coordinate c of vertex i.
-template <class Function>
-Eigen::MatrixXd differences(const Function& f, drape::Positions x, double h) {
-  const auto at = [&](double* coordinate, double offset) {
-    const double old = *coordinate;
-    *coordinate = old + offset;
-    const auto y = f(x);
-    *coordinate = old;
-    return y;
-  };
+template <class Function, class State>
+Eigen::MatrixXd differences(const Function& f, State x, double h) {
   Eigen::MatrixXd result;
   for (Eigen::Index i = 0; i < x.size(); ++i) {
-    double* coordinate = x.data() + i;
-    Eigen::VectorXd column;
-    if constexpr (std::is_arithmetic_v<decltype(f(x))>) {
-      column.resize(1);
-      column[0] =
-          (8 * (at(coordinate, h) - at(coordinate, -h)) - (at(coordinate, 2 * h) - at(coordinate, -2 * h))) /
-          (12 * h);
-    } else {
-      const drape::Positions d =
-          (8 * (at(coordinate, h) - at(coordinate, -h)) - (at(coordinate, 2 * h) - at(coordinate, -2 * h))) /
-          (12 * h);
-      column = Eigen::Map<const Eigen::VectorXd>(d.data(), d.size());
-    }
+    const double old = x.data()[i];
+    const auto at = [&](double offset) -> Eigen::VectorXd {
+      x.data()[i] = old + offset;
+      const auto y = f(x);
+      if constexpr (std::is_arithmetic_v<decltype(f(x))>)
+        return Eigen::VectorXd::Constant(1, y);
+      else
+        return Eigen::Map<const Eigen::VectorXd>(y.data(), y.size());
+    };
+    const Eigen::VectorXd column = (8 * (at(h) - at(-h)) - (at(2 * h) - at(-2 * h))) / (12 * h);
+    x.data()[i] = old;
     if (i == 0) result.resize(column.size(), x.size());
     result.col(i) = column;
   }

@@ -41,28 +41,14 @@ struct KernelCheck {
     return r;
   }
 
-  /// ∂f/∂x by central differences of fourth order.
-  template <class Function>
-  static Eigen::MatrixXd differences(const Function& f, const State& x, double h) {
-    Eigen::MatrixXd result;
-    for (int i = 0; i < n; ++i) {
-      const State step = State::Unit(i) * h;
-      const Eigen::VectorXd d =
-          (8 * (f(x + step) - f(x - step)) - (f(x + 2 * step) - f(x - 2 * step))) / (12 * h);
-      result.conservativeResize(d.size(), n);
-      result.col(i) = d;
-    }
-    return result;
-  }
-
   /// Gradient and Hessian against differences with step h, to `tolerance` of their norms.
   static void derivatives(const State& x, const Rest& rest, double h, double tolerance) {
     const auto r = evaluate(x, rest);
     REQUIRE(r.gradient.norm() > 0);
     REQUIRE(r.hessian.norm() > 0);
     CHECK(r.gradient_value == r.value);
-    const auto value = [&](const State& y) { return Eigen::VectorXd::Constant(1, evaluate(y, rest).value); };
-    const auto gradient = [&](const State& y) { return Eigen::VectorXd(evaluate(y, rest).gradient); };
+    const auto value = [&](const State& y) { return evaluate(y, rest).value; };
+    const auto gradient = [&](const State& y) { return evaluate(y, rest).gradient; };
     CHECK((differences(value, x, h).transpose() - r.gradient).norm() <= tolerance * r.gradient.norm());
     CHECK((differences(gradient, x, h) - r.hessian).norm() <= tolerance * r.hessian.norm());
   }
