@@ -3,6 +3,7 @@
 import os
 import signal
 import threading
+from concurrent.futures import ThreadPoolExecutor
 
 import pytest
 from prototypes import NumpyStvk
@@ -24,17 +25,12 @@ def test_a_callback_stops_and_refines(experiment):
     assert refined["pcs"].levels[0].iterations == 1
 
 
-def test_callbacks_see_levels(experiment):
-    levels = []
-    experiment.run(on_level=levels.append, progress=False)
-    assert [(level.level, level.status) for level in levels] == [(0, "converged"), (1, "converged")]
-    assert levels[1].x.shape == (121, 3) and levels[1].iterations > 0
-
-
-def test_callbacks_know_the_method(experiment):
+def test_callbacks_see_levels_and_know_the_method(experiment):
     iterations, levels = [], []
     experiment.run(methods=["pcs", "cascadic"], on_iteration=iterations.append, on_level=levels.append, progress=False)
     assert [(level.method, level.level) for level in levels] == [("pcs", 0), ("pcs", 1), ("cascadic", 0), ("cascadic", 1)]
+    assert [level.status for level in levels[:2]] == ["converged", "converged"]
+    assert levels[1].x.shape == (121, 3) and levels[1].iterations > 0
     for method in ("pcs", "cascadic"):
         assert sum(i.method == method for i in iterations) == sum(l.iterations for l in levels if l.method == method)
     assert "cascadic" in repr(iterations[-1])
@@ -113,16 +109,11 @@ def test_ctrl_c_raises_keyboard_interrupt(small, tmp_path):
 
 def test_two_runs_in_two_threads(small):
     alone = drape.Experiment(small).run(methods=["all"], progress=False)
-    results = [None, None]
 
-    def run(k):
-        results[k] = drape.Experiment(small).run(methods=["all"], progress=False, on_iteration=lambda i: None)
+    def run(_):
+        return drape.Experiment(small).run(methods=["all"], progress=False, on_iteration=lambda i: None)
 
-    threads = [threading.Thread(target=run, args=(k,)) for k in range(2)]
-    for thread in threads:
-        thread.start()
-    for thread in threads:
-        thread.join()
-    for result in results:
-        for method in alone.methods:
-            assert result[method].levels[-1].x.tobytes() == alone[method].levels[-1].x.tobytes()
+    with ThreadPoolExecutor(2) as threads:
+        for result in threads.map(run, range(2)):
+            for method in alone.methods:
+                assert result[method].levels[-1].x.tobytes() == alone[method].levels[-1].x.tobytes()

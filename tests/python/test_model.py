@@ -1,7 +1,6 @@
 """The model under an experiment: derivatives, prolongations, metrics."""
 
 import gc
-import json
 
 import numpy
 import pytest
@@ -45,10 +44,9 @@ def test_prolongations(scene):
 
 @pytest.mark.parametrize("source", ["small", "contact"])
 def test_derivatives(source, small):
-    model = drape.Experiment(small if source == "small" else CONTACT).scene()[0]
-    x = numpy.array(drape.Experiment(small if source == "small" else CONTACT).scene().start(0))
-    rng = numpy.random.default_rng(1)
-    x += 1e-4 * rng.standard_normal(x.shape)
+    scene = drape.Experiment(small if source == "small" else CONTACT).scene()
+    model, rng = scene[0], numpy.random.default_rng(1)
+    x = scene.start(0) + 1e-4 * rng.standard_normal(scene.start(0).shape)
     if source == "contact":
         assert model.contacts(x)[0]["count"] > 0
     d, h = rng.standard_normal(x.shape), 1e-7
@@ -64,20 +62,17 @@ def test_derivatives(source, small):
     assert sum(model.energy_parts(x).values()) == pytest.approx(model.energy(x), rel=1e-12)
 
 
-def test_energies_of_one_type_keep_their_parts(small, tmp_path):
+def test_energies_of_one_type_keep_their_parts(small):
     small["energies"] += [{"type": "constant_load", "force_density": force} for force in ([0.1, 0, 0], [0, 0.3, 0])]
     experiment = drape.Experiment({**small, "metrics": ["energy"]})
-    level = experiment.run(out=tmp_path / "r", report=False, progress=False)["pcs"].levels[-1]
+    level = experiment.run(progress=False)["pcs"].levels[-1]
     names = ["neo_hookean", "hinge", "gravity", "constant_load", "constant_load 2"]
     model = experiment.scene()[1]
     assert list(level.energy_parts) == list(model.energy_parts(level.x)) == names
     assert sum(level.energy_parts.values()) == pytest.approx(level.energy, rel=1e-12)
-    assert sum(model.energy_parts(level.x).values()) == pytest.approx(model.energy(level.x), rel=1e-12)
     measured = experiment.scene().metric("energy", 1, level.x)
     for name, joules in level.energy_parts.items():
         assert measured[f"energy_parts.{name}"] == joules
-    recorded = json.loads((tmp_path / "r/results.json").read_text())
-    assert list(recorded["methods"]["pcs"]["levels"][-1]["energy_parts"]) == names
 
 
 def test_contacts():

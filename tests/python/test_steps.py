@@ -1,18 +1,25 @@
 """A method step by step."""
 
 import gc
+import importlib
 import json
 import os
 import pathlib
 import sys
-import threading
+from concurrent.futures import ThreadPoolExecutor
 
 import numpy
 import pytest
 from waiting import completed
 
 import drape
-from conftest import PRELOADED
+from conftest import PRELOADED, SOURCE
+
+
+@pytest.fixture
+def two_drapes(monkeypatch):
+    monkeypatch.syspath_prepend(SOURCE / "benchmarks")
+    return importlib.import_module("two_drapes")
 
 
 def test_iterations_have_the_bits_of_a_run(experiment):
@@ -29,10 +36,7 @@ def test_iterations_have_the_bits_of_a_run(experiment):
     assert list(solver) == []
 
 
-def test_the_scenes_beside_other_programs_come_to_rest(monkeypatch):
-    monkeypatch.syspath_prepend(pathlib.Path(__file__).resolve().parents[2] / "benchmarks")
-    import two_drapes
-
+def test_the_scenes_beside_other_programs_come_to_rest(two_drapes):
     for name in two_drapes.SCENES:
         seconds, states, level = two_drapes.solved(two_drapes.experiment_of(name, 9, seed=1))
         assert level.status == "converged"
@@ -40,10 +44,7 @@ def test_the_scenes_beside_other_programs_come_to_rest(monkeypatch):
         assert len(two_drapes.solved(two_drapes.experiment_of(name, 9, seed=1), most=3)[1]) == 3
 
 
-def test_a_comparison_goes_on_where_it_was_cut(monkeypatch, tmp_path):
-    monkeypatch.syspath_prepend(pathlib.Path(__file__).resolve().parents[2] / "benchmarks")
-    import two_drapes
-
+def test_a_comparison_goes_on_where_it_was_cut(two_drapes, tmp_path):
     measured = []
 
     def measure(scene, vertices, seed, folder):
@@ -148,20 +149,15 @@ def test_unknown_methods(experiment):
 def test_a_solve_is_of_one_thread_at_a_time(small):
     small["cloth"].update(columns=40, rows=40)
     solver = drape.Experiment(small).solver("newton")
-    refused = []
 
-    def advance():
+    def advance(_):
         for _ in range(50):
             try:
                 next(solver)
             except RuntimeError as error:
-                refused.append(str(error))
+                assert "being advanced" in str(error)
             except StopIteration:
                 return
 
-    threads = [threading.Thread(target=advance) for _ in range(2)]
-    for thread in threads:
-        thread.start()
-    for thread in threads:
-        thread.join()
-    assert all("being advanced" in message for message in refused)
+    with ThreadPoolExecutor(2) as threads:
+        list(threads.map(advance, range(2)))
