@@ -55,56 +55,36 @@ struct FailingEnergy final : drape::Energy {
   }
 };
 
-enum class Throws { nothing, error, memory, other };
-enum class Reports { starts, no_level, level_nine, no_vertices, not_a_number, to_nobody, moved_pins };
-
 /// Takes every level's start for a converged result. On one level it first has a command run, and throws, or
 /// reports something else.
 struct FailingSolver final : drape::Solver {
   int level = 0;
-  std::string command;
-  Throws throws = Throws::nothing;
-  Reports reports = Reports::starts;
+  std::string command, throws, reports;
   drape::NewtonParameters newton;  // which every method is given
   static void declare(drape::Declaration<FailingSolver>& d) {
     using S = FailingSolver;
     d.add("level", &S::level, "that it fails on").at_least(0).source("test");
     d.add("command", &S::command, "that the shell runs there").source("test");
-    d.add_choice("throws", &S::throws,
-                 {{"nothing", Throws::nothing},
-                  {"error", Throws::error},
-                  {"memory", Throws::memory},
-                  {"other", Throws::other}},
-                 "what it throws after that")
-        .source("test");
-    d.add_choice("reports", &S::reports,
-                 {{"starts", Reports::starts},
-                  {"no_level", Reports::no_level},
-                  {"level_nine", Reports::level_nine},
-                  {"no_vertices", Reports::no_vertices},
-                  {"not_a_number", Reports::not_a_number},
-                  {"to_nobody", Reports::to_nobody},
-                  {"moved_pins", Reports::moved_pins}},
-                 "what it reports there")
-        .source("test");
+    d.add("throws", &S::throws, "error, memory or other: what it throws after that").source("test");
+    d.add("reports", &S::reports, "what it reports there (see solve)").source("test");
     d.add_section("newton", &S::newton, "not used");
   }
 
   std::vector<drape::LevelResult> solve(const drape::Problem& problem,
                                         drape::Observer& observer) const override {
     std::vector<drape::LevelResult> results;
-    for (int l = 0; l <= problem.finest() && reports != Reports::no_level; ++l) {
+    for (int l = 0; l <= problem.finest() && reports != "no_level"; ++l) {
       observer.level_started(l);
       if (l == level) fail();
       drape::LevelResult result;
       result.level = l;
       result.x = problem.starts[l];
-      if (l == level && reports == Reports::level_nine) result.level = 9;
-      if (l == level && reports == Reports::no_vertices) result.x.resize(0, 3);
-      if (l == level && reports == Reports::not_a_number) result.x(0, 0) = std::nan("");
-      if (l == level && reports == Reports::moved_pins) result.x.array() += 0.1;
+      if (l == level && reports == "level_nine") result.level = 9;
+      if (l == level && reports == "no_vertices") result.x.resize(0, 3);
+      if (l == level && reports == "not_a_number") result.x(0, 0) = std::nan("");
+      if (l == level && reports == "moved_pins") result.x.array() += 0.1;
       results.push_back(result);
-      if (l != level || reports != Reports::to_nobody) observer.level_finished(result);
+      if (l != level || reports != "to_nobody") observer.level_finished(result);
     }
     return results;
   }
@@ -113,9 +93,9 @@ struct FailingSolver final : drape::Solver {
   void fail() const {
     if (!command.empty() && std::system(command.c_str()) != 0)
       throw std::runtime_error("the test's command fails");
-    if (throws == Throws::error) throw std::runtime_error("the test's method fails");
-    if (throws == Throws::memory) throw std::bad_alloc();
-    if (throws == Throws::other) throw 17;
+    if (throws == "error") throw std::runtime_error("the test's method fails");
+    if (throws == "memory") throw std::bad_alloc();
+    if (throws == "other") throw 17;
   }
 };
 
