@@ -125,13 +125,11 @@ def test_arrays_outlive_their_owners(experiment):
     for array, copy in zip((rest, masses, start), copies):
         assert numpy.array_equal(array, copy)
     assert model.energy(x) == energy
-    with pytest.raises(ValueError):
-        rest[0, 0] = 1
 
 
 def test_what_would_change_nothing_is_refused(scene, experiment):
-    for array in (scene[0].masses, scene[0].fixed, scene.start(0), scene.prolongations[0].data, scene.midpoints[0].indices,
-                  scene.linear[0].indptr):
+    for array in (scene[0].masses, scene[0].fixed, scene.start(0), scene.levels[0].rest, scene.prolongations[0].data,
+                  scene.midpoints[0].indices, scene.linear[0].indptr):
         with pytest.raises(ValueError, match="read-only"):
             array[:] = 0
     for owner, name in ((scene[0].material, "density"), (scene[0], "material"), (scene, "levels"), (experiment, "levels")):

@@ -94,13 +94,6 @@ def test_check_energy(capsys):
 
     assert not drape.check_energy(Broken())
     assert "hessian: NOT FINITE at vertices " in capsys.readouterr().out
-
-    class Infinite(prototypes.Springs):
-        def value(self, x, rest):
-            return numpy.nan * super().value(x, rest)
-
-    with pytest.raises(RuntimeError, match="the energy is not finite at this state"):
-        drape.check_energy(Infinite())
     assert not drape.check_energy({"type": "formula", "density": "100*(g11^2 + g22^2 + g12^2) + 5*abs(g11)"})
     assert "NOT SMOOTH: the force jumps by " in capsys.readouterr().out
 
