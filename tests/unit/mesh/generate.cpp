@@ -169,22 +169,13 @@ TEST_CASE("Outlines with slanted sides and holes are triangulated at every count
       {{{0.1, 0}, {0.9, 0.2}, {0.7, 1}, {0, 0.8}}, {{0.3, 0.3}, {0.6, 0.35}, {0.5, 0.6}}},
       {{{0, 0}, {1, 0}, {0.4, 0.4}, {0, 1}}},
   };
+  const double areas[] = {0.5, std::sqrt(3.0) / 4, 0.56, 0.78, 0.59, 0.4};
   for (std::size_t k = 0; k < outlines.size(); ++k)
     for (const int count : {60, 141, 300, 1024, 2000}) {
       CAPTURE(k, count);
       const TriangleMesh mesh = delaunay_polygon(outlines[k], count, 1);
       CHECK(std::abs(mesh.vertices.rows() - count) <= 0.15 * count);
-      double area = 0;
-      for (std::size_t loop = 0; loop < outlines[k].size(); ++loop) {
-        const Polygon& p = outlines[k][loop];
-        double own = 0;
-        for (std::size_t i = 0; i < p.size(); ++i) {
-          const Eigen::Vector2d &a = p[i], &b = p[(i + 1) % p.size()];
-          own += 0.5 * (a.x() * b.y() - a.y() * b.x());
-        }
-        area += loop == 0 ? std::abs(own) : -std::abs(own);
-      }
-      require_pattern(mesh, area, static_cast<int>(outlines[k].size()) - 1, 20);
+      require_pattern(mesh, areas[k], static_cast<int>(outlines[k].size()) - 1, 20);
     }
 }
 
@@ -245,18 +236,14 @@ TEST_CASE("patterns refuse what cannot be meshed, naming the loop", "[generate]"
       "random triangulation: 4 vertices leave none for the inside of this rectangle; ask for more");
 
   const auto mesh = [](const std::vector<Polygon>& loops) { return delaunay_polygon(loops, 100, 0); };
+  const std::string border = "polygon: loop 0 (the outer border) ";
   CHECK_THROWS_WITH(mesh({}), "polygon: there is no loop");
-  CHECK_THROWS_WITH(mesh({{{0, 0}, {1, 0}}}),
-                    "polygon: loop 0 (the outer border) has fewer than three points");
-  CHECK_THROWS_WITH(mesh({{{0, 0}, {1, 1}, {1, 0}, {0, 1}}}),
-                    "polygon: loop 0 (the outer border) crosses or touches itself");
-  CHECK_THROWS_WITH(
-      mesh({{{0, 0}, {1, 0}, {1, 1}, {0, 0}}}),
-      "polygon: loop 0 (the outer border) ends with its first point again; leave the last one out");
-  CHECK_THROWS_WITH(mesh({{{0, 0}, {1, 0}, {2, 0}}}),
-                    "polygon: loop 0 (the outer border) crosses or touches itself");
-  CHECK_THROWS_WITH(mesh({{{0, 0}, {1, NAN}, {2, 0}}}),
-                    "polygon: loop 0 (the outer border) has a coordinate that is not finite");
+  CHECK_THROWS_WITH(mesh({{{0, 0}, {1, 0}}}), border + "has fewer than three points");
+  CHECK_THROWS_WITH(mesh({{{0, 0}, {1, 1}, {1, 0}, {0, 1}}}), border + "crosses or touches itself");
+  CHECK_THROWS_WITH(mesh({{{0, 0}, {1, 0}, {1, 1}, {0, 0}}}),
+                    border + "ends with its first point again; leave the last one out");
+  CHECK_THROWS_WITH(mesh({{{0, 0}, {1, 0}, {2, 0}}}), border + "crosses or touches itself");
+  CHECK_THROWS_WITH(mesh({{{0, 0}, {1, NAN}, {2, 0}}}), border + "has a coordinate that is not finite");
   CHECK_THROWS_WITH(mesh({unit_square, {{2, 2}, {3, 2}, {3, 3}}}),
                     "polygon: loop 1 (a hole) lies outside loop 0");
   CHECK_THROWS_WITH(mesh({unit_square, hole, {{.9, .5}, {1.2, .5}, {.9, .6}}}),
