@@ -78,14 +78,9 @@ struct Fixture {
   /// Taut, wrinkled, slack, fully wrinkled along one axis or both, at several angles.
   template <class Body>
   void for_each_state(const Body& body) const {
-    for (const auto& [s1, s2] : {std::pair(1.06, 1.03),
-                                 {1.05, 0.8},
-                                 {1.01, 0.95},
-                                 {0.96, 0.85},
-                                 {1.2, 0.3},
-                                 {0.9, 0.3},
-                                 {0.4, 0.3},
-                                 {0.99, 0.6}})
+    static constexpr double stretches[][2] = {{1.06, 1.03}, {1.05, 0.8}, {1.01, 0.95}, {0.96, 0.85},
+                                              {1.2, 0.3},   {0.9, 0.3},  {0.4, 0.3},   {0.99, 0.6}};
+    for (const auto& [s1, s2] : stretches)
       for (const double angle : {0.0, 0.3, 0.8, 1.5}) {
         INFO("stretches " << s1 << ", " << s2 << " at " << angle);
         body(state(s1, s2, angle));
