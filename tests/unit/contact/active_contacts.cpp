@@ -17,26 +17,26 @@ namespace {
 
 constexpr double dhat = 1e-3, stiffness = 100, mu = 0.3, epsilon = 1e-4;
 
-/// The half-space below z = 0.
-std::shared_ptr<ContactModel> a_floor(const std::string& name = "floor", double height = 0) {
-  return make_plugin_from<ContactModel>(
-      "{type: shapes, stiffness: 100, friction: 0.3, obstacles: [{name: " + name +
-      ", shape: half_space, translate: [0, 0, " + std::to_string(height) + "]}]}");
+/// A contact model with friction and these obstacles; both are YAML.
+std::shared_ptr<ContactModel> model_with(const std::string& type, const std::string& obstacles) {
+  return make_plugin_from<ContactModel>("{type: " + type + ", friction: 0.3, obstacles: [" + obstacles +
+                                        "]}");
+}
+
+/// The half-space below this height.
+std::shared_ptr<ContactModel> a_floor(const std::string& name = "floor", double height = 0,
+                                      const std::string& type = "shapes, stiffness: 100") {
+  return model_with(
+      type, "{name: " + name + ", shape: half_space, translate: [0, 0, " + std::to_string(height) + "]}");
 }
 
 /// A half-space whose stiffness the experiment leaves open.
-std::shared_ptr<ContactModel> an_open_floor(double height) {
-  return make_plugin_from<ContactModel>(
-      "{type: shapes, friction: 0.3, obstacles: [{name: floor, shape: half_space, translate: [0, 0, " +
-      std::to_string(height) + "]}]}");
-}
+std::shared_ptr<ContactModel> an_open_floor(double height) { return a_floor("floor", height, "shapes"); }
 
 /// A box whose top is z = 0, larger than the sheet.
 std::shared_ptr<ContactModel> a_plate(double x) {
-  return make_plugin_from<ContactModel>(
-      "{type: shapes, stiffness: 100, friction: 0.3, obstacles: [{name: plate, shape: box, size: [1, 1, "
-      "0.2], translate: [" +
-      std::to_string(x) + ", 0, -0.1]}]}");
+  return model_with("shapes, stiffness: 100", "{name: plate, shape: box, size: [1, 1, 0.2], translate: [" +
+                                                  std::to_string(x) + ", 0, -0.1]}");
 }
 
 Level sheet() { return Level::of(0, grid({0.1, 0.1}, 4, 4, Diagonals::one_way)); }
@@ -60,12 +60,18 @@ double potential(double u) {
   return mu * (q < 1 ? u * q * (1 - q / 3) : u - epsilon / 3);
 }
 
+/// Two steps: one begins at x0, the next at x1.
+void step_between(ActiveContacts& contacts, const Positions& x0, const Positions& x1) {
+  contacts.begin_step(x0);
+  contacts.max_step(x0, x1);
+  contacts.begin_step(x1);
+}
+
 }  // namespace
 
 TEST_CASE("Friction keeps the normal forces of the step's start until update_lagging") {
   const Level level = sheet();
-  const auto models = bound(level, {a_floor()});
-  ActiveContacts contacts(models);
+  ActiveContacts contacts(bound(level, {a_floor()}));
   const Positions x0 = at(level, 0, 0.5 * dhat), x1 = at(level, 20 * epsilon, 0.3 * dhat);
   REQUIRE(normal_force(0.3 * dhat) > 1.5 * normal_force(0.5 * dhat));
   contacts.begin_step(x0);
@@ -86,10 +92,9 @@ TEST_CASE("After a reset, contacts at a state do not depend on the states before
   const Level level = sheet();
   const Positions far = at(level, 0, 0.5), x0 = at(level, 0, 0.5 * dhat),
                   x1 = at(level, 20 * epsilon, 0.5 * dhat);
-  ActiveContacts contacts(
-      bound(level, {make_plugin_from<ContactModel>("{type: ipc, stiffness: 100, friction: 0.3, obstacles: "
-                                                   "[{name: plate, meshed_shape: box, size: [1, 1, 0.2], "
-                                                   "translate: [0, 0, -0.1]}]}")}));
+  ActiveContacts contacts(bound(
+      level, {model_with("ipc, stiffness: 100",
+                         "{name: plate, meshed_shape: box, size: [1, 1, 0.2], translate: [0, 0, -0.1]}")}));
   contacts.begin_step(far);
   REQUIRE(contacts.count() == 0);
   for (const Positions& x : {x0, x1}) {
@@ -103,8 +108,7 @@ TEST_CASE("After a reset, contacts at a state do not depend on the states before
 
 TEST_CASE("Tangential displacements persist between steps, limited to the smoothing distance") {
   const Level level = sheet();
-  const auto models = bound(level, {a_floor()});
-  ActiveContacts contacts(models);
+  ActiveContacts contacts(bound(level, {a_floor()}));
   const double height = 0.4 * dhat, force = normal_force(height);
   const auto step_to = [&](double from, double to) {
     REQUIRE(contacts.max_step(at(level, from, height), at(level, to, height)).fraction == 1);
@@ -150,11 +154,8 @@ TEST_CASE("Ten layers that stick to each other do not creep") {
   }
   const Level level = Level::of(0, rest);
   const auto beside_a_box = [&](const std::string& place) {
-    return bound(level,
-                 {make_plugin_from<ContactModel>(
-                     "{type: ipc, stiffness: 100, friction: 0.3, obstacles: [{name: box, meshed_shape: box, "
-                     "translate: " +
-                     place + "}]}")});
+    return bound(level, {model_with("ipc, stiffness: 100",
+                                    "{name: box, meshed_shape: box, translate: " + place + "}")});
   };
   BoundContacts models = beside_a_box("[0, 9, 0]");
   ActiveContacts contacts(models);
@@ -188,9 +189,7 @@ TEST_CASE("Tangential displacements are advected by obstacle motion") {
   const Positions x0 = at(level, 0, height), x1 = at(level, 0.3 * epsilon, height);
   // The sheet slides on a plate, which then moves in the opposite direction, twice by 0.2 ε.
   ActiveContacts contacts(bound(level, {a_plate(0)}));
-  contacts.begin_step(x0);
-  contacts.max_step(x0, x1);
-  contacts.begin_step(x1);
+  step_between(contacts, x0, x1);
   CHECK(contacts.friction(x1) == Approx(force * potential(0.3 * epsilon)));
   for (const double moved : {-0.2 * epsilon, -0.4 * epsilon}) {
     contacts.update_obstacles(bound(level, {a_plate(moved)}), x1, x1);
@@ -211,9 +210,7 @@ TEST_CASE("A moving cloth's tangential displacements are relative to the obstacl
   for (const auto& [obstacle_motion, expected] :
        {std::pair(7 * epsilon, 0.3 * epsilon), std::pair(5 * epsilon, 2.3 * epsilon)}) {
     ActiveContacts contacts(bound(level, {a_plate(0)}));
-    contacts.begin_step(x0);
-    contacts.max_step(x0, x1);
-    contacts.begin_step(x1);
+    step_between(contacts, x0, x1);
     const Positions x2 = at(level, 7.3 * epsilon, height);
     contacts.update_obstacles(bound(level, {a_plate(obstacle_motion)}), x1, x2);
     CHECK(contacts.friction(x2) == Approx(force * potential(expected)));
@@ -227,20 +224,18 @@ TEST_CASE("Tangential displacements on a static obstacle are the cloth's own, an
   const double height = 0.4 * dhat, force = normal_force(height);
   const auto on_floor = [&](double far) {  // in one model, and in two
     return std::array{
-        bound(level, {make_plugin_from<ContactModel>(
-                         "{type: shapes, stiffness: 100, friction: 0.3, obstacles: [{name: floor, "
-                         "shape: box, size: [4, 4, 0.2], rotate: [0, 0, 33], translate: [0.7, 0.3, -0.1]}, "
-                         "{name: ball, shape: sphere, radius: 0.1, translate: [0, " +
-                         std::to_string(far) + ", 3]}]}")}),
+        bound(level,
+              {model_with("shapes, stiffness: 100",
+                          "{name: floor, shape: box, size: [4, 4, 0.2], rotate: [0, 0, 33], translate: [0.7, "
+                          "0.3, -0.1]}, {name: ball, shape: sphere, radius: 0.1, translate: [0, " +
+                              std::to_string(far) + ", 3]}")}),
         bound(level, {a_floor(), a_plate(far)})};
   };
   const Positions x1 = at(level, 0.3 * epsilon, height), x2 = at(level, 2.3 * epsilon, height);
   for (int k = 0; k < 2; ++k) {
     const BoundContacts before = on_floor(5)[k];
     ActiveContacts contacts(before);
-    contacts.begin_step(at(level, 0, height));
-    contacts.max_step(at(level, 0, height), x1);
-    contacts.begin_step(x1);
+    step_between(contacts, at(level, 0, height), x1);
     BoundContacts models = on_floor(5.5)[k];
     if (k == 1) models[0] = before[0];
     contacts.update_obstacles(models, x1, x2);
@@ -304,9 +299,8 @@ methods: {newton: {}}
   PlainObjective objective(model);
   const Positions& start = s.scene->starts[0];
   Positions x = start;
-  for (Eigen::Index i = 0; i < x.rows(); ++i) {
+  for (Eigen::Index i = 0; i < x.rows(); ++i)
     x.row(i) += Eigen::RowVector3d(0.04 * x(i, 0) + 2e-3, 0.1 * x(i, 1), -1e-3 * std::sin(40.0 * i));
-  }
   objective.contacts().begin_step(start);
   REQUIRE(objective.max_step(start, x).fraction == 1);
   REQUIRE(objective.contacts().friction(x) > 0);
@@ -338,27 +332,22 @@ methods: {newton: {}}
 }
 
 TEST_CASE("A start beyond the strain limit is named, and what to do about it") {
-  const Solved s = solve_yaml(R"(
+  const auto solved = [](const std::string& start) {
+    return solve_yaml(start + R"(
 name: stretched
 cloth: {shape: square, side: 0.1, columns: 3, rows: 3}
 levels: 1
-start: {scale: [1.2, 1, 1]}
 energies: [neo_hookean, {type: strain_limit, limit: 1.1}, gravity]
 methods: {newton: {}}
-)");
-  CHECK(s.levels.back().outcome == Outcome::infeasible);
-  CHECK(s.levels.back().message ==
+)")
+        .levels.back();
+  };
+  const LevelResult scaled = solved("start: {scale: [1.2, 1, 1]}");
+  CHECK(scaled.outcome == Outcome::infeasible);
+  CHECK(scaled.message ==
         "energy or forces at the start are not finite: triangle 0, stretched to 1.2 (limit 1.1) and 7 more; "
         "start nearer to the rest shape, or raise the limit");
-  const Solved pinned = solve_yaml(R"(
-name: pulled
-cloth: {shape: square, side: 0.1, columns: 3, rows: 3}
-levels: 1
-pins: [{point: [0, 0, 0], translate: [-0.1, 0, 0]}]
-energies: [neo_hookean, {type: strain_limit, limit: 1.1}, gravity]
-methods: {newton: {}}
-)");
-  CHECK_THAT(pinned.levels.back().message,
+  CHECK_THAT(solved("pins: [{point: [0, 0, 0], translate: [-0.1, 0, 0]}]").message,
              Catch::EndsWith("; pinned vertices begin at their targets: a schedule moves pins far"));
 }
 
@@ -369,9 +358,7 @@ TEST_CASE("Between steps the stiffness rises of those models alone whose contact
   const double own = contact_stiffness(Material());
   const Positions x0 = at(level, 0, 0.005 * dhat), x1 = at(level, epsilon / 2, 0.005 * dhat);
   ActiveContacts contacts(models);
-  contacts.begin_step(x0);
-  contacts.max_step(x0, x1);
-  contacts.begin_step(x1);
+  step_between(contacts, x0, x1);
   const double barrier_before = contacts.barrier(x1), friction_before = contacts.friction(x1),
                first = models[0]->build_candidates(x1, x1)->build_collisions(x1)->value(x1);
   REQUIRE(friction_before > 0);

@@ -3,7 +3,6 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "core/numerics/model/derivative_check.h"
 #include "core/numerics/patterns/generate.h"
 #include "tests/support/evaluate.h"
 #include "tests/support/kernel_check.h"
