@@ -3,7 +3,6 @@
 #include <limits>
 
 #include "core/numerics/contact_forces/barrier.h"
-#include "core/numerics/contact_forces/contact_stiffness.h"
 #include "core/numerics/contact_forces/friction.h"
 #include "core/numerics/patterns/generate.h"
 #include "plugins/contact/shapes/features.h"
@@ -467,10 +466,6 @@ TEST_CASE("shapes: parameters") {
   const auto found = bound->intersections(lifted(level, 0.01));
   REQUIRE(found.size() == 8);
   CHECK(found[7].second == "shape 0: half_space");
-  Material foil;
-  foil.density = 1e-9;
-  CHECK(contact_stiffness(foil) == Approx(9.81e-5));
-  CHECK(contact_stiffness(Material()) == Approx(10 * 472.6 * 3.18e-4 * 9.81));
 }
 
 TEST_CASE("shapes: gaps near round-off are resolved at edges and rims") {
