@@ -1,15 +1,15 @@
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <catch2/catch.hpp>
+#include <cmath>
 #include <limits>
 
 #include "core/numerics/contact_forces/barrier.h"
-#include "core/numerics/contact_forces/friction.h"
 #include "core/numerics/patterns/generate.h"
 #include "plugins/contact/shapes/features.h"
 #include "plugins/contact/shapes/separation.h"
 #include "plugins/contact/shapes/shapes.h"
 #include "tests/support/evaluate.h"
-#include "tests/support/kernel_check.h"
 #include "tests/support/meshes.h"
 #include "tests/support/random.h"
 
@@ -48,14 +48,13 @@ ShapeParameters level_with(SolidKind kind) {
   return p;
 }
 
-Shapes::Parameters with(const std::vector<ShapeParameters>& shapes, double friction = 0) {
+std::unique_ptr<BoundContact> bound_to(const std::vector<ShapeParameters>& shapes, const Level& level) {
   Shapes::Parameters p;
   p.obstacles = shapes;
   p.dhat = dhat;
   p.min_gap_fraction = min_gap_fraction;
   p.stiffness = kappa;
-  p.friction = friction;
-  return p;
+  return Shapes(p).bind(level, Material());
 }
 
 /// The plugin's own conversion is tested through the model; here the solid is made by hand.
@@ -261,7 +260,7 @@ TEST_CASE("shapes: the smallest gap is the cloth's distance") {
     const ShapeParameters p = some(kind);
     const Solid s = solid_of(p);
     for (const Level* l : {&level, &big}) {
-      const auto bound = Shapes(with({p})).bind(*l, Material());
+      const auto bound = bound_to({p}, *l);
       for (int i = 0; i < 150; ++i) {
         const Positions x = near_cloth(s, *l);
         const double distance = cloth_distance(s, *l, x),
@@ -299,7 +298,7 @@ TEST_CASE("shapes: a half-space's axes are those of the shortest rotation, where
 TEST_CASE("shapes: flat cloth on a face has the pressure κ |b'|") {
   const Level level = square_sheet(5, 0.04);
   for (const SolidKind kind : {SolidKind::half_space, SolidKind::box, SolidKind::cylinder}) {
-    const auto bound = Shapes(with({level_with(kind)})).bind(level, Material());
+    const auto bound = bound_to({level_with(kind)}, level);
     for (const double s : {0.05, 0.5, 0.9}) {
       const Positions x = lifted(level, s * dhat), g = gradient_at(*bound, x);
       INFO(to_string(kind) << " at " << s);
@@ -307,14 +306,6 @@ TEST_CASE("shapes: flat cloth on a face has the pressure κ |b'|") {
       CHECK(g.leftCols(2).norm() <= 1e-12 * g.norm());
     }
     CHECK(energy_at(*bound, lifted(level, 1.001 * dhat)) == 0);
-    // The material's own stiffness leaves the gap that core/numerics/contact_forces/contact_stiffness.h
-    // tells.
-    Shapes::Parameters own = with({level_with(kind)});
-    own.stiffness.reset();
-    const Material cotton;
-    const double weight = cotton.area_density() * 9.81 * 0.04 * 0.04;
-    const Positions rest = lifted(level, 0.82853 * dhat);
-    CHECK(-gradient_at(*Shapes(own).bind(level, cotton), rest).col(2).sum() == Approx(weight).epsilon(1e-3));
   }
 }
 
@@ -323,7 +314,7 @@ TEST_CASE("shapes: a cylinder thinner than the cloth's edges carries cloth howev
   const auto force_on = [&](double radius) {
     ShapeParameters p = level_with(SolidKind::cylinder);
     p.radius = radius;
-    const auto bound = Shapes(with({p})).bind(level, Material());
+    const auto bound = bound_to({p}, level);
     return -gradient_at(*bound, lifted(level, 0.4 * dhat, 0.011, 0.004)).col(2).sum();
   };
   const double thin = force_on(1e-4);
@@ -341,7 +332,7 @@ TEST_CASE("shapes: forces are continuous during sliding") {
       if (lying && !lies) continue;
       if (lying) p.rotate = {0, 90, 0}, p.translate = {0, 0, -p.radius};
       if (kind == SolidKind::capsule && !lying) p.translate.z() = -p.radius - p.height / 2;
-      const auto bound = Shapes(with({p})).bind(level, Material());
+      const auto bound = bound_to({p}, level);
       const auto largest_jump = [&](int steps) {
         double jump = 0, force = 0;
         Positions last;
@@ -404,7 +395,7 @@ TEST_CASE("shapes: max_step names the blocking pair") {
   p.name = "ball";
   p.radius = 0.002;
   p.translate = {0.01, -0.02, -0.002};
-  const auto bound = Shapes(with({p})).bind(level, Material());
+  const auto bound = bound_to({p}, level);
   const Positions x0 = lifted(level, 0.01), x1 = lifted(level, -0.09);
   const StepLimit limit = bound->build_candidates(x0, x1)->max_step();
   CHECK(limit.fraction == Approx(0.09).epsilon(1e-9));
@@ -432,7 +423,7 @@ TEST_CASE("shapes: collisions at a state do not depend on the motion of the cand
   all[4].translate.z() = -0.2;
   for (int i = 0; i < 4; ++i)
     all[i].translate.head<2>() = Eigen::Vector2d(i % 2 ? 0.1 : -0.1, i / 2 ? 0.1 : -0.1);
-  const auto bound = Shapes(with(all)).bind(level, Material());
+  const auto bound = bound_to(all, level);
   double height = 0.4;
   Positions x0 = lifted(level, height);
   int contacts = 0;
@@ -454,14 +445,14 @@ TEST_CASE("shapes: collisions at a state do not depend on the motion of the cand
 
 TEST_CASE("shapes: parameters") {
   const Level level = square_sheet(3, 0.1);
-  CHECK(Shapes(with({})).bind(level, Material()) == nullptr);
+  CHECK(bound_to({}, level) == nullptr);
   ShapeParameters p = level_with(SolidKind::half_space);
   p.normal.setZero();
-  CHECK_THROWS_WITH(Shapes(with({level_with(SolidKind::box), p})),
+  CHECK_THROWS_WITH(bound_to({level_with(SolidKind::box), p}, level),
                     "thing: half_space needs a \"normal\" that is not zero");
   p.normal = {0, 0, -3};  // turned over: the cloth is below
   p.name.clear();
-  const auto bound = Shapes(with({p})).bind(level, Material());
+  const auto bound = bound_to({p}, level);
   CHECK(bound->intersections(lifted(level, -0.01)).empty());
   const auto found = bound->intersections(lifted(level, 0.01));
   REQUIRE(found.size() == 8);

@@ -33,10 +33,7 @@ struct Sliding {
       contacts.push_back(contact);
     }
   }
-  Positions moved(double by, unsigned seed) const {
-    return reference + by * Eigen::Map<const Positions>(normal_numbers(reference.size(), seed).data(),
-                                                        reference.rows(), 3);
-  }
+  Positions moved(double by, unsigned seed) const { return shaken(reference, by, seed); }
   LaggedFriction energy() const { return LaggedFriction({contacts}, reference, {}, smoothing); }
 };
 
