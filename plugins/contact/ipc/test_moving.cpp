@@ -37,6 +37,16 @@ Positions wavy(const Level& level, double height) {
   return x;
 }
 
+ObstacleParameters ball(int subdivisions, const Vector& translate) {
+  ObstacleParameters p;
+  p.name = "ball";
+  p.meshed_shape = "sphere";
+  p.radius = 0.05;
+  p.subdivisions = subdivisions;
+  p.translate = translate;
+  return p;
+}
+
 using Bodies = std::vector<ObstacleParameters>;
 
 std::unique_ptr<BoundContact> bound(const Bodies& bodies, const Level& level, double friction = 0) {
@@ -255,18 +265,10 @@ TEST_CASE("ipc: one of many obstacles moves, bit for bit the same with any numbe
   Positions x = wavy(level, 0.01);
   Bodies from = {box({0.2, 0.2, 0.1}, {0, 0, -0.5}), box({0.05, 0.05, 0.1}, {0.1, 0, -0.12})}, to;
   from[1].name = "mover";
-  ObstacleParameters ball;
-  ball.name = "ball";
-  ball.meshed_shape = "sphere";
-  ball.radius = 0.05;
-  ball.subdivisions = 3;
-  ball.translate = {-0.1, 0, -0.2};
-  from.push_back(ball);
+  from.push_back(ball(3, {-0.1, 0, -0.2}));
   // The first and the last nearly touch the cloth, and are static.
   from[0].translate.z() = x.col(2).minCoeff() - 0.05 - 1e-5;
-  Bodies high = {ball};
-  high[0].translate.z() += 0.3;
-  const double up = bound(high, level)->max_step(*bound({ball}, level), x).fraction;
+  const double up = bound({ball(3, {-0.1, 0, 0.1})}, level)->max_step(*bound({from[2]}, level), x).fraction;
   from[2].translate.z() += 0.3 * up;
   to = from;
   to[1].translate += Vector(0.02, 0.01, 0.3);
@@ -290,21 +292,14 @@ TEST_CASE("ipc: one of many obstacles moves, bit for bit the same with any numbe
 
 TEST_CASE("ipc: an obstacle whose triangles change is refused by name") {
   const Level level = square_sheet(3, 0.2);
-  ObstacleParameters ball;
-  ball.name = "ball";
-  ball.meshed_shape = "sphere";
-  ball.translate = {0, 0, 3};
-  ball.subdivisions = 1;
-  const auto before = bound({ball}, level);
-  ball.subdivisions = 2;
-  CHECK_THROWS_WITH(bound({ball}, level)->max_step(*before, level.rest.vertices),
+  const auto before = bound({ball(1, {0, 0, 3})}, level);
+  CHECK_THROWS_WITH(bound({ball(2, {0, 0, 3})}, level)->max_step(*before, level.rest.vertices),
                     Catch::Contains("\"ball\"") && Catch::Contains("320 triangles instead of 80"));
 }
 
 TEST_CASE("ipc: touched points move with their obstacle") {
   const Level level = square_sheet(5, 0.2);
-  Positions x = level.rest.vertices;
-  x.col(2).setConstant(4e-4);
+  const Positions x = level.rest.vertices.rowwise() + Eigen::RowVector3d(0, 0, 4e-4);
   const Bodies from = {box({1, 0.5, 1}, {0.5, 0, -0.5})};  // below one half of the cloth
   Bodies to = from;
   to[0].translate += Vector(0.01, 0.003, 0);
@@ -339,6 +334,15 @@ double drag(ActiveContacts& contacts, const BoundContacts& models, const Positio
   return -(all.col(0) - push.col(0)).sum();
 }
 
+/// The same on a cloth at x once its obstacles have moved.
+double drag_between(const BoundContacts& before, const BoundContacts& after, const Positions& x) {
+  ActiveContacts contacts(before);
+  contacts.begin_step(x);
+  contacts.update_obstacles(after, x, x);
+  contacts.begin_step(x);
+  return drag(contacts, after, x);
+}
+
 /// Sum of the magnitudes of a model's forces along z [N].
 double normal_force(const BoundContact& model, const Positions& x) {
   Positions push = Positions::Zero(x.rows(), 3);
@@ -352,8 +356,7 @@ TEST_CASE(
     "ipc: a plate that slides below a cloth drags it with μ times the normal force, however finely it is "
     "meshed") {
   const Level level = square_sheet(9, 0.2);
-  Positions x = level.rest.vertices;
-  x.col(2).setConstant(4e-4);
+  const Positions x = level.rest.vertices.rowwise() + Eigen::RowVector3d(0, 0, 4e-4);
   const Scratch folder;
   for (const int columns : {2, 11, 41, 81}) {
     TriangleMesh plate = grid({0.8, 0.8}, columns, columns, Diagonals::criss_cross);
@@ -367,33 +370,24 @@ TEST_CASE(
     };
     for (const double shift : {1e-3, 1e-2, 0.1}) {
       CAPTURE(columns, shift);
-      const BoundContacts before = {at(0)}, after = {at(shift)};
-      ActiveContacts contacts(before);
-      contacts.begin_step(x);
-      contacts.update_obstacles(after, x, x);
-      contacts.begin_step(x);
-      CHECK(drag(contacts, after, x) == Approx(0.3 * normal_force(*after[0], x)).epsilon(1e-6));
+      const auto after = at(shift);
+      CHECK(drag_between({at(0)}, {after}, x) == Approx(0.3 * normal_force(*after, x)).epsilon(1e-6));
     }
   }
 }
 
 TEST_CASE("ipc: of two obstacles that a cloth lies between, the static one does not drag it along") {
   const Level level = square_sheet(9, 0.2);
-  Positions x = level.rest.vertices;
-  x.col(2).setConstant(4e-4);
+  const Positions x = level.rest.vertices.rowwise() + Eigen::RowVector3d(0, 0, 4e-4);
   const auto between = [&](double shift) {
     Bodies all = {box({1, 1, 1}, {0, 0, -0.5}), box({1, 1, 1}, {shift, 0, 0.5 + 8e-4})};
     all[0].friction = 1;
     all[1].friction = 0.1;
     return std::shared_ptr<const BoundContact>(bound(all, level, 0.3));
   };
-  const BoundContacts before = {between(0)}, after = {between(0.01)};
-  ActiveContacts contacts(before);
-  contacts.begin_step(x);
-  contacts.update_obstacles(after, x, x);
-  contacts.begin_step(x);
   const auto lower = bound({box({1, 1, 1}, {0, 0, -0.5})}, level);
-  CHECK(drag(contacts, after, x) == Approx(0.1 * normal_force(*lower, x)).epsilon(1e-6));
+  CHECK(drag_between({between(0)}, {between(0.01)}, x) ==
+        Approx(0.1 * normal_force(*lower, x)).epsilon(1e-6));
 }
 
 TEST_CASE("ipc: contacts that form in a step have friction when the obstacle moves next") {

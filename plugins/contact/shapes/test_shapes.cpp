@@ -371,17 +371,15 @@ TEST_CASE("shapes: a step never leads to an intersection") {
       CHECK(part >= 0);
       CHECK(part <= 1);
       (part < 1 ? cut : free) += 1;
-      for (int k = 1; k <= 20; ++k) {
+      const auto distance_at = [&](double t) {
         Corners now;
-        for (int c = 0; c < 3; ++c) now[c] = from[c] + part * k / 20 * (to[c] - from[c]);
-        CHECK(searched_distance(s, now) >= min_gap_fraction * start * (1 - 1e-3) - 1e-11);
-      }
+        for (int c = 0; c < 3; ++c) now[c] = from[c] + t * (to[c] - from[c]);
+        return searched_distance(s, now);
+      };
+      for (int k = 1; k <= 20; ++k)
+        CHECK(distance_at(part * k / 20) >= min_gap_fraction * start * (1 - 1e-3) - 1e-11);
       // Not overly conservative, except for long rolling motions about an edge.
-      if (part < 1) {
-        Corners now;
-        for (int c = 0; c < 3; ++c) now[c] = from[c] + part * (to[c] - from[c]);
-        loose += searched_distance(s, now) > 1.1 * min_gap_fraction * start;
-      }
+      if (part < 1) loose += distance_at(part) > 1.1 * min_gap_fraction * start;
     }
   }
   REQUIRE(cut > 1000);
