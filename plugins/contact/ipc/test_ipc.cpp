@@ -151,10 +151,8 @@ TEST_CASE("ipc: a surface's areas and representative triangles") {
       vertex_representatives[s.triangles(t, k)] += s.represents_vertex(t, k);
       edge_representatives[s.triangle_edges(t, k)] += s.represents_edge(t, k);
     }
-  CHECK(std::all_of(vertex_representatives.begin(), vertex_representatives.end(),
-                    [](int count) { return count == 1; }));
-  CHECK(std::all_of(edge_representatives.begin(), edge_representatives.end(),
-                    [](int count) { return count == 1; }));
+  CHECK(vertex_representatives == std::vector<int>(vertex_representatives.size(), 1));
+  CHECK(edge_representatives == std::vector<int>(edge_representatives.size(), 1));
 }
 
 TEST_CASE("ipc: obstacles are valid and placed correctly, and named if they are not") {

@@ -142,6 +142,7 @@ Query random_query(std::mt19937& random, int family) {
   Query q;
   q.kind = random() % 2 ? PairKind::point_triangle : PairKind::edge_edge;
   const bool edges = q.kind == PairKind::edge_edge;
+  const int first = first_primitive_size(q.kind), second = 4 - first;
   q.x0 = any();
   q.x1 = any();
   // A pair that nearly touches in its middle, and the direction from the second side to the first.
@@ -162,7 +163,7 @@ Query random_query(std::mt19937& random, int family) {
   };
   const auto push = [&](const Vector3d& p) {
     q.x1 = q.x0;
-    q.x1.leftCols(first_primitive_size(q.kind)).colwise() += p;
+    q.x1.leftCols(first).colwise() += p;
   };
   switch (family) {
     case 0:  // anything
@@ -222,14 +223,12 @@ Query random_query(std::mt19937& random, int family) {
     }
     case 10: {  // sides that turn about each other
       touching(size(1e-6, 1e-1));
-      q.x1.leftCols(first_primitive_size(q.kind)) = -q.x0.leftCols(first_primitive_size(q.kind));
-      q.x1.rightCols(4 - first_primitive_size(q.kind)) =
-          q.x0.rightCols(4 - first_primitive_size(q.kind)) +
-          size(1e-6, 1) * any().rightCols(4 - first_primitive_size(q.kind));
+      q.x1.leftCols(first) = -q.x0.leftCols(first);
+      q.x1.rightCols(second) = q.x0.rightCols(second) + size(1e-6, 1) * any().rightCols(second);
       break;
     }
     default:  // towards a common point: vertex on vertex, edge on vertex
-      q.x1.col(random() % first_primitive_size(q.kind)) = q.x1.col(3);
+      q.x1.col(random() % first) = q.x1.col(3);
   }
   if (random() % 4 == 0) q.min_gap_fraction = random() % 2 ? 0.5 : 0;
   if (random() % 4 == 0) q.offset = unit(random) * std::max(q.gap(0), 0.0);

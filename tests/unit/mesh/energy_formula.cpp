@@ -195,14 +195,13 @@ TEST_CASE("energy_formula: grain turns warp, and membranes buckle below the mesh
   CHECK(energy_with(90) == Approx(0.5 * 2e3 * g * g));
 
   x = 0.9 * level.rest.vertices;
-  const auto plain_and_buckling = [&](const Energy& energy) {
-    return std::pair(energy.bind(level, Material())->value(x),
-                     energy.bind_buckling(level, Material(), 0)->value(x));
+  const auto check_buckling = [&](const Energy& energy) {
+    CHECK(energy.bind_buckling(level, Material(), 0)->value(x) <
+          0.5 * energy.bind(level, Material())->value(x));
   };
-  const auto [woven, woven_buckling] = plain_and_buckling(MembraneFormula<formulas::woven>({}));
-  CHECK(woven_buckling < 0.5 * woven);
-  const auto [own, buckling] = plain_and_buckling(MembraneFormula<formulas::every_function>({}));
-  CHECK(buckling < 0.5 * own);
+  check_buckling(MembraneFormula<formulas::woven>({}));
+  check_buckling(MembraneFormula<formulas::every_function>({}));
+  check_buckling(MembraneFormula<formulas::ogden>({}));
 }
 
 TEST_CASE("energy_formula: a law by strains, by stretches and by edge vectors is one energy") {
@@ -224,10 +223,6 @@ TEST_CASE("energy_formula: a law by strains, by stretches and by edge vectors is
   }
   CHECK_THROWS_WITH(MembraneFormula<formulas::mixed>({}),
                     Catch::Contains("uses Green strains (g11, g22, g12) and principal stretches (s1, s2)"));
-  const Positions narrow = 0.9 * level.rest.vertices;
-  const MembraneFormula<formulas::ogden> ogden({});
-  CHECK(ogden.bind_buckling(level, material, 0)->value(narrow) <
-        0.5 * ogden.bind(level, material)->value(narrow));
 }
 
 TEST_CASE("energy_formula: log(J) keeps the digits of small strains") {
@@ -236,6 +231,7 @@ TEST_CASE("energy_formula: log(J) keeps the digits of small strains") {
     const double g = strain + strain * strain / 2, det = (1 + 2 * g) * (1 + 2 * g);
     CHECK(log(area_ratio<1>(g, g, 0.0, det)).value == Approx(2 * std::log1p(strain)).epsilon(1e-12));
   }
-  CHECK(log(area_ratio<1>(0.5, 0.2, 0.1, 2 * 1.4 - 0.04)).value == Approx(std::log(2 * 1.4 - 0.04) / 2));
-  CHECK(J(area_ratio<1>(0.5, 0.2, 0.1, 2 * 1.4 - 0.04)).value == Approx(std::sqrt(2 * 1.4 - 0.04)));
+  const double det = 2 * 1.4 - 0.04;
+  CHECK(log(area_ratio<1>(0.5, 0.2, 0.1, det)).value == Approx(std::log(det) / 2));
+  CHECK(J(area_ratio<1>(0.5, 0.2, 0.1, det)).value == Approx(std::sqrt(det)));
 }
