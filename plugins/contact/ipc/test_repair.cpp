@@ -43,8 +43,7 @@ TriangleMesh sheet_with_wall() {
 
 /// Both sides of the sheet's middle are tips of cones that share it.
 TriangleMesh cones() {
-  TriangleMesh mesh;
-  append(mesh, {{0, 0, 0}}, {});
+  TriangleMesh mesh = mesh_of({{0, 0, 0}}, {});
   for (const double side : {-1.0, 1.0}) {
     const int first = static_cast<int>(mesh.vertices.rows());
     for (int k = 0; k < 6; ++k)
@@ -110,21 +109,23 @@ TEST_CASE("ipc: an obstacle loses what has no surface, and says so once") {
   }
 }
 
-TEST_CASE("ipc: a mesh without faults stays as it is") {
+TEST_CASE("ipc: a mesh without faults stays as it is, one without any area is refused") {
   const TriangleMesh mesh = sheet();
   const RepairedMesh repaired = repair_mesh({mesh});
   CHECK(repaired.frames[0].vertices == mesh.vertices);
   CHECK(repaired.frames[0].triangles == mesh.triangles);
   CHECK(repaired.done.text() == "");
+  CHECK_THROWS_WITH(repair_mesh({mesh_of({{0, 0, 0}, {1, 0, 0}, {2, 0, 0}}, {{0, 1, 2}, {0, 0, 1}})}),
+                    Contains("no triangle has an area"));
 }
 
 TEST_CASE("ipc: the frames of an animation are repaired together") {
   TriangleMesh first = sheet(), second = sheet();
-  for (TriangleMesh* mesh : {&first, &second})
-    append(*mesh, {{9, 9, 9}, {0, 0, 0}}, {{0, 6, 1}, {12, 13, 26}});
   second.vertices.col(2).array() += 0.1;
-  first.vertices.row(26) = 0.5 * (first.vertices.row(12) + first.vertices.row(13));
-  second.vertices.row(26) = 0.5 * (second.vertices.row(12) + second.vertices.row(13));
+  for (TriangleMesh* mesh : {&first, &second}) {
+    const Vector middle = 0.5 * (mesh->vertices.row(12) + mesh->vertices.row(13));
+    append(*mesh, {{9, 9, 9}, middle}, {{0, 6, 1}, {12, 13, 26}});
+  }
   const RepairedMesh repaired = repair_mesh({first, second});
   REQUIRE(repaired.frames.size() == 2);
   CHECK(repaired.frames[0].triangles == repaired.frames[1].triangles);
@@ -142,12 +143,6 @@ TEST_CASE("ipc: the frames of an animation are repaired together") {
   ObstacleParameters p;
   p.animation = {(folder / "a.obj").string(), (folder / "b.obj").string()};
   CHECK_THROWS_WITH(ObstacleMeshes::of(p, 0), Contains("must have the same triangles"));
-}
-
-TEST_CASE("ipc: a mesh without any area is refused") {
-  TriangleMesh mesh;
-  append(mesh, {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}}, {{0, 1, 2}, {0, 0, 1}});
-  CHECK_THROWS_WITH(repair_mesh({mesh}), Contains("no triangle has an area"));
 }
 
 TEST_CASE("ipc: a flat sheet acts as its plane where a wall joins it from below") {
