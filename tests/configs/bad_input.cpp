@@ -1,7 +1,5 @@
 // What the command says to bad input: the exact lines. Nothing may be written in any of these cases.
 
-#include <arpa/inet.h>
-#include <sys/socket.h>
 #include <sys/stat.h>
 
 #include <catch2/catch.hpp>
@@ -9,8 +7,9 @@
 #include <cstring>
 #include <map>
 
+#include "core/app/view/live_server.h"
 #include "tests/support/command.h"
-#include "tests/support/folders.h"
+#include "tests/support/live_client.h"
 
 namespace fs = std::filesystem;
 
@@ -24,10 +23,9 @@ std::map<std::string, std::string> files_in(const fs::path& folder) {
 }
 
 /// Standard error of a command that must be refused and leave the folder as it was.
-std::string refused(const Scratch& folder, const std::string& arguments,
-                    const std::string& environment = "") {
+std::string refused(const Scratch& folder, const std::string& arguments) {
   const auto before = files_in(folder.path);
-  const std::string said = refused_by(arguments, folder.path, environment);
+  const std::string said = refused_by(arguments, folder.path);
   CHECK((files_in(folder.path) == before));
   return said;
 }
@@ -70,13 +68,10 @@ TEST_CASE("the base file of these cases is valid: each case has exactly one faul
                             "Read: 1 × 1 m, 1 part, edges 0\\.1–0\\.14 m on level 1, .*\n"));
 }
 
-TEST_CASE("a config that is missing, a folder, empty or no YAML") {
+TEST_CASE("a config that is missing, or no YAML") {
   const Scratch folder;
   CHECK(refused(folder, "run e.yaml --out out") == "error: e.yaml: no such file\n");
   CHECK(refused(folder, "check e.yaml") == "error: e.yaml: no such file\n");
-  CHECK(refused(folder, "run . --out out") == "error: .: is a folder, not a file\n");
-  CHECK(said_of("") == "error: e.yaml: is empty; a config is a map of keys and values\n");
-  CHECK(said_of("- name\n") == "error: e.yaml:1:1: a config must begin with a map of keys and values\n");
   CHECK(said_of_edit("[0.9, 0.9, 1]", "[0.9, 0.9, 1") ==
         "error: e.yaml:4:48: not valid YAML: illegal flow end\n");
 }
@@ -88,8 +83,6 @@ TEST_CASE("a config that is not a regular file is refused without blocking") {
        {"check pipe.yaml", "run pipe.yaml --out out", "sweep pipe.yaml --out out"})
     CHECK(drape_with(command, folder.path).err ==
           "error: pipe.yaml: is a pipe or a device; give a file on a disk\n");
-  CHECK(refused(folder, "check /dev/zero") ==
-        "error: /dev/zero: is a pipe or a device; give a file on a disk\n");
   folder.write("e.yaml", small_experiment());
   fs::resize_file(folder / "e.yaml", 100000000);
   CHECK(drape_with("check e.yaml", folder.path).err ==
@@ -133,12 +126,6 @@ TEST_CASE("a start or a reference that is no regular file, or is not finite") {
       drape_with("check e.yaml --set cloth.side=0.1 --set 'start.translate=[9e8, 0, 0]'", folder.path).err,
       Catch::Contains("the start of level 0: the mesh is 0.127 m across and 9e+08 m from the "
                       "origin, where rounding moves vertices by 2e-07 m; move it nearer\n"));
-  CHECK_THAT(
-      drape_with("check e.yaml --set cloth.side=1e6 --set 'start.scale=[1e4, 1, 1]'", folder.path).err,
-      Catch::Contains(
-          "the start of level 0: 30 vertices have too large a coordinate: 1 with 2e+09 m, 2 with 4e+09 m, "
-          "3 with 6e+09 m, 4 with 8e+09 m, 5 with 1e+10 m, … (counted from 0); at most 1e+09 m can be "
-          "computed with: is the file in metres?\n"));
 }
 
 TEST_CASE("output is short for any number and length of errors") {
@@ -165,10 +152,6 @@ TEST_CASE("terminal control characters are printed escaped") {
         "error: e.yaml:3:9: \"levels\" must be an integer, not the text \"\\x1b[2J\\x07\"\n");
   CHECK(said_of_edit("levels: 2", "\"\\e[2J\\n\": 2")
             .starts_with("error: e.yaml:3:1: unknown key \"\\x1b[2J\\n\"; known"));
-  CHECK(said_of_edit("levels: 2", "levels: 2 \x1b[2J") ==
-        "error: e.yaml:3:11: has the byte \\x1b, which is no text in UTF-8\n");
-  CHECK(said_of_edit("shape: square", "shape: file, file: \"a\\0.obj\"") ==
-        "error: e.yaml:2:28: \"a\\x00.obj\" has a NUL character; take it out\n");
   const Scratch folder;
   const std::string red = "$(printf '\\033[31m')";
   CHECK(refused(folder, "run " + red) == "error: \\x1b[31m: no such file\n");
@@ -200,13 +183,8 @@ TEST_CASE("each fault of a key, a value or a plugin is named where it stands") {
       "quadratic_bending, strain_limit, stvk, woven";
   check_refused({
       {"levels: 2", "wind: 2", "3:1: unknown key \"wind\"; known keys are " + top_keys},
-      {"levels: 2", "lvels: 2", "3:1: unknown key \"lvels\"; did you mean \"levels\"?"},
-      {"force_tolerance", "force_tolerence",
-       "9:10: unknown key \"force_tolerence\" in newton; did you mean \"force_tolerance\"?"},
       {"levels: 2", "levels: 2\nlevels: 3", "4:1: repeated key \"levels\"; it is first set at e.yaml:3:1"},
       {"name: small\n", "", "1:1: \"name\" is required and missing"},
-      {"levels: 2", "levels: 20", "3:9: \"levels\" must be at most 10, not 20"},
-      {"[0.9, 0.9, 1]", "[0.9, nan, 1]", "4:22: item 2 of \"scale\" must be a finite number, not nan"},
       {"columns: 6, rows: 6", "columns: 1, rows: 6", "2:8: grid: at least 2 × 2 vertices are needed"},
       {"name: small", "name: a/b",
        "1:7: name \"a/b\" names files: write it with letters, digits, \"_\", \"-\" and \".\", not beginning "
@@ -280,7 +258,6 @@ TEST_CASE("all errors of a config are listed in file order, those of --set last"
   text = replaced(text, "levels: 2", "levels: 2.5");
   text = replaced(text, "[0.9, 0.9, 1]", "[0.9, 0.9]");
   text = replaced(text, "region: nearest, point: [1", "region: nearst, point: [1");
-  text = replaced(text, "hinge,", "hinje,");
   text = replaced(text, "cascadic: {}", "cascadic: {prolongation: linear}");
   CHECK(said_of(text, "--set newton.max_steps=few") ==
         "error: e.yaml:2:16: \"shape\" must be \"square\", \"rectangle\", \"disc\", \"polygon\" or \"file\", "
@@ -289,10 +266,6 @@ TEST_CASE("all errors of a config are listed in file order, those of --set last"
         "error: e.yaml:4:16: \"scale\" must be a list of 3 numbers, not of 2\n"
         "error: e.yaml:7:14: \"region\" must be \"nearest\", \"ball\", \"box\", \"border\" or \"vertices\", "
         "not \"nearst\"; did you mean \"nearest\"?\n"
-        "error: e.yaml:8:25: unknown energy \"hinje\"; did you mean \"hinge\"? known: constant_load, "
-        "formula, gravity, hinge, midedge_bending, "
-        "neo_hookean, pressure, quadratic_bending, strain_limit, stvk, woven; a plugin of your own is given "
-        "by --plugin or found by DRAPE_PLUGIN_PATH; one registered in Python is known to that program alone\n"
         "error: e.yaml:12:28: \"prolongation\" must be \"midpoint\" or \"refiner\", not \"linear\"\n"
         "error: --set newton.max_steps: \"max_steps\" must be an integer, not \"few\"\n");
 }
@@ -356,10 +329,6 @@ TEST_CASE("an option that does not fit") {
       {"--set levelz=3", "--set levelz: unknown key \"levelz\"; did you mean \"levels\"?"},
       {"--set levels", "--set levels: write it as key=value, as in --set newton.step_size=0.1"},
       {"--set =3", "--set =3: write it as key=value, as in --set newton.step_size=0.1"},
-      {"--set 'levels=[1'", "--set levels:1:1: not valid YAML: end of sequence flow not found"},
-      {"--set pins.7.radius=1", "--set pins.7.radius: \"7\" is not an index of a list of 2, counted from 0"},
-      {"--set handles.0.radius=2",
-       "--set handles.0.radius: the experiment has no \"handles\"; write that list first"},
       {"--method pcs,fast", "--method fast: the experiment's methods are pcs, cascadic, newton"},
       {"--levels 0", "--levels: must be an integer of at least 1, not 0" + see},
       {"--levels 11", "--levels: \"levels\" must be at most 10, not 11"},
@@ -375,33 +344,15 @@ TEST_CASE("an option that does not fit") {
     CHECK(said_of(small, arguments) == "error: " + refusal + "\n");
 }
 
-/// Listens on a port of 127.0.0.1 as long as it lives.
-struct TakenPort {
-  int socket = ::socket(AF_INET, SOCK_STREAM, 0), number = 0;
-  TakenPort() {
-    sockaddr_in address{};
-    address.sin_family = AF_INET;
-    address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-    socklen_t size = sizeof address;
-    auto* any = reinterpret_cast<sockaddr*>(&address);
-    REQUIRE(bind(socket, any, size) == 0);
-    REQUIRE(listen(socket, 1) == 0);
-    REQUIRE(getsockname(socket, any, &size) == 0);
-    number = ntohs(address.sin_port);
-  }
-  ~TakenPort() { close(socket); }
-};
-
-TEST_CASE("a live view that is not available") {
-  const TakenPort taken;
-  const std::string port = std::to_string(taken.number);
+TEST_CASE("a live view whose port is taken is refused") {
+  const drape::LiveServer taken(0, {});
+  const std::string port = std::to_string(LiveAddress(taken.url()).port);
   CHECK(said_of(small_experiment(), "--view --port " + port) ==
         "error: --port " + port + ": cannot listen on 127.0.0.1:" + port +
             " (Address already in use); name another port, or leave --port out for one that is free\n");
 }
 
 TEST_CASE("keys that the shape or the region does not read, and empty items, are refused") {
-  CHECK(said_of_edit("levels: 2", "friction: 0.2").starts_with("error: e.yaml:3:"));
   const std::vector<std::pair<std::string, std::string>> refusals = {
       {"cloth: {file: skirt.obj}", "5:15: \"file\" in cloth needs \"shape: file\"; here \"shape\" is square"},
       {"cloth: {shape: disc, triangulation: criss_cross}",
@@ -458,19 +409,11 @@ TEST_CASE("a results folder that cannot be used") {
   CHECK(
       refused(folder, "run e.yaml --out link") ==  // which is left there
       "error: link: is a link to gone, which does not exist; make that folder, or name another with --out\n");
-
-  fs::create_directory(folder / "mine");
-  folder.write("mine/config.yaml", "mine");
-  folder.write("mine/writable.part", "mine too");
-  for (const std::string overwrite : {"", " --overwrite"})
-    CHECK(refused(folder, "run e.yaml --out mine" + overwrite) ==
-          "error: mine/config.yaml: is there already, and not from a run; name another results folder with "
-          "--out\n");
-  CHECK(text_of(folder / "mine/writable.part") == "mine too");
-  CHECK(std::distance(fs::directory_iterator(folder / "mine"), {}) == 2);
 }
 
 TEST_CASE("earlier results stay without --overwrite, which removes only a run's own files") {
+  const bool with_results = GENERATE(true, false);
+  CAPTURE(with_results);
   const Scratch folder(small_experiment());
   const std::string run = "run e.yaml --out out --quiet --no-report --levels 1 --method ";
   drape_ends(run + "pcs", folder);
@@ -481,6 +424,7 @@ TEST_CASE("earlier results stay without --overwrite, which removes only a run's 
   for (const std::string& name : own) folder.write("out/" + name, "mine");
   for (const char* of_the_run : {"pictures/pcs_l0_on_l1.png", "fields/pcs_l0_l1.ply", "errors.csv.part"})
     folder.write(std::string("out/") + of_the_run, "");
+  if (!with_results) fs::remove(folder / "out/results.json");
   CHECK(refused(folder, run + "newton") ==
         "error: out: holds the results of another run; name another folder with --out, or replace them with "
         "--overwrite\n");
@@ -502,15 +446,17 @@ TEST_CASE("earlier results stay without --overwrite, which removes only a run's 
 TEST_CASE("a folder is a run's only with results or a lock of drape's own") {
   const Scratch folder(small_experiment());
   fs::create_directory(folder / "mine");
-  folder.write("mine/results.json", "{\"accuracy\": 0.9}");
   folder.write("mine/config.yaml", "mine");
-  CHECK(refused(folder, "run e.yaml --out mine --overwrite") ==
-        "error: mine/config.yaml: is there already, and not from a run; name another results folder with "
-        "--out\n");
+  folder.write("mine/writable.part", "mine too");
+  for (const bool with_results : {false, true}) {
+    if (with_results) folder.write("mine/results.json", "{\"accuracy\": 0.9}");
+    for (const std::string overwrite : {"", " --overwrite"})
+      CHECK(refused(folder, "run e.yaml --out mine" + overwrite) ==
+            "error: mine/config.yaml: is there already, and not from a run; name another results folder with "
+            "--out\n");
+  }
   CHECK(refused(folder, "run --resume mine") ==
         "error: mine: holds no run; give the results folder of one\n");
-  CHECK(text_of(folder / "mine/config.yaml") == "mine");
-  CHECK(std::distance(fs::directory_iterator(folder / "mine"), {}) == 2);
 
   fs::create_directory(folder / "sweep");
   folder.write("sweep/sweep.json", "{}");
@@ -528,7 +474,6 @@ TEST_CASE("--overwrite removes no file that the new run reads") {
         "error: " + mesh +
             ": is read by this experiment, and --overwrite would remove it; copy it, or name another "
             "results folder with --out\n");
-  CHECK(fs::exists(mesh));
 }
 
 TEST_CASE("a file where a run has a folder, or a folder where it has a file, is refused and not removed") {
@@ -536,14 +481,12 @@ TEST_CASE("a file where a run has a folder, or a folder where it has a file, is 
     const Scratch folder(small_experiment());
     fs::create_directories(folder / "out/checkpoint");
     folder.write("out/checkpoint/lock", "");
-    const fs::path mine = folder / ("out/" + name);
-    fs::create_directories(mine.parent_path());
+    fs::create_directories((folder / ("out/" + name)).parent_path());
     folder.write("out/" + name, "mine");
     INFO(name);
     CHECK(refused(folder, "run e.yaml --out out --overwrite") ==
           "error: out/" + name.substr(0, name.find('/')) +
               ": is not what a run has by this name; move it, or name another results folder with --out\n");
-    CHECK(text_of(mine) == "mine");
   }
 }
 
@@ -558,19 +501,6 @@ TEST_CASE("a run that was killed before its first write blocks no other run") {
   }
 }
 
-TEST_CASE("only --overwrite removes a run's files, even without results.json") {
-  const Scratch folder(small_experiment());
-  const std::string run = "run e.yaml --out out --quiet --no-report --levels 1 --method ";
-  drape_ends(run + "pcs", folder);
-  fs::remove(folder / "out/results.json");
-  CHECK(refused(folder, run + "newton") ==
-        "error: out: holds the results of another run; name another folder with --out, or replace them with "
-        "--overwrite\n");
-  REQUIRE(fs::exists(folder / "out/levels/pcs_l0.ply"));
-  drape_ends(run + "newton --overwrite", folder);
-  CHECK_FALSE(fs::exists(folder / "out/levels/pcs_l0.ply"));
-}
-
 TEST_CASE("a run may be overwritten by a run of its own config.yaml") {
   const Scratch folder(small_experiment());
   const std::string options = " --quiet --no-report --levels 1 --method pcs --out ";
@@ -582,14 +512,4 @@ TEST_CASE("a run may be overwritten by a run of its own config.yaml") {
   CHECK(again.err == "");
   CHECK(text_of(folder / "out/start.ply") == start);
   CHECK(text_of(folder / "out/levels/pcs_l0.ply") == state);
-}
-
-TEST_CASE("plugin libraries that do not fit") {
-  const Scratch folder(small_experiment());
-  const auto said = [&](const std::string& path) {
-    return refused(folder, "run e.yaml --out out", "DRAPE_PLUGIN_PATH=" + path);
-  };
-  CHECK_THAT(said(folders::test_plugins() / "wrong_abi"),
-             Catch::Contains("/libwrong_abi.so: does not fit this drape, rebuild it: "));
-  CHECK(said("nowhere") == "error: DRAPE_PLUGIN_PATH names nowhere, which is not a folder\n");
 }
