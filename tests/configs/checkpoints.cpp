@@ -3,6 +3,7 @@
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 #include <random>
+#include <tuple>
 
 #include "core/app/run/runner.h"
 #include "core/app/run/saved_run.h"
@@ -28,11 +29,11 @@ void write_sheets(const Scratch& folder) {
   folder.write("e.yaml", replaced(text_of(folder / "e.yaml"), "levels: 2", "levels: 3"));
 }
 
-/// Some steps a level, in which the sheets come to touch each other and the ball.
-Overrides some_steps(Overrides more = {}) {
-  more.push_back({"start.translate", "[-0.2, -0.2, 0.1015]"});
-  more.push_back({"newton.max_steps", "8"});
-  return more;
+/// Some steps a level, in which the sheets come to touch each other and the ball; with these settings.
+Overrides some_steps(const Overrides& more) {
+  Overrides all = {{"start.translate", "[-0.2, -0.2, 0.1015]"}, {"newton.max_steps", "8"}};
+  all.insert(all.end(), more.begin(), more.end());
+  return all;
 }
 
 /// Without what a clock or the machine says.
@@ -141,21 +142,23 @@ TEST_CASE("A run that is stopped at every step and resumed equals an uninterrupt
   CHECK(check_in_parts(folder, short_levels) > 60);
 }
 
-TEST_CASE("So does one with self-contact, obstacles, friction and a strain limit") {
-  const Scratch folder;
-  write_sheets(folder);
-  CHECK(check_in_parts(folder, some_steps()) > 60);
-}
-
-TEST_CASE("So does one whose iterations share a matrix, and one with several of them per step") {
-  for (const char* iterations : {"1", "2"}) {
+TEST_CASE("So does one with self-contact, obstacles, friction and a strain limit, however Newton solves it") {
+  // A stop is asked for within steps of two iterations too, and such a part leads nowhere: more steps.
+  const Overrides shared = {{"newton.hessian_update_interval", "3"}, {"newton.max_steps", "12"}};
+  Overrides several = shared;
+  several.push_back({"newton.iterations_per_step", "2"});
+  const std::tuple<std::string, Overrides, int> cases[] = {
+      {"as it is", {}, 60},
+      {"iterations share a matrix", shared, 60},
+      {"several of them per step", several, 60},
+      {"static, with full projection",
+       {{"newton.form", "static"}, {"newton.psd_blend", "full"}, {"levels", "2"}},
+       20}};
+  for (const auto& [name, settings, parts] : cases) {
+    INFO(name);
     const Scratch folder;
     write_sheets(folder);
-    Overrides shared =
-        some_steps({{"newton.hessian_update_interval", "3"}, {"newton.iterations_per_step", iterations}});
-    // A stop is asked for within steps of two iterations too, and such a part leads nowhere: more steps.
-    shared.push_back({"newton.max_steps", "12"});
-    CHECK(check_in_parts(folder, shared) > 60);
+    CHECK(check_in_parts(folder, some_steps(settings)) > parts);
   }
 }
 
@@ -195,14 +198,6 @@ TEST_CASE("So does one whose contact stiffness is raised") {
   CHECK(stiffness(1)[1] == Approx(16 * own));
 }
 
-TEST_CASE("So does one of the static form, with full projection") {
-  const Scratch folder;
-  write_sheets(folder);
-  const Overrides statics =
-      some_steps({{"newton.form", "static"}, {"newton.psd_blend", "full"}, {"levels", "2"}});
-  CHECK(check_in_parts(folder, statics) > 20);
-}
-
 TEST_CASE("So does one under load stepping, with pins that are stopped on their way and moving obstacles") {
   // The ball rises into the sheets, which are held at two corners and become softer. One corner is pulled
   // farther up at once than the strain limit lets it.
@@ -225,9 +220,10 @@ schedule:
     const Scratch folder;
     write_sheets(folder);
     folder.write("e.yaml", text_of(folder / "e.yaml") + schedule);
-    Overrides some = some_steps(
-        {{"schedule.equilibrate", equilibrate}, {"newton.force_tolerance", "0.1"}, {"levels", "2"}});
-    some.push_back({"newton.max_steps", "20"});
+    const Overrides some = some_steps({{"schedule.equilibrate", equilibrate},
+                                       {"newton.force_tolerance", "0.1"},
+                                       {"newton.max_steps", "20"},
+                                       {"levels", "2"}});
     CHECK(check_in_parts(folder, some, [&](const NewtonState& state) {
             held += !state.dirichlet.unsatisfied.empty() && !state.dirichlet.released;
           }) > 40);
@@ -397,16 +393,15 @@ TEST_CASE("Checkpoints that cannot be resumed are refused with the reason") {
 
   CHECK(refused_by("run --resume nowhere", folder.path) ==
         "error: nowhere: holds no run; give the results folder of one\n");
-  CHECK_THAT(refused_by("run e.yaml --resume out", folder.path),
-             Contains("takes the experiment from the run's own config.yaml; leave out e.yaml"));
-  CHECK_THAT(refused_by("run --resume out --overwrite", folder.path), Contains("leave out --overwrite"));
-  CHECK_THAT(refused_by("run --resume out --out other", folder.path), Contains("leave out --out"));
-  CHECK_THAT(refused_by("run --resume out --set newton.step_size=1", folder.path),
-             Contains("is another run; name its folder with --out"));
-  CHECK_THAT(refused_by("run --resume out --set newton.step_size=1 --out ./out", folder.path),
-             Contains("leaves the run that it begins from as it is"));
-  CHECK_THAT(refused_by("run e.yaml --level 1", folder.path), Contains("name its run with --resume"));
-  CHECK_THAT(refused_by("run", folder.path), Contains("experiment is required"));
+  const std::pair<std::string, std::string> options[] = {
+      {"e.yaml --resume out", "takes the experiment from the run's own config.yaml; leave out e.yaml"},
+      {"--resume out --overwrite", "leave out --overwrite"},
+      {"--resume out --out other", "leave out --out"},
+      {"--resume out --set newton.step_size=1", "is another run; name its folder with --out"},
+      {"--resume out --set newton.step_size=1 --out ./out", "leaves the run that it begins from as it is"},
+      {"e.yaml --level 1", "name its run with --resume"}};
+  for (const auto& [arguments, expected] : options)
+    CHECK_THAT(refused_by("run " + arguments, folder.path), Contains(expected));
 
   const auto damaged = [&](const std::string& name, const std::string& text, const std::string& expected) {
     const std::string whole = text_of(folder / name);
@@ -419,13 +414,12 @@ TEST_CASE("Checkpoints that cannot be resumed are refused with the reason") {
   damaged("out/rest/l0.ply", "ply\n", "out/rest/l0.ply: is not what it was when the run began");
   damaged("out/iterations.csv", "method\n",
           "out/iterations.csv: is shorter than when the checkpoint was made");
-  for (const char* name : {"out/iterations.csv", "out/log.jsonl"}) {
+  for (const std::string name : {"out/iterations.csv", "out/log.jsonl"}) {
     const std::string whole = text_of(folder / name);
-    std::filesystem::remove(folder / name);
-    CHECK_THAT(
-        refused_by("run --resume out", folder.path),
-        Contains(std::string(name) + ": is missing, and the run cannot be resumed without: put it back, "
-                                     "or run the experiment again"));
+    fs::remove(folder / name);
+    CHECK_THAT(refused_by("run --resume out", folder.path),
+               Contains(name + ": is missing, and the run cannot be resumed without: put it back, or run the "
+                               "experiment again"));
     folder.write(name, whole);
   }
   CHECK(text_of(folder / "out/results.json") == before);
@@ -668,16 +662,14 @@ TEST_CASE("A run warm-starts from a saved state under changed parameters, in ano
   drape_with(replaced(go_on, "--resume out", "--resume part"), folder.path);
   check_equal(folder / "part", folder / "last");
 
-  CHECK_THAT(refused_by(flow + "--out x --set refiner=midpoint", folder.path),
-             Contains("--set refiner: \"refiner\" cannot be changed"));
-  CHECK_THAT(refused_by(flow + "--out x --set cloth.seed=99", folder.path),
-             Contains("\"cloth\" cannot be changed"));
-  CHECK_THAT(refused_by(flow + "--out x --levels 1", folder.path), Contains("\"levels\" must be at least 2"));
-  CHECK_THAT(refused_by(flow + "--out x --level 2", folder.path),
-             Contains("holds no state of method pcs on level 2; the last level that it has is 1"));
-  CHECK_THAT(refused_by(flow + "--out x --method cascadic", folder.path),
-             Contains("holds no state of method cascadic; name another with --method"));
-  CHECK_THAT(refused_by(flow + "--out x --set obstacles.ball.radius=0.15", folder.path),
-             Contains("the start of level 1 touches: "));
+  const std::pair<std::string, std::string> refusals[] = {
+      {"--set refiner=midpoint", "--set refiner: \"refiner\" cannot be changed"},
+      {"--set cloth.seed=99", "\"cloth\" cannot be changed"},
+      {"--levels 1", "\"levels\" must be at least 2"},
+      {"--level 2", "holds no state of method pcs on level 2; the last level that it has is 1"},
+      {"--method cascadic", "holds no state of method cascadic; name another with --method"},
+      {"--set obstacles.ball.radius=0.15", "the start of level 1 touches: "}};
+  for (const auto& [change, expected] : refusals)
+    CHECK_THAT(refused_by(flow + "--out x " + change, folder.path), Contains(expected));
   CHECK_FALSE(fs::exists(folder / "x"));
 }
