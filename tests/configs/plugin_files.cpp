@@ -82,7 +82,6 @@ TEST_CASE("What the compiler refuses is shown with the file's lines, and nothing
 TEST_CASE("What a plugin throws or fails to return ends a command with a message") {
   const PluginFolder folder;
   folder.write("bad.cpp", R"(#include "core/kernel/interfaces/energy.h"
-#include "core/kernel/interfaces/refiner.h"
 #include "core/kernel/plugin/plugin.h"
 using namespace drape;
 struct Bound : BoundEnergy {
@@ -103,14 +102,10 @@ struct Throws : Null {
 struct Refuses : Null {
   Refuses() { throw 42; }
 };
-struct Splits : Refiner {
-  ProlongationMatrix weights(const Level&) const override { throw "text"; }
-};
 DRAPE_PLUGIN(registry) {
   registry.add<Energy, Null>("nothing", "Binds to nothing.");
   registry.add<Energy, Throws>("throws", "Throws a number.");
   registry.add<Energy, Refuses>("refuses", "Throws a number at once.");
-  registry.add<Refiner, Splits>("splits", "Throws a text.");
 }
 )");
   const auto refusal = [&](const std::string& arguments) {
@@ -126,11 +121,6 @@ DRAPE_PLUGIN(registry) {
   CHECK(refusal("check-energy throws") == "error: " + other);
   CHECK(refusal("check-energy refuses") == "error: energy: refuses: " + other);
   CHECK_THAT(refusal("check drape.yaml --set energies=[throws]"), EndsWith(other));
-  for (const char* command : {"check", "run"}) {
-    INFO(command);
-    CHECK_THAT(refusal(command + std::string(" drape.yaml --set energies=[hinge] --set refiner=splits")),
-               EndsWith("the refiner: " + other));
-  }
 }
 
 TEST_CASE("A library is no source of a plugin, and a source may have any name") {
