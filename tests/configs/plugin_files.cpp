@@ -28,8 +28,9 @@ struct PluginFolder : Scratch {
           "upper: [0, 1, 0]}]\nenergies: [rubber, hinge, gravity]\nmethods: {pcs: {}}\n");
   }
   std::string environment() const { return "XDG_CACHE_HOME=" + (path / "cache").string(); }
-  Ended with(const std::string& arguments, const std::string& more = "") const {
-    return drape_with(arguments, path, environment() + " " + more);
+  Ended with(const std::string& arguments) const { return drape_with(arguments, path, environment()); }
+  std::string refused(const std::string& arguments, const std::string& more = "") const {
+    return refused_by(arguments, path, environment() + " " + more);
   }
 };
 
@@ -70,8 +71,7 @@ TEST_CASE("What the compiler refuses is shown with the file's lines, and nothing
   const PluginFolder folder;
   folder.write("rubber.cpp", replaced(energy_file, "g22 * g22", "g23 * g22"));
   for (int time = 0; time < 2; ++time) {
-    const std::string err =
-        refused_by("run drape.yaml --plugin rubber.cpp", folder.path, folder.environment());
+    const std::string err = folder.refused("run drape.yaml --plugin rubber.cpp");
     CHECK_THAT(err, Contains("rubber.cpp:5:") && Contains("g23") &&
                         Contains("return stiffness * (g11 * g11 + g23 * g22") &&
                         Contains("error: --plugin ") && Contains("rubber.cpp: does not compile"));
@@ -109,10 +109,7 @@ DRAPE_PLUGIN(registry) {
 }
 )");
   const auto refusal = [&](const std::string& arguments) {
-    const Ended ended = folder.with(arguments + " --plugin bad.cpp");
-    CHECK(ended.exit_code == 2);
-    CHECK(ended.out == "");
-    return ended.err;
+    return folder.refused(arguments + " --plugin bad.cpp");
   };
   const std::string other = "an exception that is no std::exception\n";
   CHECK_THAT(refusal("check-energy nothing"),
@@ -127,32 +124,30 @@ TEST_CASE("A library is no source of a plugin, and a source may have any name") 
   const PluginFolder folder;
   const std::string library = (folders::test_plugins() / "good/libgood.so").string();
   CHECK(
-      refused_by("list energy --plugin " + library, folder.path, folder.environment()) ==
+      folder.refused("list energy --plugin " + library) ==
       "error: --plugin " + library +
           ": is compiled, and --plugin takes a source; put the folder of the library into DRAPE_PLUGIN_PATH "
           "instead, as in export DRAPE_PLUGIN_PATH=" +
           (folders::test_plugins() / "good").string() + "\n");
   folder.write("text.so", "no C++\n");
-  CHECK_THAT(refused_by("list energy --plugin text.so", folder.path, folder.environment()),
+  CHECK_THAT(folder.refused("list energy --plugin text.so"),
              Contains("text.so:1:") && Contains("text.so: does not compile"));
 }
 
 TEST_CASE("A plugin's source without a compiler, or that is no plugin, is refused") {
   const PluginFolder folder;
-  CHECK_THAT(
-      refused_by("list energy --plugin rubber.cpp", folder.path, folder.environment() + " CXX=/nowhere/c++"),
-      Contains("--plugin: there is no compiler /nowhere/c++; install it, or name one"));
-  CHECK_THAT(refused_by("list energy --plugin none.cpp", folder.path, folder.environment()),
+  CHECK_THAT(folder.refused("list energy --plugin rubber.cpp", "CXX=/nowhere/c++"),
+             Contains("--plugin: there is no compiler /nowhere/c++; install it, or name one"));
+  CHECK_THAT(folder.refused("list energy --plugin none.cpp"),
              Contains("none.cpp") && Contains("No such file"));
   folder.write("empty.cpp", "int main() {}\n");
-  CHECK_THAT(refused_by("list energy --plugin empty.cpp", folder.path, folder.environment()),
-             Contains("is not a drape plugin"));
+  CHECK_THAT(folder.refused("list energy --plugin empty.cpp"), Contains("is not a drape plugin"));
 }
 
 TEST_CASE("A cache or a folder for temporary files that is not there is named, with its variable") {
   const PluginFolder folder;
   const std::string list = "list energy --plugin rubber.cpp";
-  CHECK(refused_by(list, folder.path, folder.environment() + " TMPDIR=/nonexistent") ==
+  CHECK(folder.refused(list, "TMPDIR=/nonexistent") ==
         "error: --plugin: the folder for temporary files, TMPDIR=/nonexistent, is not there (No such file or "
         "directory); make it, or name another in the variable TMPDIR\n");
   const std::string err = refused_by(list, folder.path, "XDG_CACHE_HOME=/proc/none");

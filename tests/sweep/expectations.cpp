@@ -44,6 +44,8 @@ RunRecord run_of(const std::string& status, const std::map<std::string, double>&
   return run;
 }
 
+bool passes(const RunRecord& run) { return table_of({"set", true, {run}}).all_pass(); }
+
 /// One more, and a limit on the clock, which a busy machine lets no other case exceed: they have ended
 /// before.
 const std::string endless =
@@ -115,20 +117,14 @@ TEST_CASE("every value that a metric declares is a column by its name") {
   CHECK_THAT(shown, Contains("| worst |") && !Contains("sag") && !Contains("drift"));
 }
 
-TEST_CASE("an intersection, or an energy that is no number, fails whatever the status") {
-  const auto passes = [](const std::map<std::string, double>& values) {
-    return table_of({"set", true, {run_of("converged", values)}}).all_pass();
-  };
-  CHECK(passes({{"energy_released", 1}, {"intersections", 0}}));
-  CHECK(!passes({{"energy_released", 1}, {"intersections", 1}}));
-  CHECK(!passes({{"intersections", 0}}));
-}
-
-TEST_CASE("a run that has converged passes no more once its results are gone") {
-  RunRecord run;
-  run.variation = "case";
-  run.status = "converged";
-  CHECK(!table_of({"set", true, {run}}).all_pass());
+TEST_CASE("an intersection, an energy that is no number or lost results fail whatever the status") {
+  const auto with = [](const std::map<std::string, double>& values) { return run_of("converged", values); };
+  CHECK(passes(with({{"energy_released", 1}, {"intersections", 0}})));
+  CHECK(!passes(with({{"energy_released", 1}, {"intersections", 1}})));
+  CHECK(!passes(with({{"intersections", 0}})));
+  RunRecord lost;
+  lost.status = "converged";
+  CHECK(!passes(lost));
 }
 
 TEST_CASE("a table counts no shortened steps where rows of iterations.csv are missing") {
@@ -138,16 +134,16 @@ TEST_CASE("a table counts no shortened steps where rows of iterations.csv are mi
 }
 
 TEST_CASE("what has converged to rounding passes where it was to converge, and is told apart") {
-  const auto passes = [](const std::string& status, const std::string& expected) {
+  const auto ended = [](const std::string& status, const std::string& expected) {
     RunRecord run = run_of(status, {{"energy_released", 1}});
     run.expected = expected;
-    return table_of({"set", true, {run}}).all_pass();
+    return run;
   };
-  CHECK(passes("converged_to_rounding", "converged"));
-  CHECK(passes("converged_to_rounding", "converged_to_rounding"));
-  CHECK(!passes("converged", "converged_to_rounding"));
-  CHECK(!passes("converged_to_rounding", "stalled"));
-  CHECK(!passes("stalled", "converged"));
+  CHECK(passes(ended("converged_to_rounding", "converged")));
+  CHECK(passes(ended("converged_to_rounding", "converged_to_rounding")));
+  CHECK(!passes(ended("converged", "converged_to_rounding")));
+  CHECK(!passes(ended("converged_to_rounding", "stalled")));
+  CHECK(!passes(ended("stalled", "converged")));
 }
 
 TEST_CASE("an expectation needs a message") {
@@ -189,8 +185,10 @@ TEST_CASE("a sweep over several experiments names each run by its experiment") {
 
   const auto said = [&](const std::string& text) {
     folder.write("sweeps/bad.yaml", "name: bad\n" + text);
-    return drape_with("sweep sweeps/bad.yaml", folder.path).err;
+    return refused_by("sweep sweeps/bad.yaml", folder.path);
   };
+  for (const char* none : {"base: \"\"\n", "experiments: []\n"})
+    CHECK_THAT(said(none), Contains("is empty; name an experiment"));
   CHECK(said("") ==
         "error: sweeps/bad.yaml:1:1: \"base\" is required and missing, or \"experiments\" in its place\n");
   CHECK(said("base: ../scenes/a.yaml\nexperiments: [../scenes/b.yaml]\n") ==

@@ -23,16 +23,6 @@ std::string said_of(const std::string& sweep, const std::string& arguments = "")
 
 }  // namespace
 
-TEST_CASE("a sweep of no experiment is refused") {
-  for (const std::string none : {"base: \"\"", "experiments: []"}) {
-    const Scratch folder;
-    folder.write("s.yaml", "name: s\n" + none + "\n");
-    CHECK_THAT(refused_by("sweep s.yaml --out out", folder.path),
-               Catch::Contains("is empty; name an experiment"));
-    CHECK_FALSE(fs::exists(folder / "out"));
-  }
-}
-
 TEST_CASE("keys and values of a sweep") {
   CHECK(said_of("ablaton: []\n") ==
         "error: s.yaml:3:1: unknown key \"ablaton\"; did you mean \"ablation\"?\n");
