@@ -1,7 +1,6 @@
 // Files that a sweep left and that were changed since.
 
 #include <catch2/catch.hpp>
-#include <functional>
 #include <nlohmann/json.hpp>
 
 #include "tests/support/sweep_runs.h"
@@ -13,10 +12,15 @@ TEST_CASE("a value of the wrong kind in a sweep's files is named with its file a
   const Scratch folder(small_experiment());
   folder.write("s.yaml", coarsest_by_newton);
   drape_ends("sweep s.yaml --out out", folder);
-  const auto said = [&](const std::string& file, const std::function<void(Json&)>& damage) {
+  // With this value, or without one, there in the file.
+  const auto said = [&](const std::string& file, const std::string& path, const std::string& value) {
     const std::string sound = text_of(folder / file);
     Json json = Json::parse(sound);
-    damage(json);
+    const Json::json_pointer at(path);
+    if (value.empty())
+      json[at.parent_pointer()].erase(at.back());
+    else
+      json[at] = Json::parse(value);
     folder.write(file, json.dump());
     const std::string ended = refused_by("sweep s.yaml --out out", folder.path);
     folder.write(file, sound);
@@ -24,39 +28,32 @@ TEST_CASE("a value of the wrong kind in a sweep's files is named with its file a
   };
   const std::string status = "out/runs/base/seed_1.status.json", of_status = "error: " + status + ": ",
                     remove = "; remove it and the run's folder\n";
-  CHECK(said(status, [](Json& json) { json["status"] = "done"; }) ==
-        of_status + "no status is called \"done\"" + remove);
-  CHECK(said(status, [](Json& json) { json["status"] = 3; }) ==
-        of_status + "\"status\" must be a text, not 3" + remove);
-  CHECK(said(status, [](Json& json) { json["threads"] = 1e300; }) ==
+  CHECK(said(status, "/status", "\"done\"") == of_status + "no status is called \"done\"" + remove);
+  CHECK(said(status, "/status", "3") == of_status + "\"status\" must be a text, not 3" + remove);
+  CHECK(said(status, "/threads", "1e300") ==
         of_status + "\"threads\" must be a whole number, not 1e+300" + remove);
-  CHECK(said(status, [](Json& json) { json.erase("seconds"); }) ==
-        of_status + "\"seconds\" is missing" + remove);
+  CHECK(said(status, "/seconds", "") == of_status + "\"seconds\" is missing" + remove);
 
-  const std::string of_sweep = "error: out/sweep.json: ", another = "; name another folder with --out\n";
-  CHECK(said("out/sweep.json", [](Json& json) { json["sweep"] = 1; }) ==
-        of_sweep + "\"sweep\" must be a text, not 1" + another);
-  CHECK(said("out/sweep.json", [](Json& json) { json["runs"] = "none"; }) ==
-        of_sweep + "\"runs\" must be a list" + another);
-  CHECK(said("out/sweep.json", [](Json& json) { json["runs"][0] = {}; }) ==
-        of_sweep + "\"name\" is missing" + another);
-  CHECK(said("out/sweep.json", [](Json& json) { json["runs"][0].erase("folder"); }) ==
-        of_sweep + "\"folder\" is missing" + another);
-  CHECK(said("out/sweep.json", [](Json& json) { json["runs"][0]["seed"] = -1e300; }) ==
+  const std::string sweep = "out/sweep.json",
+                    of_sweep = "error: out/sweep.json: ", another = "; name another folder with --out\n";
+  CHECK(said(sweep, "/sweep", "1") == of_sweep + "\"sweep\" must be a text, not 1" + another);
+  CHECK(said(sweep, "/runs", "\"none\"") == of_sweep + "\"runs\" must be a list" + another);
+  CHECK(said(sweep, "/runs/0", "null") == of_sweep + "\"name\" is missing" + another);
+  CHECK(said(sweep, "/runs/0/folder", "") == of_sweep + "\"folder\" is missing" + another);
+  CHECK(said(sweep, "/runs/0/seed", "-1e300") ==
         of_sweep + "\"seed\" must be a whole number, not -1e+300" + another);
-  CHECK(said("out/sweep.json", [](Json& json) {
-          json["runs"][0]["expect"] = {{"status", true}};
-        }) == of_sweep + "\"status\" must be a text, not true" + another);
+  CHECK(said(sweep, "/runs/0/expect", "{\"status\": true}") ==
+        of_sweep + "\"status\" must be a text, not true" + another);
 
-  const std::string results = "out/runs/base/seed_1/results.json",
+  const std::string results = "out/runs/base/seed_1/results.json", of_results = "error: " + results + ": ",
                     rerun = "; remove the run's folder, and the sweep runs it again\n";
-  CHECK(said(results, [](Json& json) { json["methods"]["newton"]["peak_memory_bytes"] = "all"; }) ==
-        "error: " + results + ": \"peak_memory_bytes\" must be a number, not \"all\"" + rerun);
+  CHECK(said(results, "/methods/newton/peak_memory_bytes", "\"all\"") ==
+        of_results + "\"peak_memory_bytes\" must be a number, not \"all\"" + rerun);
   folder.write(status, replaced(text_of(folder / status), "\"converged\"", "\"running\""));
-  CHECK(said(results, [](Json& json) { json["methods"]["newton"]["status"] = {1}; }) ==
-        "error: " + results + ": \"status\" must be a text, not [1]" + rerun);
-  CHECK(said(results, [](Json& json) { json["complete"] = "yes"; }) ==
-        "error: " + results + ": \"complete\" must be true or false, not \"yes\"" + rerun);
+  CHECK(said(results, "/methods/newton/status", "[1]") ==
+        of_results + "\"status\" must be a text, not [1]" + rerun);
+  CHECK(said(results, "/complete", "\"yes\"") ==
+        of_results + "\"complete\" must be true or false, not \"yes\"" + rerun);
 }
 
 TEST_CASE("a run whose results are cut short has failed, and the sweep's others are as they were") {
