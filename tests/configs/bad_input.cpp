@@ -81,11 +81,11 @@ TEST_CASE("a config that is not a regular file is refused without blocking") {
   REQUIRE(mkfifo((folder / "pipe.yaml").c_str(), 0600) == 0);
   for (const std::string command :
        {"check pipe.yaml", "run pipe.yaml --out out", "sweep pipe.yaml --out out"})
-    CHECK(drape_with(command, folder.path).err ==
+    CHECK(refused_by(command, folder.path) ==
           "error: pipe.yaml: is a pipe or a device; give a file on a disk\n");
   folder.write("e.yaml", small_experiment());
   fs::resize_file(folder / "e.yaml", 100000000);
-  CHECK(drape_with("check e.yaml", folder.path).err ==
+  CHECK(refused_by("check e.yaml", folder.path) ==
         "error: e.yaml: is larger than 8 MB, the most that is read of it\n");
   fs::remove(folder / "e.yaml");
   fs::create_directory(folder / "out");

@@ -649,10 +649,6 @@ TEST_CASE("A run warm-starts from a saved state under changed parameters, in ano
 
   drape_ends(flow + "--out soft --level 0 --set material.bending_modulus=1e3", folder, 1);
   CHECK(rows("soft").starts_with("pcs,0,0,0,"));
-  // Its first state is near to where the other run left the level, and far from the scene's start.
-  const Positions left = read_mesh(folder / "out/levels/pcs_l0.ply").vertices,
-                  flown = read_mesh(folder / "soft/levels/pcs_l0.ply").vertices;
-  CHECK((flown - left).norm() > 0);
 
   // Interrupted and resumed, it has the bits of one that is not.
   DrapeAtWork command(flow + "--out part --checkpoint 0", folder);
