@@ -68,10 +68,13 @@ TEST_CASE("the base file of these cases is valid: each case has exactly one faul
                             "Read: 1 × 1 m, 1 part, edges 0\\.1–0\\.14 m on level 1, .*\n"));
 }
 
-TEST_CASE("a config that is missing, or no YAML") {
+TEST_CASE("a config that is missing, a folder, empty or no YAML") {
   const Scratch folder;
   CHECK(refused(folder, "run e.yaml --out out") == "error: e.yaml: no such file\n");
   CHECK(refused(folder, "check e.yaml") == "error: e.yaml: no such file\n");
+  CHECK(refused(folder, "run . --out out") == "error: .: is a folder, not a file\n");
+  CHECK(said_of("") == "error: e.yaml: is empty; a config is a map of keys and values\n");
+  CHECK(said_of("- name\n") == "error: e.yaml:1:1: a config must begin with a map of keys and values\n");
   CHECK(said_of_edit("[0.9, 0.9, 1]", "[0.9, 0.9, 1") ==
         "error: e.yaml:4:48: not valid YAML: illegal flow end\n");
 }
@@ -329,6 +332,7 @@ TEST_CASE("an option that does not fit") {
       {"--set levelz=3", "--set levelz: unknown key \"levelz\"; did you mean \"levels\"?"},
       {"--set levels", "--set levels: write it as key=value, as in --set newton.step_size=0.1"},
       {"--set =3", "--set =3: write it as key=value, as in --set newton.step_size=0.1"},
+      {"--set 'levels=[1'", "--set levels:1:1: not valid YAML: end of sequence flow not found"},
       {"--method pcs,fast", "--method fast: the experiment's methods are pcs, cascadic, newton"},
       {"--levels 0", "--levels: must be an integer of at least 1, not 0" + see},
       {"--levels 11", "--levels: \"levels\" must be at most 10, not 11"},
