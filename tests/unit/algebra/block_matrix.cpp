@@ -5,33 +5,14 @@
 #include <set>
 
 #include "tests/support/dense_matrix.h"
+#include "tests/support/evaluate.h"
+#include "tests/support/random_block_matrix.h"
 
 using namespace drape;
 
-namespace {
-
-using Rows = Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor>;
-
-/// `rows` elements of k different vertices.
-Stencils random_stencils(int vertex_count, int rows, int k, unsigned seed) {
-  std::mt19937 random(seed);
-  Stencils s(rows, k);
-  for (int e = 0; e < rows; ++e) {
-    std::set<int> taken;
-    for (int i = 0; i < k; ++i) {
-      do s(e, i) = static_cast<int>(random() % vertex_count);
-      while (!taken.insert(s(e, i)).second);
-    }
-  }
-  return s;
-}
-
-}  // namespace
-
 TEST_CASE("A block pattern is the union of the elements' pairs") {
   const int n = 30;
-  const std::vector<Stencils> stencils = {random_stencils(n, 25, 4, 1), Stencils(0, 1),
-                                          random_stencils(n, 15, 3, 2)};
+  const std::vector<Stencils> stencils = {tangle(n, 25, 1), Stencils(0, 1), tangle(n, 15, 2).leftCols(3)};
   std::set<std::pair<int, int>> expected;
   for (int i = 0; i < n; ++i) expected.insert({i, i});
   for (const Stencils& s : stencils)
@@ -60,8 +41,8 @@ TEST_CASE("A block pattern is the union of the elements' pairs") {
 
 TEST_CASE("Elements' blocks are summed into the right blocks, transposed where their vertices descend") {
   const int n = 12;
-  const Stencils s = random_stencils(n, 40, 3, 4);
-  BlockMatrix matrix(BlockPattern::of(n, {s, random_stencils(n, 5, 2, 5)}));
+  const Stencils s = tangle(n, 40, 4).leftCols(3);
+  BlockMatrix matrix(BlockPattern::of(n, {s, tangle(n, 5, 5).leftCols(2)}));
   const BlockSlots slots(*matrix.pattern, s);
   BlockSink sink = slots.sink(matrix);
   Eigen::MatrixXd expected = Eigen::MatrixXd::Zero(3 * n, 3 * n);
@@ -78,12 +59,12 @@ TEST_CASE("Elements' blocks are summed into the right blocks, transposed where t
       }
   CHECK((dense(matrix) - expected).norm() <= 1e-14 * expected.norm());
 
-  Rows x(n, 3), y;
+  Positions x(n, 3), y;
   for (int i = 0; i < 3 * n; ++i) x.data()[i] = random() / 4294967296.0 - 0.5;
   matrix.multiply(x, y);
-  const Eigen::VectorXd product = expected * Eigen::Map<const Eigen::VectorXd>(x.data(), 3 * n);
+  const Eigen::VectorXd product = expected * flat(x);
   REQUIRE(product.norm() > 1);
-  CHECK((Eigen::Map<const Eigen::VectorXd>(y.data(), 3 * n) - product).norm() <= 1e-14 * product.norm());
+  CHECK((flat(y) - product).norm() <= 1e-14 * product.norm());
   matrix.multiply(x, x);
   CHECK(x == y);
   matrix.set_zero();
@@ -106,6 +87,6 @@ TEST_CASE("Misuse of block matrices is named") {
   CHECK_THROWS_WITH(BlockPattern({0, 1, 3}, {0, 0, 1}),
                     Catch::Contains("row 1 must have its diagonal first"));
   CHECK_THROWS_WITH(BlockPattern({0, 2}, {0}), Catch::Contains("row starts"));
-  Rows x(3, 3), y;
+  Positions x(3, 3), y;
   CHECK_THROWS_WITH(BlockMatrix(pattern).multiply(x, y), "block matrix of 4 rows times 3 vectors");
 }
