@@ -3,23 +3,28 @@
 #include <catch2/catch.hpp>
 #include <limits>
 
+#include "tests/support/refusal.h"
 #include "tests/support/test_energies.h"
 
 using namespace drape;
 
 namespace {
 
-/// ¼ Σ |x_i|⁴, with an error in the gradient at one coordinate, or in the Hessian.
+/// ¼ Σ |x_i|⁴, unless it is told to be faulty.
 struct Quartic : Wells {
   Quartic() : Wells(Positions::Zero(3, 3), 1, 0) {}
-  double gradient_error = 0, hessian_error = 0, limit = std::numeric_limits<double>::infinity();
+  double gradient_error = 0, hessian_error = 0;            ///< at one coordinate
+  double excess = 0;                                       ///< of what add_gradient returns
+  bool overwrites = false;                                 ///< what is in g
+  double limit = std::numeric_limits<double>::infinity();  ///< of x(0, 0), beyond which the value is infinite
 
   double value(const Positions& x) const override {
     return x(0, 0) > limit ? std::numeric_limits<double>::infinity() : Wells::value(x);
   }
   double add_gradient(const Positions& x, Positions& g) const override {
+    if (overwrites) g.setZero();
     g(1, 2) += gradient_error;
-    return Wells::add_gradient(x, g);
+    return Wells::add_gradient(x, g) + excess;
   }
   void add_hessian(const Positions& x, Projection projection, BlockSink& sink) const override {
     Wells::add_hessian(x, projection, sink);
@@ -30,40 +35,20 @@ struct Quartic : Wells {
 
 const Positions state{{0.3, -0.2, 0.5}, {0.1, 0.4, -0.6}, {-0.3, 0.2, 0.7}};
 
-/// A quartic whose add_gradient forgets what is in g, or returns another number.
-struct Careless : Quartic {
-  bool overwrites = false;
-  double excess = 0;
-  double add_gradient(const Positions& x, Positions& g) const override {
-    if (overwrites) g.setZero();
-    return Quartic::add_gradient(x, g) + excess;
-  }
-};
-
 }  // namespace
 
-TEST_CASE("a linear energy passes, whose differences of forces are round-off") {
-  const DerivativeCheck check = check_derivatives(Weight(), state, 1e-4);
-  CHECK(check.gradient.error < 1e-9);
-  CHECK(check.hessian.error < 1e-6);
-}
-
-TEST_CASE("a gradient that is not added, and an energy that is another, are refused") {
-  Careless energy;
-  CHECK(check_derivatives(energy, state, 1e-3).gradient.error < 1e-9);
-  energy.excess = 1e-3;
-  CHECK_THROWS_WITH(check_derivatives(energy, state, 1e-3), Catch::StartsWith("add_gradient returns "));
-  energy = {};
-  energy.overwrites = true;
-  CHECK_THROWS_WITH(check_derivatives(energy, state, 1e-3),
-                    "add_gradient does not add to the numbers in g, but overwrites some");
-}
-
-TEST_CASE("correct derivatives have small errors") {
-  const DerivativeCheck check = check_derivatives(Quartic(), state, 1e-3);
-  CHECK(check.gradient.error < 1e-9);
-  CHECK(check.hessian.error < 1e-9);
-  CHECK(check.asymmetry == 0);
+TEST_CASE("correct derivatives have small errors, also where differences are round-off") {
+  const DerivativeCheck quartic = check_derivatives(Quartic(), state, 1e-3);
+  CHECK(quartic.gradient.error < 1e-9);
+  CHECK(quartic.hessian.error < 1e-9);
+  CHECK(quartic.asymmetry == 0);
+  const DerivativeCheck linear = check_derivatives(Weight(), state, 1e-4);
+  CHECK(linear.gradient.error < 1e-9);
+  CHECK(linear.hessian.error < 1e-6);
+  struct Constant : NoEnergy {
+    double value(const Positions&) const override { return 5; }
+  };
+  CHECK(check_derivatives(Constant(), state, 1e-5).agrees());
 }
 
 TEST_CASE("the largest error of a derivative is found where it is") {
@@ -92,20 +77,21 @@ TEST_CASE("what is not finite differs, and is named") {
   CHECK_FALSE(check.agrees());
   CHECK(check.text() ==
         "gradient: NOT FINITE at vertex 1, z\nhessian: not checked, since it takes finite gradients\n");
-  energy = {};
-  energy.limit = -1;
-  CHECK_THROWS_WITH(check_derivatives(energy, state, 1e-3),
-                    Catch::StartsWith("the energy is not finite at this state: value is inf"));
 }
 
-TEST_CASE("the round-off of a constant energy is no error of its gradient") {
-  struct Constant : NoEnergy {
-    double value(const Positions&) const override { return 5; }
+TEST_CASE("what cannot be checked is refused, and a gradient that is not added") {
+  const auto refusal = [](void (*spoil)(Quartic&)) {
+    Quartic energy;
+    spoil(energy);
+    return refusal_of([&] { check_derivatives(energy, state, 1e-3); });
   };
-  CHECK(check_derivatives(Constant(), state, 1e-5).agrees());
-}
-
-TEST_CASE("a gradient that replaces g is refused") {
+  CHECK_THAT(refusal([](Quartic& e) { e.excess = 1e-3; }), Catch::StartsWith("add_gradient returns "));
+  CHECK(refusal([](Quartic& e) { e.overwrites = true; }) ==
+        "add_gradient does not add to the numbers in g, but overwrites some");
+  CHECK_THAT(refusal([](Quartic& e) { e.limit = -1; }),
+             Catch::StartsWith("the energy is not finite at this state: value is inf"));
+  CHECK_THAT(refusal([](Quartic& e) { e.limit = 0.3; }), Catch::Contains("not finite near x"));
+  CHECK_THROWS_WITH(check_derivatives(Quartic(), state, 0), Catch::Contains("a step above 0"));
   struct Replacing : NoEnergy {
     double add_gradient(const Positions&, Positions& g) const override {
       g = Positions::Zero(2, 3);
@@ -114,11 +100,4 @@ TEST_CASE("a gradient that replaces g is refused") {
   };
   CHECK_THROWS_WITH(check_derivatives(Replacing(), state, 1e-3),
                     Catch::Contains("add_gradient has changed the size of g to 2 rows, not 3"));
-}
-
-TEST_CASE("a state at the border of the domain is refused") {
-  Quartic energy;
-  energy.limit = 0.3;
-  CHECK_THROWS_WITH(check_derivatives(energy, state, 1e-3), Catch::Contains("not finite near x"));
-  CHECK_THROWS_WITH(check_derivatives(energy, state, 0), Catch::Contains("a step above 0"));
 }
