@@ -55,16 +55,10 @@ struct Cache {
   Iterate iterate;
   FactorCache cache;
   Positions solution;
-  static LevelResult at_rest(const Hanging& h) {
-    LevelResult r;
-    r.x = h.s.rest();
-    return r;
-  }
-  Cache(const Hanging& h, const NewtonParameters& p)
-      : objective(h.s.model()),
-        result(at_rest(h)),
-        iterate(objective, result),
-        cache(iterate, p, &h.s.scene->hierarchy) {
+  Cache(const Hanging& h, const NewtonParameters& p) : Cache(h, p, &h.s.scene->hierarchy) {}
+  Cache(const Hanging& h, const NewtonParameters& p, const Hierarchy* hierarchy)
+      : objective(h.s.model()), iterate(objective, result), cache(iterate, p, hierarchy) {
+    iterate.move_to(h.s.rest());
     iterate.set_constraints(h.s.model().fixed(), nullptr);
     iterate.evaluate();
   }
@@ -141,9 +135,7 @@ TEST_CASE("Multigrid refuses a matrix that is not positive definite") {
 
 TEST_CASE("Multigrid keeps its matrix for later iterations, also across a checkpoint") {
   const Hanging h;
-  NewtonParameters p;
-  p.linear_solver = LinearSolver::multigrid;
-  p.hessian_update_interval = 2;
+  const NewtonParameters p{.hessian_update_interval = 2, .linear_solver = LinearSolver::multigrid};
   Cache first(h, p), second(h, p);
   REQUIRE(first.factorisations(h) == 1);
   REQUIRE(first.cache.state().solver == LinearSolver::multigrid);
@@ -159,8 +151,7 @@ TEST_CASE("Multigrid keeps its matrix for later iterations, also across a checkp
 
 TEST_CASE("What multigrid falls back on is forgotten, and a checkpoint keeps the count of it") {
   const Hanging h;
-  NewtonParameters p;
-  p.linear_solver = LinearSolver::multigrid;
+  const NewtonParameters p{.linear_solver = LinearSolver::multigrid};
   Cache first(h, p), second(h, p);
   REQUIRE(first.cache.update(h.s.model().fixed(), 1e6, 1));
   CHECK_FALSE(first.cache.state().analysis.fixed.empty());
@@ -212,20 +203,10 @@ TEST_CASE("Multigrid has the same bits whatever it solved before") {
 
 TEST_CASE("By itself multigrid is for large levels of a hierarchy") {
   const Hanging h;
-  PlainObjective objective(h.s.model());
-  LevelResult result;
-  result.x = h.s.rest();
-  Iterate iterate(objective, result);
-  iterate.set_constraints(h.s.model().fixed(), nullptr);
   const auto solver = [&](LinearSolver chosen, const Hierarchy* hierarchy) {
-    NewtonParameters p;
-    p.linear_solver = chosen;
-    p.hessian_update_interval = 2;
-    iterate.evaluate();
-    FactorCache cache(iterate, p, hierarchy);
-    Positions x;
-    REQUIRE(cache.solve(h.s.model().fixed(), 1e6, 1, h.b, x));
-    return cache.state().solver;
+    Cache c(h, {.hessian_update_interval = 2, .linear_solver = chosen}, hierarchy);
+    c.factorisations(h);
+    return c.cache.state().solver;
   };
   CHECK(solver(LinearSolver::automatic, &h.s.scene->hierarchy) == LinearSolver::mixed);
   CHECK(solver(LinearSolver::multigrid, &h.s.scene->hierarchy) == LinearSolver::multigrid);
