@@ -3,6 +3,7 @@
 #include "core/numerics/solve/start_fault.h"
 
 #include <catch2/catch.hpp>
+#include <cmath>
 #include <limits>
 
 #include "core/numerics/elements/linear_energy.h"
@@ -51,11 +52,13 @@ std::shared_ptr<const Energy> given(double value, double force) { return energy_
 TEST_CASE("what is not finite at the start is named: the energy, the triangle, the load or the forces") {
   const Positions& rest = sheet.vertices;
   const std::string units = "; are the moduli, the density and the loads in SI units?";
-  CHECK(fault({{"soft", given(1, 1)}, {"stiff", given(inf, 1)}}, rest) ==
-        "energy stiff is not, though no triangle is degenerate" + units);
+  for (const double none : {inf, std::nan("")}) {
+    CHECK(fault({{"soft", given(1, 1)}, {"stiff", given(none, 1)}}, rest) ==
+          "energy stiff is not, though no triangle is degenerate" + units);
+    CHECK(fault({{"stiff", given(1, none)}}, rest) == "the forces at vertex 0 are not" + units);
+  }
   CHECK(fault({{"stiff", given(1e200, 1e200)}}, rest) ==
         "the forces are too large to be computed with" + units);
-  CHECK(fault({{"stiff", given(1, inf)}}, rest) == "the forces at vertex 0 are not" + units);
   CHECK(fault({{"soft", given(1, 1)},
                {"wind", energy_of(LinearEnergy(Positions::Constant(9, 3, 1e200)), EnergyRole::external)}},
               rest) == "the load is too large to be computed with" + units);
@@ -69,6 +72,6 @@ TEST_CASE("what is not finite at the start is named: the energy, the triangle, t
   start = 1e-200 * rest;  // small, but no triangle is degenerate
   CHECK(fault({{"stiff", given(inf, 1)}}, start) ==
         "energy stiff is not, though no triangle is degenerate" + units);
-  start.row(2)[1] = std::numeric_limits<double>::quiet_NaN();
+  start.row(2)[1] = std::nan("");
   CHECK(fault({{"stiff", given(inf, 1)}}, start) == "vertex 2 has no finite position; change the start");
 }
