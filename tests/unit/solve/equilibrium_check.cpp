@@ -1,24 +1,15 @@
 #include "core/numerics/step/equilibrium_check.h"
 
 #include <catch2/catch.hpp>
-#include <cmath>
 
 #include "tests/support/newton_problem.h"
 #include "tests/support/test_energies.h"
 
 using namespace drape;
 
-namespace {
-
-/// At the minimum of a bowl.
-NewtonProblem at_minimum() { return NewtonProblem({energy_of(Wells(NewtonProblem::rest(), 10, 0))}); }
-
-}  // namespace
-
 TEST_CASE("The tolerances ask for a small residual, and for three small decrements if they are limited") {
-  NewtonParameters p;
-  p.decrement_tolerance = 1e-3;
-  NewtonProblem problem = at_minimum();
+  const NewtonParameters p{.decrement_tolerance = 1e-3};
+  NewtonProblem problem({energy_of(Wells(NewtonProblem::rest(), 10, 0))});  // at the minimum of a bowl
   EquilibriumCheck check(problem.iterate, p);
   for (const double decrement : {1.0, 1e-4, 1e-4}) {
     CHECK(!check.in_tolerance());

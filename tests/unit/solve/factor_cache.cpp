@@ -20,12 +20,7 @@ struct CacheCase {
                         {{0, NewtonProblem::rest().row(0), 0}}};
   FactorCache cache;
 
-  explicit CacheCase(int interval) : cache(problem.iterate, with(interval)) {}
-  static NewtonParameters with(int interval) {
-    NewtonParameters p;
-    p.hessian_update_interval = interval;
-    return p;
-  }
+  explicit CacheCase(int interval) : cache(problem.iterate, {.hessian_update_interval = interval}) {}
   /// The factorisations of one iteration that ends with this step length.
   int iterate(double step_length = 1) {
     const int before = problem.result.factorisations;
@@ -102,9 +97,7 @@ TEST_CASE("A factor in single precision solves as well as one in double precisio
   CHECK(c.factorisations() == 1);
   CHECK(c.residual() < 1e-5);
   CHECK(c.cache.state().fallback_updates == 0);
-  NewtonParameters p;
-  p.linear_solver = LinearSolver::supernodal;
-  CacheSolve in_double(wells, p);
+  CacheSolve in_double(wells, {.linear_solver = LinearSolver::supernodal});
   CHECK(in_double.factorisations() == 1);
   CHECK(in_double.residual() < 1e-14);
 }
@@ -140,9 +133,7 @@ TEST_CASE("A lower blend whose factor does not serve in single precision is refu
 
 TEST_CASE("The static form has factors in double precision, and so have matrices of moved pins") {
   const auto wells = energy_of(Wells(NewtonProblem::rest().array() + 0.3, 10, 0.1));
-  NewtonParameters p;
-  p.form = NewtonForm::statics;
-  CacheSolve c(wells, p);
+  CacheSolve c(wells, {.form = NewtonForm::statics});
   CHECK(c.factorisations() == 1);
   CHECK(c.residual() < 1e-14);
   CacheSolve moved(wells, {});

@@ -71,12 +71,9 @@ TEST_CASE("The adaptive blend keeps the fraction that worked, and tries a smalle
 }
 
 TEST_CASE("Where no blend works, multiples of the masses are added") {
-  NewtonParameters p;
-  p.step_size = 1;
   for (const PsdBlend blend : {PsdBlend::adaptive, PsdBlend::full})
     for (const Projection::Kind kind : {Projection::clamp, Projection::none}) {
-      p.psd_blend = blend;
-      p.projection = kind;
+      const NewtonParameters p{.step_size = 1, .projection = kind, .psd_blend = blend};
       HessianModification modification(p);
       Recorder r;
       r.least_blend = 2;
@@ -123,9 +120,6 @@ TEST_CASE("A matrix with entries that are not finite is reported with their vert
 }
 
 TEST_CASE("The first shift follows the step size and never vanishes") {
-  NewtonParameters p;
-  p.step_size = 0.1;
-  CHECK(first_mass_shift(p) == Approx(0.1));
-  p.step_size = 1e200;
-  CHECK(first_mass_shift(p) == 1e-30);
+  CHECK(first_mass_shift({.step_size = 0.1}) == Approx(0.1));
+  CHECK(first_mass_shift({.step_size = 1e200}) == 1e-30);
 }

@@ -8,7 +8,7 @@
 using namespace drape;
 
 TEST_CASE("The gradient of an implicit step is that of its energy, without fixed vertices") {
-  const Positions rest = Level::of(0, grid({1, 1}, 4, 4, Diagonals::one_way)).rest.vertices;
+  const Positions rest = NewtonProblem::rest();
   NewtonProblem problem({energy_of(Wells(rest.array() + 0.3, 10, 0.1))}, {{0, rest.row(0), 0}});
   ImplicitStep step;
   step.begin(rest, 4);

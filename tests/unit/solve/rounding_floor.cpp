@@ -113,11 +113,7 @@ struct HangingStrip {
 };
 
 NewtonParameters far_too_tight(NewtonForm form) {
-  NewtonParameters p;
-  p.form = form;
-  p.force_tolerance = 1e-13;
-  p.max_steps = 400;
-  return p;
+  return {.form = form, .max_steps = 400, .force_tolerance = 1e-13};
 }
 
 }  // namespace

@@ -6,25 +6,29 @@ using namespace drape;
 
 namespace {
 
-NewtonParameters doubling() {
-  NewtonParameters p;
-  p.step_size = 1;
-  p.step_growth = 2;
-  return p;
-}
+const NewtonParameters doubling{.step_size = 1, .step_growth = 2},
+    doubling_static{.form = NewtonForm::statics, .step_size = 1, .step_growth = 2};
 
-/// One step of one iteration with this step length, along the direction of an updated Hessian or an old one.
-void step(StepController& c, double step_length, double force_residual = 1, bool updated = true) {
+/// An iteration's step length, along the direction of an updated Hessian or an old one.
+struct Iteration {
+  double step_length;
+  bool updated = true;
+};
+
+void step(StepController& c, const std::vector<Iteration>& iterations, double force_residual = 1) {
   c.begin_step();
-  c.end_iteration(step_length, updated);
+  for (const Iteration& i : iterations) c.end_iteration(i.step_length, i.updated);
   c.end_step(force_residual);
+}
+/// One of one iteration.
+void step(StepController& c, double step_length, double force_residual = 1) {
+  step(c, {Iteration{step_length}}, force_residual);
 }
 
 }  // namespace
 
 TEST_CASE("The step size grows after full steps up to its limit, and shrinks after short ones") {
-  NewtonParameters p = doubling();
-  p.step_size = 250;
+  const NewtonParameters p{.step_size = 250, .step_growth = 2};
   StepController c(p);
   step(c, 1);
   CHECK(c.step_size() == 500);
@@ -39,35 +43,25 @@ TEST_CASE("The step size grows after full steps up to its limit, and shrinks aft
 }
 
 TEST_CASE("The static form keeps the step size, which scales its decrement") {
-  NewtonParameters p = doubling();
-  p.form = NewtonForm::statics;
-  StepController c(p);
+  StepController c(doubling_static);
   step(c, 1);
   step(c, 0.1);
   CHECK(c.step_size() == 1);
 }
 
 TEST_CASE("Only directions of an updated Hessian adapt the step size, the shortest of a step") {
-  const NewtonParameters p = doubling();
-  StepController c(p);
-  step(c, 1, 1, false);
-  step(c, 0.1, 1, false);
+  StepController c(doubling);
+  step(c, {{1, false}});
+  step(c, {{0.1, false}});
   CHECK(c.step_size() == 1);
-  c.begin_step();
-  c.end_iteration(1, true);
-  c.end_iteration(0.1, false);
-  c.end_step(1);
+  step(c, {{1}, {0.1, false}});
   CHECK(c.step_size() == 2);
-  c.begin_step();
-  c.end_iteration(0.2, true);
-  c.end_iteration(1, true);
-  c.end_step(1);
+  step(c, {{0.2}, {1}});
   CHECK(c.step_size() == 1);
 }
 
 TEST_CASE("Without descent the step size is quartered down to 1e-8 s; an abandoned step resets it") {
-  const NewtonParameters p = doubling();
-  StepController c(p);
+  StepController c(doubling);
   c.begin_step();
   CHECK(c.damp());
   CHECK(c.step_size() == 0.25);
@@ -79,9 +73,7 @@ TEST_CASE("Without descent the step size is quartered down to 1e-8 s; an abandon
 }
 
 TEST_CASE("The static form adds ten times more mass each time, until an iteration succeeds") {
-  NewtonParameters p = doubling();
-  p.form = NewtonForm::statics;
-  StepController c(p);
+  StepController c(doubling_static);
   CHECK(c.is_static());
   CHECK(c.mass_shift() == 0);
   c.begin_step();
@@ -101,8 +93,7 @@ TEST_CASE("The static form adds ten times more mass each time, until an iteratio
 
 TEST_CASE(
     "After twenty stalled steps the step size is divided by 16 and does not grow until forces recover") {
-  const NewtonParameters p = doubling();
-  StepController c(p);
+  StepController c(doubling);
   for (int k = 0; k < 19; ++k) step(c, 0.5, 2e3);
   CHECK(c.step_size() == 1);
   step(c, 0.5, 2e3);
@@ -123,19 +114,17 @@ TEST_CASE(
 }
 
 TEST_CASE("Where even the smallest step size has not ended a stall, steps begin with the first one again") {
-  const NewtonParameters p = doubling();
-  StepController c(p);
+  StepController c(doubling);
   for (int k = 0; k < 20 * 7; ++k) step(c, 0.5, 2e3);  // 16⁻⁷ < 1e-8
   CHECK(c.step_size() == StepController::min_step_size);
   CHECK(c.state().backed_off);
   for (int k = 0; k < 20; ++k) step(c, 0.5, 2e3);
-  CHECK(c.step_size() == p.step_size);
+  CHECK(c.step_size() == doubling.step_size);
   CHECK_FALSE(c.state().backed_off);
 }
 
 TEST_CASE("Where steps repeat each other h is limited to a quarter, again and again, until the limit ends") {
-  NewtonParameters p = doubling();
-  StepController c(p);
+  StepController c(doubling);
   step(c, 1);
   step(c, 1);
   CHECK(c.step_size() == 4);
@@ -145,7 +134,7 @@ TEST_CASE("Where steps repeat each other h is limited to a quarter, again and ag
   CHECK(c.step_size() == 1);
   c.limit_step_size();
   CHECK(c.step_size() == 0.25);
-  StepController other(p);
+  StepController other(doubling);
   other.restore(c.state());
   step(other, 1);
   CHECK(other.step_size() == 0.25);
@@ -153,8 +142,7 @@ TEST_CASE("Where steps repeat each other h is limited to a quarter, again and ag
   step(c, 1);
   CHECK(c.step_size() == 0.5);
 
-  p.form = NewtonForm::statics;
-  StepController inertia(p);
+  StepController inertia(doubling_static);
   CHECK(inertia.inverse_h2() == 0);
   inertia.limit_step_size();
   CHECK(inertia.inverse_h2() == 1 / 62500.0);  // 1000 s by four
