@@ -25,19 +25,15 @@ struct TwoLevels : Problem {
             const std::vector<std::string>& energies = {}, const std::vector<int>& pins = {})
       : Problem{levels, {}, {}, nullptr},
         levels(Hierarchy::of(coarse, *make_plugin_from<Refiner>("loop"), 2)) {
-    std::vector<NamedEnergy> own;
-    for (const std::string& energy : energies) own.push_back({energy, make_plugin_from<Energy>(energy)});
-    std::vector<std::shared_ptr<ContactModel>> models_of_contact;
-    for (const std::string& contact : contacts)
-      models_of_contact.push_back(make_plugin_from<ContactModel>(contact));
+    for (const std::string& energy : energies)
+      energies_.push_back({energy, make_plugin_from<Energy>(energy)});
+    for (const std::string& contact : contacts) contacts_.push_back(make_plugin_from<ContactModel>(contact));
     for (const Level& level : hierarchy.levels) {
       std::vector<DirichletVertex> dirichlet;
       for (const int v : pins) dirichlet.push_back({v, level.rest.vertices.row(v), 0});
-      models.push_back(std::make_shared<const LevelModel>(level, Material(), own, std::move(dirichlet),
-                                                          models_of_contact));
+      models.push_back(
+          std::make_shared<const LevelModel>(level, Material(), energies_, std::move(dirichlet), contacts_));
       starts.push_back(level.rest.vertices);
-      energies_ = own;
-      contacts_ = models_of_contact;
     }
   }
   /// Replaces the Dirichlet vertices of the finer level.
