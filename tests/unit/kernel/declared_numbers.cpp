@@ -2,6 +2,8 @@
 
 #include <catch2/catch.hpp>
 
+#include "core/kernel/files/string_utils.h"
+
 using namespace drape;
 
 namespace {
@@ -70,21 +72,14 @@ TEST_CASE("A path leads to the numbers of any struct of the same shape") {
 
 TEST_CASE("A path that names no number is not found") {
   Model model = two_bodies();
-  for (const std::vector<std::string>& words :
-       std::vector<std::vector<std::string>>{{},
-                                             {"range"},
-                                             {"dhat", "0"},
-                                             {"tree"},
-                                             {"tree", "height"},
-                                             {"bodies"},
-                                             {"bodies", "1"},
-                                             {"bodies", "1", "name"},
-                                             {"bodies", "0", "friction"},  // without a value
-                                             {"bodies", "2", "friction"},
-                                             {"bodies", "wall", "friction"},
-                                             {"bodies", "0", "translate", "3"},
-                                             {"bodies", "0", "translate", "2", "0"}})
-    CHECK_FALSE(DeclaredNumbers::find(schema(), &model, words));
+  CHECK_FALSE(DeclaredNumbers::find(schema(), &model, {}));
+  REQUIRE_FALSE(model.bodies[0].friction);
+  for (const std::string path :
+       {"range", "dhat.0", "tree", "tree.height", "bodies", "bodies.1", "bodies.1.name", "bodies.0.friction",
+        "bodies.2.friction", "bodies.wall.friction", "bodies.0.translate.3", "bodies.0.translate.2.0"}) {
+    INFO(path);
+    CHECK_FALSE(DeclaredNumbers::find(schema(), &model, split(path, '.')));
+  }
 }
 
 TEST_CASE("A value that the parameter refuses is reported and changes nothing") {

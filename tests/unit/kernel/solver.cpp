@@ -5,11 +5,6 @@
 using namespace drape;
 
 TEST_CASE("the worst outcome of a method's levels does not depend on their order") {
-  const auto check = [](Outcome better, Outcome worse, Outcome expected) {
-    INFO(to_string(better) << ", " << to_string(worse));
-    CHECK(worse_of(better, worse) == expected);
-    CHECK(worse_of(worse, better) == expected);
-  };
   const Outcome rising[] = {Outcome::converged,
                             Outcome::converged_to_rounding,
                             Outcome::refined_early_on_request,
@@ -17,7 +12,10 @@ TEST_CASE("the worst outcome of a method's levels does not depend on their order
                             Outcome::stalled,
                             Outcome::infeasible,
                             Outcome::cancelled};
-  for (std::size_t worse = 0; worse < std::size(rising); ++worse)
-    for (std::size_t better = 0; better <= worse; ++better)
-      check(rising[better], rising[worse], rising[worse]);
+  for (std::size_t i = 0; i < std::size(rising); ++i)
+    for (std::size_t j = 0; j <= i; ++j) {
+      INFO(to_string(rising[j]) << ", " << to_string(rising[i]));
+      CHECK(worse_of(rising[j], rising[i]) == rising[i]);
+      CHECK(worse_of(rising[i], rising[j]) == rising[i]);
+    }
 }
