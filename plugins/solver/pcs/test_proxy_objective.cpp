@@ -11,34 +11,36 @@ using namespace drape;
 
 namespace {
 
-/// A bent, stretched state of a flat level.
-Positions bent(const Level& level) {
-  Positions x = level.rest.vertices;
-  for (Eigen::Index i = 0; i < x.rows(); ++i) {
-    x(i, 2) = 0.1 * std::sin(9 * x(i, 0)) + 0.2 * x(i, 1) * x(i, 1);
-    x(i, 0) *= 1.1 + 0.3 * x(i, 1);
-  }
-  return x;
-}
-
 /// Three levels without pins.
 struct Fixture {
   Solved s;
   const Problem& problem;
 
-  explicit Fixture(const std::string& bending_modulus = "1e6")
+  explicit Fixture(const Overrides& overrides = {})
       : s(scene_from(R"(
 name: proxy
 cloth: {shape: rectangle, size: [0.6, 0.5], triangulation: random, vertices: 14}
 levels: 3
-material: {thickness: 0.01, membrane_modulus: 1e4, poisson_ratio: 0.3, bending_modulus: )" +
-                     bending_modulus + R"(}
+material: {thickness: 0.01, membrane_modulus: 1e4, poisson_ratio: 0.3, bending_modulus: 1e6}
 energies: [neo_hookean, hinge, gravity]
 methods: {pcs: {}}
-)")),
+)",
+                     overrides)),
         problem(*s.scene) {}
 
-  Positions state(int level) const { return bent(s.scene->hierarchy.levels[level]); }
+  /// Bent and stretched.
+  Positions state(int level) const {
+    Positions x = problem.hierarchy.levels[level].rest.vertices;
+    for (Eigen::Index i = 0; i < x.rows(); ++i) {
+      x(i, 2) = 0.1 * std::sin(9 * x(i, 0)) + 0.2 * x(i, 1) * x(i, 1);
+      x(i, 0) *= 1.1 + 0.3 * x(i, 1);
+    }
+    return x;
+  }
+  /// The finest level's energy at the state x of a level, prolonged [J].
+  double finest_value(const Positions& x, int level, const std::vector<ProlongationMatrix>& weights) const {
+    return s.model().value(problem.hierarchy.prolong(x, level, 2, weights));
+  }
 };
 
 constexpr ProxyInterpolation by_refiner{Interpolation::refiner, Interpolation::refiner,
@@ -69,8 +71,7 @@ TEST_CASE("The proxy's energy is the finest level's at P x", "[proxy_objective]"
   for (int level : {0, 1}) {
     ProxyObjective proxy = proxy_of(f.problem, level, 1);
     const Positions x = f.state(level);
-    const double expected =
-        f.s.model().value(f.s.scene->hierarchy.prolong(x, level, 2, f.s.scene->hierarchy.prolongations));
+    const double expected = f.finest_value(x, level, f.problem.hierarchy.prolongations);
     REQUIRE(std::abs(expected - f.problem.models[level]->value(x)) > 1e-3 * std::abs(expected));
     Positions g;
     CHECK(proxy.gradient(x, g) == Approx(expected).epsilon(1e-13));
@@ -82,43 +83,28 @@ TEST_CASE("The proxy's energy is the finest level's at P x", "[proxy_objective]"
 TEST_CASE("By midpoints the proxy's energy is that of the coarse surface on the finest mesh",
           "[proxy_objective]") {
   // A grid's rest shapes are the same by Loop and by midpoints, so that the finest model has this surface.
-  Solved s = scene_from(R"(
-name: proxy
-cloth: {shape: rectangle, size: [0.6, 0.5], triangulation: one_way, columns: 5, rows: 4}
-levels: 3
-material: {thickness: 0.01, membrane_modulus: 1e4, bending_modulus: 1e6, poisson_ratio: 0.3}
-energies: [neo_hookean, hinge, gravity, {type: pressure, pressure: 20}]
-methods: {pcs: {}}
-)");
-  const Problem& problem = *s.scene;
+  const Fixture f(Overrides{
+      {"cloth", "{shape: rectangle, size: [0.6, 0.5], triangulation: one_way, columns: 5, rows: 4}"},
+      {"energies", "[neo_hookean, hinge, gravity, {type: pressure, pressure: 20}]"}});
   for (int level : {0, 1}) {
-    const Positions x = bent(s.scene->hierarchy.levels[level]);
-    const Positions fine = problem.hierarchy.prolong(x, level, 2, problem.hierarchy.midpoints);
-    ProxyObjective proxy = proxy_of(problem, level, 1, by_midpoints);
-    const double expected = s.model().value(fine);
-    REQUIRE(std::abs(expected - problem.models[level]->value(x)) > 1e-3 * std::abs(expected));
+    const Positions x = f.state(level);
+    ProxyObjective proxy = proxy_of(f.problem, level, 1, by_midpoints);
+    const double expected = f.finest_value(x, level, f.problem.hierarchy.midpoints);
+    REQUIRE(std::abs(expected - f.problem.models[level]->value(x)) > 1e-3 * std::abs(expected));
     CHECK(value_of(proxy, x) == Approx(expected).epsilon(1e-11));
-    const auto parts = proxy_parts(problem, level, 1, by_midpoints);
+    const auto parts = proxy_parts(f.problem, level, 1, by_midpoints);
     CHECK(std::all_of(parts.begin(), parts.end(), [](const ProxyPart& part) { return part.above == 0; }));
-    CHECK(proxy.matrix(x, Projection::clamp).pattern == problem.models[level]->pattern());
+    CHECK(proxy.matrix(x, Projection::clamp).pattern == f.problem.models[level]->pattern());
   }
 }
 
 TEST_CASE("An energy without a factor is evaluated on the finest mesh by midpoints", "[proxy_objective]") {
-  Solved s = scene_from(R"(
-name: proxy
-cloth: {shape: rectangle, size: [0.6, 0.5], triangulation: random, vertices: 14}
-levels: 3
-material: {thickness: 0.01, membrane_modulus: 1e4, bending_modulus: 1e6, poisson_ratio: 0.3}
-energies: [neo_hookean, midedge_bending, gravity]
-methods: {pcs: {}}
-)");
-  const Problem& problem = *s.scene;
-  const auto parts = proxy_parts(problem, 0, 1, by_midpoints);
+  const Fixture f(Overrides{{"energies", "[neo_hookean, midedge_bending, gravity]"}});
+  const auto parts = proxy_parts(f.problem, 0, 1, by_midpoints);
   REQUIRE(parts.size() == 2);
   CHECK(parts[0].above == 0);
   CHECK(parts[1].above == 2);
-  CHECK(parts[1].interpolation == &problem.hierarchy.linear);
+  CHECK(parts[1].interpolation == &f.problem.hierarchy.linear);
   CHECK(parts[1].roles.has(EnergyRole::bending));
   CHECK_FALSE(parts[1].roles.has(EnergyRole::membrane));
 }
@@ -193,28 +179,22 @@ TEST_CASE("A proxy that relaxes switches to the plain energy of its level, once"
 }
 
 TEST_CASE("The proxy has the contact and the limits of its own level", "[proxy_objective]") {
-  Solved s = scene_from(R"(
-name: proxy
-cloth: {shape: rectangle, size: [0.3, 0.25], triangulation: random, vertices: 14}
-levels: 3
-material: {thickness: 1e-3, membrane_modulus: 1e3, bending_modulus: 1e5}
-start: {translate: [0, 0, 0.01]}
-energies: [neo_hookean, hinge, {type: strain_limit, limit: 1.3}, gravity]
-contact: shapes
-obstacles: [{name: floor, shape: half_space}]
-methods: {pcs: {}}
-)");
-  const Problem& problem = *s.scene;
-  ProxyObjective proxy = proxy_of(problem, 0, 8);
-  Positions x = s.scene->hierarchy.levels[0].rest.vertices;
+  const Fixture f(Overrides{{"cloth.size", "[0.3, 0.25]"},
+                            {"material", "{thickness: 1e-3, membrane_modulus: 1e3, bending_modulus: 1e5}"},
+                            {"start", "{translate: [0, 0, 0.01]}"},
+                            {"energies", "[neo_hookean, hinge, {type: strain_limit, limit: 1.3}, gravity]"},
+                            {"contact", "shapes"},
+                            {"obstacles", "[{name: floor, shape: half_space}]"}});
+  const LevelModel& model = *f.problem.models[0];
+  ProxyObjective proxy = proxy_of(f.problem, 0, 8);
+  Positions x = model.level().rest.vertices;
   for (Eigen::Index i = 0; i < x.rows(); ++i) {
     x(i, 0) *= 1.1;
     x(i, 2) = 0.5e-3 + 2e-4 * std::sin(30 * x(i, 0) + 20 * x(i, 1));
   }
-  const double shell = s.model().value(s.scene->hierarchy.prolong(x, 0, 2, s.scene->hierarchy.prolongations));
-  const double barrier =
-      problem.models[0]->contacts()[0]->build_candidates(x, x)->build_collisions(x)->value(x);
-  const double limit = problem.models[0]->limits()[0]->value(x);
+  const double shell = f.finest_value(x, 0, f.problem.hierarchy.prolongations);
+  const double barrier = model.contacts()[0]->build_candidates(x, x)->build_collisions(x)->value(x);
+  const double limit = model.limits()[0]->value(x);
   REQUIRE(barrier > 0);
   REQUIRE(limit > 0);
   // Every state of the differences is evaluated as the start of its own step.
@@ -239,7 +219,7 @@ methods: {pcs: {}}
 
 TEST_CASE("Membranes of coarse levels buckle below the mesh, before the proxy relaxes and after",
           "[proxy_objective]") {
-  const Fixture f("1e4");
+  const Fixture f(Overrides{{"material.bending_modulus", "1e4"}});
   const LevelModel& plain = *f.problem.models[0];
   const LevelModel buckling = plain.with_effective_membranes(2);
   Positions x = f.state(0);
