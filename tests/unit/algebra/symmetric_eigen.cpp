@@ -25,13 +25,11 @@ std::vector<Eigen::MatrixXd> matrices(int size) {
   std::vector<Eigen::MatrixXd> all;
   for (unsigned seed = 1; seed <= 8; ++seed)
     all.push_back(with_eigenvalues(Eigen::VectorXd::Random(size), seed));
-  Eigen::VectorXd v = Eigen::VectorXd::LinSpaced(size, -1, 1);
+  const Eigen::VectorXd v = Eigen::VectorXd::LinSpaced(size, -1, 1);
   all.push_back(with_eigenvalues(v.array().sign(), 10));
   all.push_back(with_eigenvalues(v.array().pow(15), 11));
-  v.setZero();
-  all.push_back(with_eigenvalues(v, 12));
-  v[0] = -3;
-  all.push_back(with_eigenvalues(v, 13));
+  all.push_back(Eigen::MatrixXd::Zero(size, size));
+  all.push_back(with_eigenvalues(-3 * Eigen::VectorXd::Unit(size, 0), 13));
   all.push_back(1e-20 * all[0]);
   all.push_back(1e20 * all[0]);
   all.push_back(Eigen::MatrixXd(Eigen::VectorXd::Random(size).asDiagonal()));
@@ -61,8 +59,7 @@ void check_map() {
     keep_positive(four);
     for (int lane = -1; lane < 4; ++lane) {
       const auto& original = all[(m + std::max(lane, 0)) % count];
-      const auto [values, vectors] = eigenpairs_of(original);
-      const Eigen::MatrixXd expected = vectors * values.cwiseMax(0).asDiagonal() * vectors.transpose();
+      const Eigen::MatrixXd expected = recomposed(eigenpairs_of(original), Projection::clamp);
       Eigen::MatrixXd found(N, N);
       for (int j = 0; j < N; ++j)
         for (int i = 0; i < N; ++i) found(i, j) = lane < 0 ? one(i, j) : four(i, j)[lane];
