@@ -1,11 +1,8 @@
 #include "core/numerics/step/factor_cache.h"
 
 #include <catch2/catch.hpp>
-#include <limits>
 
-#include "core/numerics/step/equilibrium_check.h"
 #include "tests/support/newton_problem.h"
-#include "tests/support/registry.h"
 #include "tests/support/test_energies.h"
 
 using namespace drape;

@@ -34,8 +34,8 @@ struct NewtonCase {
   KeepingObserver observer;
 
   /// One with its first vertex held.
-  LevelResult solve(const NewtonParameters& p, double width = 0, double k = 10) {
-    return solve(p, {{"wells", energy_of(Wells(centres, k, width))}}, {{0, level.rest.vertices.row(0), 0}});
+  LevelResult solve(const NewtonParameters& p, double width = 0) {
+    return solve(p, {{"wells", energy_of(Wells(centres, 10, width))}}, {{0, level.rest.vertices.row(0), 0}});
   }
   LevelResult solve(const NewtonParameters& p, const std::vector<NamedEnergy>& energies,
                     const std::vector<DirichletVertex>& dirichlet = {}) {
