@@ -1,6 +1,8 @@
 #include "core/numerics/linear_algebra/galerkin.h"
 
+#include <Eigen/SparseCore>
 #include <catch2/catch.hpp>
+#include <vector>
 
 #include "tests/support/dense_matrix.h"
 #include "tests/support/random_block_matrix.h"

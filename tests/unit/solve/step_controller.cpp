@@ -1,6 +1,7 @@
 #include "core/numerics/step/step_controller.h"
 
 #include <catch2/catch.hpp>
+#include <vector>
 
 using namespace drape;
 
