@@ -86,6 +86,8 @@ TEST_CASE("a config that is not a regular file is refused without blocking") {
        {"check pipe.yaml", "run pipe.yaml --out out", "sweep pipe.yaml --out out"})
     CHECK(refused_by(command, folder.path) ==
           "error: pipe.yaml: is a pipe or a device; give a file on a disk\n");
+  CHECK(refused(folder, "check /dev/zero") ==
+        "error: /dev/zero: is a pipe or a device; give a file on a disk\n");
   folder.write("e.yaml", small_experiment());
   fs::resize_file(folder / "e.yaml", 100000000);
   CHECK(refused_by("check e.yaml", folder.path) ==
@@ -516,4 +518,10 @@ TEST_CASE("a run may be overwritten by a run of its own config.yaml") {
   CHECK(again.err == "");
   CHECK(text_of(folder / "out/start.ply") == start);
   CHECK(text_of(folder / "out/levels/pcs_l0.ply") == state);
+}
+
+TEST_CASE("a plugin path that is no folder") {
+  const Scratch folder(small_experiment());
+  CHECK(refused_by("run e.yaml --out out", folder.path, "DRAPE_PLUGIN_PATH=nowhere") ==
+        "error: DRAPE_PLUGIN_PATH names nowhere, which is not a folder\n");
 }
