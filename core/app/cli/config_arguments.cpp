@@ -6,7 +6,6 @@
 #include <limits>
 
 #include "core/app/cli/commands.h"
-#include "core/app/files/csv.h"
 #include "core/app/scene/scene_summary.h"
 #include "core/kernel/files/message_text.h"
 #include "core/kernel/plugin/parameters.h"
@@ -33,7 +32,7 @@ OptionCheck positive_integer() {
 
 OptionCheck number_of_at_least(double least) {
   return [least](const std::string& text) {
-    const OptionalNumber number = number_of(text);
+    const std::optional<double> number = number_of(text);
     return number && *number >= least
                ? ""
                : "must be a number of at least " + three_digits(least) + ", not " + excerpt(text);

@@ -8,7 +8,6 @@
 #include "core/app/cli/config_arguments.h"
 #include "core/app/experiment/declared_metrics.h"
 #include "core/app/experiment/exit_codes.h"
-#include "core/app/files/csv.h"
 #include "core/app/files/json_file.h"
 #include "core/app/files/machine.h"
 #include "core/app/files/yaml_file.h"
@@ -17,6 +16,7 @@
 #include "core/kernel/files/message_text.h"
 #include "core/kernel/files/number_text.h"
 #include "core/kernel/files/string_utils.h"
+#include "core/kernel/plugin/parameters.h"
 #include "core/kernel/threads/parallel.h"
 
 namespace drape {

@@ -9,7 +9,6 @@
 #include "core/app/cli/commands.h"
 #include "core/app/cli/config_arguments.h"
 #include "core/app/experiment/exit_codes.h"
-#include "core/app/files/csv.h"
 #include "core/app/report/compare.h"
 #include "core/app/report/pictures.h"
 #include "core/app/report/report.h"
@@ -19,6 +18,7 @@
 #include "core/app/sweep/process.h"
 #include "core/kernel/files/message_text.h"
 #include "core/kernel/files/string_utils.h"
+#include "core/kernel/plugin/parameters.h"
 
 namespace drape {
 
@@ -36,7 +36,7 @@ std::optional<Eigen::Vector3d> direction_of(const std::string& text) {
   if (parts.size() != 3) return {};
   Eigen::Vector3d direction;
   for (int k = 0; k < 3; ++k) {
-    const OptionalNumber number = number_of(parts[k]);
+    const std::optional<double> number = number_of(parts[k]);
     if (!number) return {};
     direction[k] = *number;
   }

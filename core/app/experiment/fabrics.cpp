@@ -6,11 +6,11 @@
 #include <sstream>
 #include <string_view>
 
-#include "core/app/files/csv.h"
 #include "core/kernel/files/file.h"
 #include "core/kernel/files/message_text.h"
 #include "core/kernel/files/string_utils.h"
 #include "core/kernel/interfaces/material.h"
+#include "core/kernel/plugin/parameters.h"
 
 namespace drape {
 namespace {
@@ -122,7 +122,7 @@ ConfigNode material_of(const Table& table, std::size_t row, const std::string& n
   const auto refuse = [&](const std::string& what) {
     errors.push_back({where, table.file + ": row \"" + name + "\" " + what});
   };
-  const OptionalNumber measured = number_of(table.cell(row, "thickness"));
+  const std::optional<double> measured = number_of(table.cell(row, "thickness"));
   const double own = measured.value_or(Material().thickness), in_force = thickness.value_or(own);
   // A number per volume that the source gives without a thickness stays as it is.
   const double ratio = measured ? own / in_force : 1;
@@ -131,7 +131,7 @@ ConfigNode material_of(const Table& table, std::size_t row, const std::string& n
   for (const Column& column : columns) {
     const std::string text = table.cell(row, column.name);
     if (text.empty()) continue;
-    const OptionalNumber value = number_of(text);
+    const std::optional<double> value = number_of(text);
     if (!value)
       refuse("has \"" + excerpt(text) + "\" in column \"" + column.name + "\", which is not a number");
     else if (column.key == std::string("mass"))

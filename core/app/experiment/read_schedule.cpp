@@ -4,9 +4,9 @@
 
 #include "core/app/experiment/experiment_path.h"
 #include "core/app/experiment/read_experiment.h"
-#include "core/app/files/csv.h"
 #include "core/kernel/files/message_text.h"
 #include "core/kernel/files/string_utils.h"
+#include "core/kernel/plugin/parameters.h"
 
 namespace drape {
 
@@ -24,7 +24,7 @@ bool is_changeable(const std::string& path) { return is_one_of(path.substr(0, pa
 std::vector<double> numbers_of(const ConfigNode& node) {
   std::vector<double> numbers;
   for (const ConfigNode& item : node.kind == NodeKind::list ? node.items : std::vector{node}) {
-    const OptionalNumber number = number_of(item.scalar);
+    const std::optional<double> number = number_of(item.scalar);
     if (!number) return {};
     numbers.push_back(*number);
   }

@@ -1,7 +1,6 @@
 #include "core/app/files/csv.h"
 
 #include <algorithm>
-#include <cmath>
 #include <sstream>
 #include <stdexcept>
 
@@ -39,11 +38,6 @@ std::string Csv::text(std::size_t row, const std::string& column) const {
 
 OptionalNumber Csv::number(std::size_t row, const std::string& column) const {
   return number_of(text(row, column));
-}
-
-OptionalNumber number_of(const std::string& cell) {
-  const std::optional<double> value = parse_number(cell);
-  return value && std::isfinite(*value) ? value : std::nullopt;
 }
 
 }  // namespace drape

@@ -29,7 +29,4 @@ class Csv {
   std::vector<std::vector<std::string>> rows_;
 };
 
-/// The finite number that the whole text spells, in any locale.
-OptionalNumber number_of(const std::string& cell);
-
 }  // namespace drape

@@ -12,6 +12,7 @@
 #include "core/kernel/files/file.h"
 #include "core/kernel/files/message_text.h"
 #include "core/kernel/interfaces/solver.h"
+#include "core/kernel/plugin/parameters.h"
 
 namespace drape {
 

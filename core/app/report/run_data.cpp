@@ -7,6 +7,7 @@
 #include "core/app/files/json_file.h"
 #include "core/app/files/yaml_file.h"
 #include "core/kernel/files/file.h"
+#include "core/kernel/plugin/parameters.h"
 #include "core/numerics/mesh_files/io.h"
 
 namespace drape {

@@ -7,7 +7,6 @@
 #include <utility>
 
 #include "core/app/experiment/experiment_path.h"
-#include "core/app/files/csv.h"
 #include "core/app/report/run_data.h"
 #include "core/app/sweep/local_engine.h"
 #include "core/kernel/files/message_text.h"
@@ -18,7 +17,7 @@
 namespace drape {
 namespace {
 
-OptionalNumber value_of(const ConfigNode* node) {
+std::optional<double> value_of(const ConfigNode* node) {
   return node && !node->quoted ? number_of(node->scalar) : std::nullopt;
 }
 
@@ -42,7 +41,7 @@ std::vector<ScaledKey> group(const ConfigNode& resolved, const std::string& path
   const ConfigNode* section = dot == std::string::npos ? nullptr : value_at(resolved, path.substr(0, dot));
   if (!section) return {};
   for (const auto& [key, node] : section->entries) {
-    const OptionalNumber value = value_of(&node);
+    const std::optional<double> value = value_of(&node);
     if (!value || *value == 0 || key.find(path.substr(dot + 1)) == std::string::npos) continue;
     const std::string own = path.substr(0, dot + 1) + key;
     const bool is_default = value_of(value_at(plain, own)) == value;
@@ -210,7 +209,7 @@ FitSample FitRuns::measured(const Sweep& sweep, double factor) const {
       continue;
     }
     const MethodRecord method = read_run(files.folder).methods.at(0);
-    const OptionalNumber value = method.levels.back().values.of(setup_.metric);
+    const std::optional<double> value = method.levels.back().values.of(setup_.metric);
     value ? sample.values.push_back(*value) : leave_out("has no " + setup_.metric);
   }
   std::ranges::sort(sample.values);

@@ -174,6 +174,10 @@ std::string number_fault(const Parameter& p, double value) {
 }
 
 std::optional<double> parse_number(const std::string& text) { return parsed<double>(text); }
+std::optional<double> number_of(const std::string& text) {
+  const std::optional<double> value = parse_number(text);
+  return value && std::isfinite(*value) ? value : std::nullopt;
+}
 std::optional<int> parse_integer(const std::string& text) { return parsed<int>(text); }
 
 namespace parameter_detail {
