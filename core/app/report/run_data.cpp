@@ -136,7 +136,18 @@ Json read_results(const std::filesystem::path& folder, const std::string& remedy
   const JsonFile file(path, remedy);
   if (!json.is_object()) file.refuse("is damaged or cut short: it is not a JSON object");
   if (!member_of(json, "methods").is_object()) file.refuse("is damaged: \"methods\" is not a map");
+  file.find<bool>(json, "complete");
   return json;
+}
+
+Json complete_results(const std::filesystem::path& folder) {
+  try {
+    Json results = read_results(folder);
+    if (member_of(results, "complete") == true) return results;
+  } catch (const std::runtime_error&) {
+    // Missing, or damaged as by a power cut.
+  }
+  return nullptr;
 }
 
 RunData read_run(const std::filesystem::path& folder) {

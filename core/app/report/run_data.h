@@ -89,6 +89,8 @@ std::string rest_file(int level);
 /// short or not a run's.
 nlohmann::ordered_json read_results(const std::filesystem::path& folder,
                                     const std::string& remedy = "run the experiment again");
+/// The same of a complete run; null if the run is not complete, or if its results are missing or damaged.
+nlohmann::ordered_json complete_results(const std::filesystem::path& folder);
 
 /// Reads results.json (required), iterations.csv, errors.csv and config.yaml (optional). Null values are
 /// absent. Throws std::runtime_error with one line if results.json is missing or damaged.

@@ -35,19 +35,6 @@ FileFingerprint fingerprint_of(const fs::path& path) {
 /// Copies of inputs in a results folder, as its config.yaml names them.
 constexpr const char* copies[] = {"rest/l0.ply", "reference.ply", "start.ply"};
 
-bool is_valid(const nlohmann::ordered_json& results) {
-  return results.is_object() && results.contains("methods") && results["methods"].is_object() &&
-         (!results.contains("complete") || results["complete"].is_boolean());
-}
-
-nlohmann::ordered_json results_of(const fs::path& folder) {
-  const fs::path file = folder / "results.json";
-  if (!fs::exists(file)) refuse_path(folder, "holds no run; give the results folder of one");
-  nlohmann::ordered_json results = parse_json(read_file(file));
-  if (!is_valid(results)) refuse_path(file, "is damaged; run the experiment again");
-  return results;
-}
-
 /// Reads the experiment and the scene of a run. Returns false, with errors appended, if that is not possible.
 bool read_scene(const fs::path& folder, const Registry& registry, LargeMemory large, SavedRun& run,
                 ConfigErrors& errors) {
@@ -108,12 +95,8 @@ std::vector<FileFingerprint> fingerprints_of_files(const ConfigNode& saved, cons
 }
 
 bool is_complete(const fs::path& folder) {
-  const fs::path file = folder / "results.json";
-  if (!has_checkpoint(folder)) return results_of(folder).value("complete", false);
-  // The checkpoint holds these results too: a power cut may have damaged the file.
-  if (!fs::exists(file)) return false;
-  const nlohmann::ordered_json results = parse_json(read_file(file));
-  return is_valid(results) && results.value("complete", false);
+  if (!has_checkpoint(folder)) return member_of(read_results(folder), "complete") == true;
+  return !complete_results(folder).is_null();  // the checkpoint holds damaged ones too
 }
 
 bool all_methods_succeeded(const fs::path& folder) {
@@ -124,7 +107,7 @@ bool all_methods_succeeded(const fs::path& folder) {
 
 void refuse_damaged_results(const fs::path& folder) {
   std::vector<std::string> damaged;
-  const auto results = results_of(folder);
+  const auto results = read_results(folder);
   const JsonFile file(folder / "results.json", "run the experiment again");
   for (const auto& [name, method] : results["methods"].items()) {
     if (!method.is_object() || !method.contains("levels")) file.refuse("\"levels\" is missing");
@@ -188,10 +171,10 @@ std::optional<SavedRun> read_saved_run(const fs::path& folder, const Registry& r
 }
 
 SavedState saved_state(const fs::path& folder, const std::string& method, std::optional<int> level) {
-  const nlohmann::ordered_json results = results_of(folder);
+  const nlohmann::ordered_json results = read_results(folder);
   SavedState state{method, 0, {}};
   std::optional<Checkpoint> checkpoint;
-  if (!results.value("complete", false)) {
+  if (member_of(results, "complete") != true) {
     std::string warning;
     checkpoint = load_checkpoint(folder, warning);
     if (state.method.empty()) state.method = checkpoint->methods.at(checkpoint->method);

@@ -23,18 +23,6 @@ using Json = nlohmann::ordered_json;
 
 constexpr const char* words[] = {"pending", "running", "converged", "not_converged", "failed", "cancelled"};
 
-/// The results of a run in `files`, and what to do if they are damaged.
-JsonFile results_file(const RunFiles& files) {
-  return {files.results(), "remove the run's folder, and the sweep runs it again"};
-}
-
-/// The run's results if they are complete, otherwise null.
-Json complete_results(const RunFiles& files) {
-  Json results = parse_json(text_of_file(files.results()));
-  if (!member_of(results, "methods").is_object()) return Json();  // damaged
-  return results_file(files).find<bool>(results, "complete").value_or(false) ? results : Json();
-}
-
 /// The status of a run that had results, by what is there of them now.
 RunStatus with_sound_results(const RunFiles& files, RunStatus status) {
   if (!std::filesystem::exists(files.results())) {
@@ -134,8 +122,6 @@ void write_status(const RunFiles& files, const RunStatus& status) {
   write_file(files.status(), json_text(status.json(), 1) + "\n");
 }
 
-bool has_complete_results(const RunFiles& files) { return !complete_results(files).is_null(); }
-
 RunStatus resolve_status(const RunFiles& files, RunStatus status) {
   if (status.has_results()) return with_sound_results(files, std::move(status));
   // A refused run has not begun: results in its folder may be of another experiment.
@@ -143,9 +129,9 @@ RunStatus resolve_status(const RunFiles& files, RunStatus status) {
                          (status.state == RunState::failed && !status.refused());
   if (!had_begun) return status;
   if (status.state == RunState::running) status.state = RunState::cancelled;
-  const Json results = complete_results(files);
+  const Json results = complete_results(files.folder);
   if (results.is_null()) return status;
-  const JsonFile file = results_file(files);
+  const JsonFile file(files.results(), remedy_of_results);
   status.state = RunState::converged;
   status.error.clear();
   status.seconds = 0;

@@ -46,8 +46,8 @@ struct RunFiles {
 RunStatus read_status(const RunFiles& files);
 void write_status(const RunFiles& files, const RunStatus& status);
 
-/// Whether the run's folder has complete results, whoever made them.
-bool has_complete_results(const RunFiles& files);
+/// What to do about a value of the wrong kind in a run's results.
+inline constexpr const char* remedy_of_results = "remove the run's folder, and the sweep runs it again";
 /// The status of a run by its results. One that had begun has complete ones after `drape run --resume`;
 /// without any it has failed, or is cancelled if it is marked as running but is not. One whose results were
 /// damaged since has failed, one whose results are gone is pending.

@@ -6,6 +6,7 @@
 
 #include "core/app/experiment/cloth.h"
 #include "core/app/files/json_file.h"
+#include "core/app/report/run_data.h"
 #include "core/kernel/files/file.h"
 #include "core/kernel/files/number_text.h"
 #include "core/kernel/files/string_utils.h"
@@ -74,7 +75,7 @@ void SweepFolder::refuse_other_runs(const Sweep& sweep, int threads) const {
           files.folder,
           "is there already, and not from this sweep; move it away, or name another folder with --out");
     if (!resolve_status(files, status).has_results()) {
-      if (has_complete_results(files))
+      if (!complete_results(files.folder).is_null())
         refuse_path(
             files.folder,
             "has complete results, but not from this sweep; move it away, or name another folder with --out");
@@ -179,12 +180,10 @@ MemoryEstimate::MemoryEstimate(const Sweep& sweep, const SweepFolder& folder) {
 }
 
 void MemoryEstimate::learn(const SweepRun& run, const RunFiles& files) {
-  const std::filesystem::path path = files.folder / "results.json";
-  const JsonFile file(path, "remove the run's folder, and the sweep runs it again");
-  const auto results = parse_json(text_of_file(path));
-  if (!results.is_object() || !results.contains("methods")) return;
+  const JsonFile file(files.results(), remedy_of_results);
+  const Json results = complete_results(files.folder);
   double& peak = peaks_[{run.vertices, run.levels}];
-  for (const auto& [name, method] : results["methods"].items())
+  for (const auto& [name, method] : member_of(results, "methods").items())
     peak = std::max(peak, file.find<double>(method, "peak_memory_bytes").value_or(0));
 }
 

@@ -28,6 +28,8 @@ TEST_CASE("results without methods, or that are cut short, are refused") {
   CHECK(said_of("{") == "results.json: is damaged or cut short: it is not a JSON object" + again);
   CHECK(said_of("{}") == "results.json: is damaged: \"methods\" is not a map" + again);
   CHECK(said_of(R"({"methods": [1]})") == "results.json: is damaged: \"methods\" is not a map" + again);
+  CHECK(said_of(R"({"methods": {}, "complete": "yes"})") ==
+        "results.json: \"complete\" must be true or false, not \"yes\"" + again);
   CHECK(said_of(R"({"methods": {}})") == "");
 }
 
