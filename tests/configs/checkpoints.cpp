@@ -116,9 +116,9 @@ int check_in_parts(const Scratch& scratch, Overrides overrides,
   run_experiment(experiment, *scene_of(experiment), options);
   for (std::string before; !is_complete(options.out); ++parts) {
     REQUIRE(parts < 2000);
-    std::string warning;
-    InterruptedRun interrupted = interrupted_run(RunFolder::of_run(options.out), warning);
-    CHECK(warning == "");
+    std::vector<std::string> warnings;
+    InterruptedRun interrupted = interrupted_run(RunFolder::of_run(options.out), warnings);
+    CHECK(warnings.empty());
     const Checkpoint& checkpoint = interrupted.checkpoint;
     const MethodState& state = checkpoint.state;
     const std::string now = std::to_string(checkpoint.method) + " " + std::to_string(state.level) + " " +
@@ -272,9 +272,9 @@ methods: {pcs: {}, newton: {}}
   CHECK(height() > 0.09);
   CHECK(height() < 0.75);
   const auto resume = [&] {
-    std::string warning;
+    std::vector<std::string> warnings;
     resume_experiment(experiment, *scene_of(experiment), options,
-                      interrupted_run(RunFolder::of_run(out), warning));
+                      interrupted_run(RunFolder::of_run(out), warnings));
   };
   const auto restored = [&] { return text_of(out / "log.jsonl").find("file_restored") != std::string::npos; };
   asked = 0;
@@ -531,8 +531,8 @@ TEST_CASE("A checkpoint whose values do not fit its experiment is refused before
   interrupt_sheets(folder);
   const Experiment experiment = experiment_in(folder / "out/config.yaml");
   const auto scene = scene_of(experiment);
-  std::string warning;
-  const auto interrupted = [&] { return interrupted_run(RunFolder::of_run(folder / "out"), warning); };
+  std::vector<std::string> warnings;
+  const auto interrupted = [&] { return interrupted_run(RunFolder::of_run(folder / "out"), warnings); };
   const Checkpoint sound = interrupted().checkpoint;
   REQUIRE(sound.state.under_way);
   REQUIRE_NOTHROW(require_fitting(sound, experiment, *scene));

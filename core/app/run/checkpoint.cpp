@@ -89,14 +89,14 @@ bool has_checkpoint(const std::filesystem::path& folder) {
   return std::filesystem::exists(newest(folder), none) || std::filesystem::exists(previous(folder), none);
 }
 
-Checkpoint load_checkpoint(const std::filesystem::path& folder, std::string& warning) {
-  warning.clear();
+Checkpoint load_checkpoint(const std::filesystem::path& folder, std::vector<std::string>& warnings) {
   std::string faults;
   for (const auto& file : {newest(folder), previous(folder)}) {
     if (!std::filesystem::exists(file)) continue;
     try {
       Checkpoint checkpoint = decode(read_file(file));
-      if (!faults.empty()) warning = faults + "; going on from the checkpoint before it, " + file.string();
+      if (!faults.empty())
+        warnings.push_back(faults + "; going on from the checkpoint before it, " + file.string());
       return checkpoint;
     } catch (const std::exception& fault) {
       faults += (faults.empty() ? "" : "; ") + file.string() + ": " + fault.what();

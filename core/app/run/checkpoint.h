@@ -55,9 +55,9 @@ void save_checkpoint(const std::filesystem::path& folder, const Checkpoint& chec
 /// Whether the run in `folder` has a checkpoint, complete or not.
 bool has_checkpoint(const std::filesystem::path& folder);
 
-/// The newest complete checkpoint of the run in `folder`; `warning` explains a fall-back to the previous one.
+/// The newest complete checkpoint of the run in `folder`; a fall-back to the previous one appends a warning.
 /// Throws std::runtime_error if there is none.
-Checkpoint load_checkpoint(const std::filesystem::path& folder, std::string& warning);
+Checkpoint load_checkpoint(const std::filesystem::path& folder, std::vector<std::string>& warnings);
 
 /// Removes the checkpoints of a complete run.
 void remove_checkpoints(const std::filesystem::path& folder);

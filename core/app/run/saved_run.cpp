@@ -35,6 +35,27 @@ FileFingerprint fingerprint_of(const fs::path& path) {
 /// Copies of inputs in a results folder, as its config.yaml names them.
 constexpr const char* copies[] = {"rest/l0.ply", "reference.ply", "start.ply"};
 
+/// Throws std::runtime_error naming every mesh of a complete run whose checksum differs from results.json.
+void refuse_damaged_results(const fs::path& folder) {
+  std::vector<std::string> damaged;
+  const auto results = read_results(folder);
+  const JsonFile file(folder / "results.json", "run the experiment again");
+  for (const auto& [name, method] : results["methods"].items()) {
+    if (!method.is_object() || !method.contains("levels")) file.refuse("\"levels\" is missing");
+    for (const auto& level : method["levels"]) {
+      const auto checksum = file.find<double>(level, "mesh_checksum");
+      if (!checksum) continue;  // of a level that failed
+      const auto mesh = file.at<std::string>(level, "mesh");
+      if (!fs::is_regular_file(folder / mesh) || checksum_of(read_file(folder / mesh)) != *checksum)
+        damaged.push_back(mesh);
+    }
+  }
+  if (!damaged.empty())
+    refuse_path(folder, "the run is complete, but files are damaged or missing: " + joined(damaged) +
+                            "; run the experiment again, as in drape run " +
+                            (folder / "config.yaml").string() + " --out ANOTHER");
+}
+
 /// Reads the experiment and the scene of a run. Returns false, with errors appended, if that is not possible.
 bool read_scene(const fs::path& folder, const Registry& registry, LargeMemory large, SavedRun& run,
                 ConfigErrors& errors) {
@@ -105,29 +126,9 @@ bool all_methods_succeeded(const fs::path& folder) {
   return run.complete && std::ranges::all_of(run.methods, converged);
 }
 
-void refuse_damaged_results(const fs::path& folder) {
-  std::vector<std::string> damaged;
-  const auto results = read_results(folder);
-  const JsonFile file(folder / "results.json", "run the experiment again");
-  for (const auto& [name, method] : results["methods"].items()) {
-    if (!method.is_object() || !method.contains("levels")) file.refuse("\"levels\" is missing");
-    for (const auto& level : method["levels"]) {
-      const auto checksum = file.find<double>(level, "mesh_checksum");
-      if (!checksum) continue;  // of a level that failed
-      const auto mesh = file.at<std::string>(level, "mesh");
-      if (!fs::is_regular_file(folder / mesh) || checksum_of(read_file(folder / mesh)) != *checksum)
-        damaged.push_back(mesh);
-    }
-  }
-  if (!damaged.empty())
-    refuse_path(folder, "the run is complete, but files are damaged or missing: " + joined(damaged) +
-                            "; run the experiment again, as in drape run " +
-                            (folder / "config.yaml").string() + " --out ANOTHER");
-}
-
-InterruptedRun interrupted_run(RunFolder run, std::string& warning) {
+InterruptedRun interrupted_run(RunFolder run, std::vector<std::string>& warnings) {
   const fs::path& folder = run.path();
-  Checkpoint checkpoint = load_checkpoint(folder, warning);
+  Checkpoint checkpoint = load_checkpoint(folder, warnings);
   const fs::path config = folder / "config.yaml";
   if (!fs::exists(config)) write_file(config, checkpoint.config);
   if (read_file(config) != checkpoint.config)
@@ -143,8 +144,8 @@ InterruptedRun interrupted_run(RunFolder run, std::string& warning) {
   }
   const std::string program = Checkpoint().program;
   if (checkpoint.program != program)
-    warning += (warning.empty() ? "" : "\n") + ("the checkpoint is by " + checkpoint.program + ", this is " +
-                                                program + ": the last bits may differ");
+    warnings.push_back("the checkpoint is by " + checkpoint.program + ", this is " + program +
+                       ": the last bits may differ");
   checkpoint.program = program;  // of the next one
   return {std::move(run), std::move(checkpoint)};
 }
@@ -160,9 +161,7 @@ std::optional<SavedRun> read_saved_run(const fs::path& folder, const Registry& r
     if (!again.empty()) warnings.push_back(written_again_text(again));
     return run;
   }
-  std::string warning;
-  run.interrupted = interrupted_run(std::move(locked), warning);
-  if (!warning.empty()) warnings = split(warning, '\n');
+  run.interrupted = interrupted_run(std::move(locked), warnings);
   if (!read_scene(folder, registry, large, run, errors)) return {};
   if (const Checkpoint& checkpoint = run.interrupted->checkpoint; checkpoint.start.rows() > 0)
     warm_start_scene(run.experiment, *run.scene, checkpoint.first_level, checkpoint.start, errors);
@@ -175,8 +174,8 @@ SavedState saved_state(const fs::path& folder, const std::string& method, std::o
   SavedState state{method, 0, {}};
   std::optional<Checkpoint> checkpoint;
   if (member_of(results, "complete") != true) {
-    std::string warning;
-    checkpoint = load_checkpoint(folder, warning);
+    std::vector<std::string> warnings;
+    checkpoint = load_checkpoint(folder, warnings);
     if (state.method.empty()) state.method = checkpoint->methods.at(checkpoint->method);
   }
   if (state.method.empty())

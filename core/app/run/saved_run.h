@@ -28,9 +28,6 @@ bool is_complete(const std::filesystem::path& folder);
 /// Whether the run is complete and every method succeeded.
 bool all_methods_succeeded(const std::filesystem::path& folder);
 
-/// Throws std::runtime_error naming every mesh of a complete run whose checksum differs from results.json.
-void refuse_damaged_results(const std::filesystem::path& folder);
-
 /// An interrupted run to be resumed: its folder, locked, with the checkpoint to resume it from.
 struct InterruptedRun {
   RunFolder folder;
@@ -38,9 +35,9 @@ struct InterruptedRun {
 };
 
 /// The interrupted run in a folder, which is locked before the checkpoint is read: no other process can
-/// continue the run in between. `warning` reports harmless differences. Throws std::runtime_error with the
+/// continue the run in between. `warnings` reports harmless differences. Throws std::runtime_error with the
 /// reason if the run cannot be resumed.
-InterruptedRun interrupted_run(RunFolder folder, std::string& warning);
+InterruptedRun interrupted_run(RunFolder folder, std::vector<std::string>& warnings);
 
 /// A run as its folder has it.
 struct SavedRun {

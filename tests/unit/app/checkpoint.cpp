@@ -3,6 +3,7 @@
 #include "core/app/run/checkpoint.h"
 
 #include <catch2/catch.hpp>
+#include <utility>
 
 #include "tests/support/command.h"
 #include "tests/support/refusal.h"
@@ -97,8 +98,8 @@ std::size_t difference(const std::string& a, const std::string& b) {
 }
 
 std::string error_in(const std::filesystem::path& folder) {
-  std::string warning;
-  return refusal_of([&] { load_checkpoint(folder, warning); });
+  std::vector<std::string> warnings;
+  return refusal_of([&] { load_checkpoint(folder, warnings); });
 }
 
 }  // namespace
@@ -208,26 +209,27 @@ TEST_CASE("The newest complete checkpoint is used, and a damaged one is named") 
   const Scratch folder;
   CHECK_FALSE(has_checkpoint(folder.path));
   CHECK_THAT(error_in(folder.path), Contains("holds no checkpoint of a run"));
-  std::string warning;
+  std::vector<std::string> warnings;
   for (int method = 0; method < 3; ++method) {
     Checkpoint c = full();
     c.method = method;
     save_checkpoint(folder.path, c);
-    CHECK(load_checkpoint(folder.path, warning).method == method);
-    CHECK(warning == "");
+    CHECK(load_checkpoint(folder.path, warnings).method == method);
+    CHECK(warnings.empty());
   }
   const auto newest = folder / "checkpoint/state.bin", previous = folder / "checkpoint/previous.bin";
   const std::string whole = text_of(newest);
   std::filesystem::resize_file(newest, whole.size() - 1);
-  CHECK(load_checkpoint(folder.path, warning).method == 1);
-  CHECK(warning ==
-        newest.string() + ": is cut short; going on from the checkpoint before it, " + previous.string());
+  CHECK(load_checkpoint(folder.path, warnings).method == 1);
+  CHECK(std::exchange(warnings, {}) ==
+        std::vector{newest.string() + ": is cut short; going on from the checkpoint before it, " +
+                    previous.string()});
 
   // Between the two renames of a save there is no newest one.
   std::filesystem::remove(newest);
   CHECK(has_checkpoint(folder.path));
-  CHECK(load_checkpoint(folder.path, warning).method == 1);
-  CHECK(warning == "");
+  CHECK(load_checkpoint(folder.path, warnings).method == 1);
+  CHECK(warnings.empty());
 
   folder.write("checkpoint/state.bin", whole.substr(0, 100));
   folder.write("checkpoint/previous.bin", "something else");
