@@ -584,7 +584,7 @@ TEST_CASE("A checkpoint whose values do not fit its experiment is refused before
   refused("results.json as it was, of the method under way", [](auto& c) { c.recorder.method = "x"; });
   refused("a level's result", [](auto& c) { c.recorder.states = {{"pcs", 7, Positions()}}; });
   refused("the snapshots", [](auto& c) { c.recorder.snapshots.spacing = 0; });
-  refused("the snapshots", [](auto& c) { c.recorder.measured = {LevelSnapshots()}; });
+  refused("the snapshots", [](auto& c) { c.recorder.states.at(0).snapshots = {}; });
   CHECK(text_of(folder / "out/log.jsonl") == before);
 }
 

@@ -162,17 +162,15 @@ class Check {
       const bool has_contact = !scene_.models[state.level]->contacts().empty();
       require(state.contact_pressure.size() == (has_contact ? state.x.rows() : 0),
               "a level's contact forces");
+      const LevelSnapshots& own = state.snapshots;
+      require(own.cost.size() == own.iterations.size() && own.cost.size() == own.energies.size() &&
+                  own.cost.empty() == (experiment_.parameters.snapshots == 0),
+              "the snapshots");
     }
     require(s.snapshots.spacing > 0 && s.snapshots.seen >= 0, "the snapshots");
     if (is_level(c_.state.level))
       for (const Snapshot& snapshot : s.snapshots.snapshots)
         positions(snapshot.x, c_.state.level, "the snapshots");
-    for (const LevelSnapshots& level : s.measured) {
-      positions(level.last, level.level, "the snapshots");
-      require(level.cost.size() == level.iterations.size() && level.cost.size() == level.energies.size() &&
-                  !level.cost.empty(),
-              "the snapshots");
-    }
   }
 
   const Checkpoint& c_;

@@ -3,13 +3,11 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "core/app/experiment/declared_metrics.h"
-#include "core/app/run/run_folder.h"
 #include "core/app/scene/scene.h"
 
 namespace drape {
@@ -33,29 +31,15 @@ struct Snapshot {
 
 /// Records states of a level, evenly spaced over its iterations. When there are too many, it drops every
 /// second one and doubles the spacing.
-class SnapshotRecorder {
- public:
-  /// At most `most` snapshots a level, the last state included; 0 disables recording.
-  explicit SnapshotRecorder(int most) : most_(most) {}
+struct SnapshotRecorder {
+  int spacing = 1, seen = 0;
+  std::vector<Snapshot> snapshots = {};  ///< of the level so far
 
-  /// Snapshots of the current level.
-  struct State {
-    int spacing = 1, seen = 0;
-    std::vector<Snapshot> snapshots;
-  };
-  const State& state() const { return m_; }
-  void restore(State state) { m_ = std::move(state); }
-
-  bool any() const { return most_ > 0; }
-  void begin_level();
-  /// Takes the state after an iteration; `cost` counts from the beginning of the level.
-  void iteration(const Cost& cost, const Positions& x);
+  /// Takes the state after an iteration; `cost` counts from the beginning of the level. At most `most`
+  /// snapshots are kept, the last state included.
+  void iteration(const Cost& cost, const Positions& x, int most);
   /// The level's snapshots, ending with `last`.
   std::vector<Snapshot> end_level(const Cost& cost, const Positions& last);
-
- private:
-  int most_;
-  State m_;
 };
 
 /// Writes positions as a SnapshotFile. Returns the checksum of the file. Throws WriteError.
@@ -75,8 +59,7 @@ struct ErrorTarget {
 double energy_of_start(const Scene& scene);
 
 /// The error of a state x of the finest level, whose energy is given [J]. There is no energy gap to a target
-/// that releases none. A metric that throws is reported to
-/// `fault`; its values stay absent.
+/// that releases none. A metric that throws is reported to `fault`; its values stay absent.
 StateError state_error(const std::vector<ErrorMeasure>& measures, const Experiment& experiment,
                        const Scene& scene, const Positions& x, double energy, const ErrorTarget& target,
                        const std::function<void(const std::string&)>& fault);
@@ -85,53 +68,13 @@ StateError state_error(const std::vector<ErrorMeasure>& measures, const Experime
 Positions prolonged(const Experiment& experiment, const Scene& scene, const std::string& method,
                     const Positions& x, int from, int to);
 
-/// The snapshots of one level.
+/// The snapshots of one level, whose positions are in a file; nothing if none are recorded.
 struct LevelSnapshots {
-  std::string method, file;
-  int level = 0;
   std::vector<Cost> cost;        ///< of each snapshot, with what it builds on
   std::vector<int> iterations;   ///< of the level
   std::vector<double> energies;  ///< on the finest level [J]
-  Positions last;                ///< last state in full precision
   bool converged = false;
   std::uint32_t checksum = 0;  ///< of the file
-};
-
-/// Collects the snapshots of a run. It measures them once all methods have ended, because measuring must not
-/// count as time of a method.
-class ErrorTable {
- public:
-  ErrorTable(const RunFolder& folder, const Experiment& experiment, const Scene& scene)
-      : folder_(folder),
-        experiment_(experiment),
-        scene_(scene),
-        measures_(error_measures(declared_metrics(experiment.metrics))) {}
-
-  /// Adds a level's snapshots: writes their file, evaluates their energies and returns their entry for
-  /// results.json. `before` is the cost that the level builds on, `spent` the cost of everything that the
-  /// method has done before the level.
-  nlohmann::ordered_json add(const std::string& method, const LevelResult& result,
-                             const std::vector<Snapshot>& snapshots, const Cost& before, const Cost& spent);
-
-  /// Measures every snapshot against the finest state of its method, if that converged, and against the
-  /// reference, if there is one, and writes errors.csv. Leaves out snapshots whose file is damaged or
-  /// missing, and reports them to `fault`. Once `stop` returns true it measures no more and writes what it
-  /// has.
-  void write(const Positions* reference, const std::function<bool()>& stop,
-             const std::function<void(const std::string&)>& fault);
-
-  [[nodiscard]] bool empty() const { return levels_.empty(); }
-  using State = std::vector<LevelSnapshots>;
-  const State& state() const { return levels_; }
-  /// Restores what an earlier table of the same run had collected. The snapshots' files must still exist.
-  void restore(State state) { levels_ = std::move(state); }
-
- private:
-  const RunFolder& folder_;
-  const Experiment& experiment_;
-  const Scene& scene_;
-  const std::vector<ErrorMeasure> measures_;
-  State levels_;
 };
 
 }  // namespace drape

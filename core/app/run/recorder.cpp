@@ -1,6 +1,6 @@
 #include "core/app/run/recorder.h"
 
-#include <cmath>
+#include <algorithm>
 #include <utility>
 
 #include "core/app/experiment/declared_metrics.h"
@@ -18,11 +18,6 @@ namespace drape {
 
 namespace {
 
-/// To so many significant digits; empty for a number that is absent or not finite.
-std::string cell(const std::optional<double>& value, int digits) {
-  return value && std::isfinite(*value) ? general_text(*value, digits) : "";
-}
-
 /// The cells of iterations.csv after `method`, each behind its column's name; `intersections` is the number
 /// of pairs, where every iteration is checked.
 std::vector<std::pair<const char*, std::string>> cells_of(const IterationRow& row,
@@ -35,13 +30,13 @@ std::vector<std::pair<const char*, std::string>> cells_of(const IterationRow& ro
           {"decrement", general_text(row.decrement, 9)},
           {"force_residual", general_text(row.force_residual, 9)},
           {"step_length", general_text(row.step_length, 9)},
-          {"proxy_energy", cell(row.proxy_energy, 17)},
+          {"proxy_energy", number_cell(row.proxy_energy, 17)},
           {"step_size", general_text(row.step_size, 9)},
-          {"contacts", cell(row.contacts, 10)},
-          {"smallest_gap", cell(row.smallest_gap, 6)},
-          {"intersections", cell(intersections, 10)},
+          {"contacts", number_cell(row.contacts, 10)},
+          {"smallest_gap", number_cell(row.smallest_gap, 6)},
+          {"intersections", number_cell(intersections, 10)},
           {"flops", general_text(row.flops, 9)},
-          {"time", cell(row.time, 9)}};
+          {"time", number_cell(row.time, 9)}};
 }
 
 }  // namespace
@@ -52,9 +47,7 @@ Recorder::Recorder(const RunFolder& folder, const Experiment& experiment, const 
       experiment_(experiment),
       scene_(scene),
       iterations_(folder.file("iterations.csv"), mode),
-      log_(folder.file("log.jsonl"), mode),
-      snapshots_(experiment.parameters.snapshots),
-      errors_(folder, experiment, scene) {}
+      log_(folder.file("log.jsonl"), mode) {}
 
 Recorder::Recorder(const RunFolder& folder, const Experiment& experiment, const Scene& scene)
     : Recorder(folder, experiment, scene, std::ios::out) {
@@ -88,8 +81,6 @@ Recorder::Recorder(const RunFolder& folder, const Experiment& experiment, const 
   truncate_file(folder.file("log.jsonl"), state.log_bytes);
   s_ = state;
   results_ = parse_json(std::exchange(s_.results, ""));
-  snapshots_.restore(std::exchange(s_.snapshots, {}));
-  errors_.restore(std::exchange(s_.measured, {}));
   if (scene_.load_stepping && !s_.last_load.values.empty())
     scene_.load_stepping->restore(scene_.finest(), s_.last_load);
   reset_peak_memory();
@@ -103,8 +94,6 @@ Recorder::Recorder(const RunFolder& folder, const Experiment& experiment, const 
 Recorder::State Recorder::state() const {
   State s = s_;
   s.results = json_text(results_);
-  s.snapshots = snapshots_.state();
-  s.measured = errors_.state();
   s.iterations_bytes = size_of_file(folder_.file("iterations.csv"));
   s.log_bytes = size_of_file(folder_.file("log.jsonl"));
   sync_to_disk(folder_.file("iterations.csv"));
@@ -143,7 +132,7 @@ void Recorder::method_started(const std::string& method) {
 }
 
 void Recorder::level_started(int level) {
-  snapshots_.begin_level();
+  s_.snapshots = {};
   s_.last = Cost();
   s_.overhead_before = s_.overhead;
   log({{"event", "level_started"}, {"method", s_.method}, {"level", level}});
@@ -172,7 +161,7 @@ void Recorder::iteration(const IterationRow& r, const Positions& x) {
   row.seconds -= s_.overhead;
   s_.last = {std::max(row.seconds - s_.spent.seconds, 0.0), s_.last.iterations + 1, r.flops};
   row.flops += s_.spent.flops;
-  if (snapshots_.any()) snapshots_.iteration(s_.last, x);
+  s_.snapshots.iteration(s_.last, x, experiment_.parameters.snapshots);
   std::optional<int> crossing;
   if (experiment_.parameters.check_intersections == IntersectionCheck::every_step)
     crossing = intersections(r.level, x);
@@ -239,7 +228,7 @@ void Recorder::increment_finished(const IncrementRow& r, const Positions& x) {
 void Recorder::level_finished(const LevelResult& r) {
   const Stopwatch watch;
   const LevelModel model = scene_.model(r.level)->with_stiffness(r.contact_stiffness);
-  const RecordedState state{s_.method, r.level, r.x, model.contact_pressure(r.x)};
+  RecordedState state{s_.method, r.level, r.x, model.contact_pressure(r.x)};
   const std::string ply = ply_of(state);
   write_state(state, ply);
   Json& entry = method_entry();
@@ -248,10 +237,9 @@ void Recorder::level_finished(const LevelResult& r) {
   const Cost cost = {std::max(own, s_.last.seconds), r.iterations, r.flops};
   entry["levels"].push_back(state_entry(r, cost));
   entry["levels"].back()["mesh_checksum"] = checksum_of(ply);
-  if (snapshots_.any())
-    entry["levels"].back()["snapshots"] = errors_.add(s_.method, r, snapshots_.end_level(cost, r.x),
-                                                      r.from_initial_state ? Cost() : s_.spent, s_.spent);
-  s_.states.push_back(state);
+  if (experiment_.parameters.snapshots > 0)
+    entry["levels"].back()["snapshots"] = add_snapshots(r, cost, state);
+  s_.states.push_back(std::move(state));
   s_.spent = s_.spent + cost;
   follow_schedule();
   entry["seconds"] = entry["seconds"].get<double>() + cost.seconds;

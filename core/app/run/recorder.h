@@ -1,6 +1,7 @@
 #pragma once
 
 #include <fstream>
+#include <functional>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -18,6 +19,7 @@ struct RecordedState {
   int level = 0;
   Positions x;
   Eigen::VectorXd contact_pressure = {};  ///< LevelModel::contact_pressure; empty without contact
+  LevelSnapshots snapshots = {};
 };
 
 /// Why a method that threw has failed.
@@ -36,8 +38,7 @@ class Recorder : public Observer {
     bool intersection_free = true;         ///< of all methods so far
     bool method_intersection_free = true;  ///< of the current method
     std::vector<RecordedState> states;     ///< all levels so far, in order
-    SnapshotRecorder::State snapshots;
-    ErrorTable::State measured;
+    SnapshotRecorder snapshots;            ///< of this level
     Cost spent, last;            ///< of the method's levels before this one; of this level so far
     double overhead = 0;         ///< time of the method that recording took [s]
     double overhead_before = 0;  ///< the same before this level
@@ -118,6 +119,15 @@ class Recorder : public Observer {
   const RecordedState* reference_state() const;
   /// The state that errors are measured against; null without one.
   const Positions* find_reference(Observer& observer, bool cancelled);
+  /// Writes the snapshots of a level that has ended, notes their energies in its state and returns their
+  /// entry for results.json. `cost` is the level's own.
+  Json add_snapshots(const LevelResult& result, const Cost& cost, RecordedState& state);
+  /// Measures every snapshot against the finest state of its method, if that converged, and against the
+  /// reference, if there is one, and writes errors.csv: once all methods have ended, because measuring must
+  /// not count as time of a method. Leaves out snapshots whose file is damaged or missing, and reports them
+  /// to `fault`. Once `stop` returns true it measures no more and writes what it has.
+  void write_errors(const Positions* reference, const std::function<bool()>& stop,
+                    const std::function<void(const std::string&)>& fault) const;
   void log(Json entry);
   void save() const;
 
@@ -128,9 +138,7 @@ class Recorder : public Observer {
   Json results_;
   std::map<std::string, std::string> not_measured_;
   std::vector<std::string> written_, restored_;  // names of files that were missing or different
-  SnapshotRecorder snapshots_;
-  ErrorTable errors_;
-  State s_;  // without what is kept above: results, snapshots and measured
+  State s_;  // without results
   std::optional<LevelResult> solved_reference_;
 };
 

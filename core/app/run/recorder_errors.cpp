@@ -2,6 +2,8 @@
 
 #include <limits>
 
+#include "core/app/experiment/declared_metrics.h"
+#include "core/app/files/snapshot_file.h"
 #include "core/app/run/recorder.h"
 #include "core/app/run/recorder_files.h"
 #include "core/kernel/files/file.h"
@@ -28,6 +30,11 @@ LevelResult solve_to_tolerance(const Experiment& experiment, const Scene& scene,
   LevelResult result = minimise(objective, x, newton, {clock, observer});
   observer.level_finished(result);
   return result;
+}
+
+/// "snapshots/pcs_l2.bin"
+std::string snapshots_file(const RecordedState& state) {
+  return "snapshots/" + state.method + "_l" + std::to_string(state.level) + ".bin";
 }
 
 }  // namespace
@@ -85,6 +92,78 @@ const Positions* Recorder::find_reference(Observer& observer, bool cancelled) {
   return &solved_reference_->x;
 }
 
+Recorder::Json Recorder::add_snapshots(const LevelResult& r, const Cost& cost, RecordedState& state) {
+  const Cost before = r.from_initial_state ? Cost() : s_.spent;
+  const std::vector<Snapshot> snapshots = s_.snapshots.end_level(cost, r.x);
+  const std::string file = snapshots_file(state);
+  LevelSnapshots& own = state.snapshots;
+  Json entry = {{"file", file}};
+  for (const Snapshot& snapshot : snapshots) {
+    own.cost.push_back(before + snapshot.cost);
+    own.iterations.push_back(snapshot.cost.iterations);
+    own.energies.push_back(scene_.finest_model().value(
+        prolonged(experiment_, scene_, s_.method, snapshot.x, r.level, scene_.finest())));
+    entry["iterations"].push_back(snapshot.cost.iterations);
+    entry["seconds"].push_back(s_.spent.seconds + snapshot.cost.seconds);
+  }
+  make_folder(folder_.file("snapshots"));
+  own.converged = has_converged(r.outcome);
+  own.checksum = write_snapshots(folder_.file(file), snapshots);
+  entry["checksum"] = own.checksum;
+  sync_to_disk(folder_.file(file));
+  return entry;
+}
+
+void Recorder::write_errors(const Positions* reference, const std::function<bool()>& stop,
+                            const std::function<void(const std::string&)>& fault) const {
+  const int finest = scene_.finest();
+  const std::vector<ErrorMeasure> measures = error_measures(declared_metrics(experiment_.metrics));
+  std::string text = "method,level,level_iterations,seconds,iterations,flops,vertices";
+  for (const char* target : error_targets)
+    for (const ErrorMeasure& measure : measures) text += "," + std::string(target) + "_" + measure.name;
+  text += "\n";
+  const double start = energy_of_start(scene_);
+  const auto target_at = [&](const Positions& x, double energy) {
+    return ErrorTarget{x, energy, start - energy};
+  };
+  std::optional<ErrorTarget> standard;
+  if (reference) standard = target_at(*reference, scene_.finest_model().value(*reference));
+  for (const RecordedState& level : s_.states) {
+    const auto& [costs, iterations, energies, converged, checksum] = level.snapshots;
+    std::optional<ErrorTarget> own;
+    for (const RecordedState* end : finest_states())
+      if (end->method == level.method && end->snapshots.converged)
+        own = target_at(end->x, end->snapshots.energies.back());
+    const bool same = own && standard && own->x == standard->x;
+    const int vertices = scene_.hierarchy.levels[level.level].vertex_count();
+    SnapshotFile states;
+    try {
+      states = SnapshotFile(folder_.file(snapshots_file(level)), costs.size(), vertices, checksum);
+    } catch (const std::exception& error) {
+      fault(error.what());  // the snapshots have no copy to restore them from
+      continue;
+    }
+    for (std::size_t k = 0; k < states.count() && !stop(); ++k) {
+      const Positions state = k + 1 < states.count() ? states.positions(k) : level.x;
+      const Positions x = prolonged(experiment_, scene_, level.method, state, level.level, finest);
+      const double energy = energies[k];
+      const auto against = [&](const std::optional<ErrorTarget>& target) {
+        return target ? state_error(measures, experiment_, scene_, x, energy, *target, fault)
+                      : StateError(measures.size());
+      };
+      const StateError to_own = against(own), to_standard = same ? to_own : against(standard);
+      const Cost& cost = costs[k];
+      text += level.method + "," + std::to_string(level.level) + "," + std::to_string(iterations[k]) + "," +
+              number_cell(cost.seconds, 9) + "," + std::to_string(cost.iterations) + "," +
+              number_cell(cost.flops, 9) + "," + std::to_string(vertices);
+      for (const StateError* errors : {&to_own, &to_standard})
+        for (const std::optional<double>& error : *errors) text += "," + number_cell(error, 9);
+      text += "\n";
+    }
+  }
+  write_file(folder_.file("errors.csv"), text);
+}
+
 bool Recorder::measure_errors(Observer& observer, bool cancelled) {
   const ReferenceParameters& p = experiment_.parameters.reference;
   const int finest = scene_.finest();
@@ -103,7 +182,8 @@ bool Recorder::measure_errors(Observer& observer, bool cancelled) {
       }
   }
   save();
-  if (errors_.empty()) return !observer.stop_requested() || cancelled;
+  const bool any = experiment_.parameters.snapshots > 0 && !s_.states.empty();
+  if (!any) return !observer.stop_requested() || cancelled;
   const Stopwatch watch;
   const auto stop = [&] {
     return cancelled ? watch.seconds() > seconds_after_stop : observer.stop_requested();
@@ -112,7 +192,7 @@ bool Recorder::measure_errors(Observer& observer, bool cancelled) {
     log({{"event", "not_measured"}, {"message", message}});
   };
   try {
-    errors_.write(reference, stop, fault);
+    write_errors(reference, stop, fault);
   } catch (const WriteError&) {
     throw;
   } catch (const std::exception& error) {

@@ -7,6 +7,7 @@
 
 #include "core/app/files/json_file.h"
 #include "core/kernel/files/file.h"
+#include "core/kernel/files/number_text.h"
 #include "core/kernel/files/string_utils.h"
 #include "core/numerics/mesh_files/io_formats.h"
 
@@ -23,6 +24,10 @@ VertexFields fields_of(const RecordedState& state) {
 
 nlohmann::ordered_json finite_or_null(double value) {
   return std::isfinite(value) ? nlohmann::ordered_json(value) : nlohmann::ordered_json();
+}
+
+std::string number_cell(const std::optional<double>& value, int digits) {
+  return value && std::isfinite(*value) ? general_text(*value, digits) : "";
 }
 
 std::string level_file(const std::string& method, int level, const char* extension) {

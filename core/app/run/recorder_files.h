@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -14,6 +15,9 @@ namespace drape {
 
 /// The value, or null if it is not finite: JSON has no such number.
 nlohmann::ordered_json finite_or_null(double value);
+
+/// A cell of a CSV file, to so many significant digits; empty for a number that is absent or not finite.
+std::string number_cell(const std::optional<double>& value, int digits);
 
 /// Status of a method that threw, and of its current level; no solver returns it.
 inline constexpr const char* failed = "failed";

@@ -11,9 +11,8 @@ Positions positions_at(int iteration) { return Positions::Constant(4, 3, iterati
 
 /// The iterations that are kept of so many.
 std::vector<int> kept(int most, int iterations) {
-  SnapshotRecorder snapshots(most);
-  snapshots.begin_level();
-  for (int k = 1; k <= iterations; ++k) snapshots.iteration({0.1 * k, k, 5.0 * k}, positions_at(k));
+  SnapshotRecorder snapshots;
+  for (int k = 1; k <= iterations; ++k) snapshots.iteration({0.1 * k, k, 5.0 * k}, positions_at(k), most);
   std::vector<int> of;
   for (const Snapshot& snapshot :
        snapshots.end_level({0.1 * iterations, iterations, 0}, positions_at(iterations))) {
