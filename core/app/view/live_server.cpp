@@ -131,17 +131,21 @@ LiveServer::LiveServer(int port, const LiveAnswers& answers, double patience)
     else
       refuse(response, 404, "This state has been replaced by a newer one.");
   });
-  server.Post(base + "stop", [answers](const Request&, Response& response) {
-    answers.stop();
-    response.status = 204;
-  });
-  server.Post(base + "refine", [answers](const Request&, Response& response) {
-    const std::string why_not = answers.refine();
-    if (why_not.empty())
+  const auto post = [&](const std::string& name, const std::function<std::string()>& action) {
+    server.Post(base + name, [action](const Request& request, Response& response,
+                                      const httplib::ContentReader& read) {
+      // Without a length the library would wait for a body until the peer closes the connection.
+      const auto skip = [](const char*, std::size_t) { return true; };
+      if (request.has_header("Content-Length") && !read(skip)) return;
       response.status = 204;
-    else
-      refuse(response, 409, why_not);
+      if (const std::string why_not = action(); !why_not.empty()) refuse(response, 409, why_not);
+    });
+  };
+  post("stop", [answers] {
+    answers.stop();
+    return std::string();
   });
+  post("refine", answers.refine);
 
   errno = 0;
   const int bound =

@@ -95,6 +95,8 @@ TEST_CASE("lengths that are none, bodies of any size and long lines are refused"
   CHECK(served.stops == 0);
   CHECK(post("Content-Length: 5\r\n", "hello") == 204);
   CHECK(served.stops == 1);
+  CHECK(post("") == 204);  // of which the server awaits no body
+  CHECK(served.stops == 2);
   CHECK(served.status("GET", "/" + std::string(9000, 'a')) == 414);
   CHECK(served.status("GET", served.address.path, "X-A: " + std::string(9000, 'a') + "\r\n") == 400);
   CHECK(served.status("GET " + std::string(100000, 'a')) == 0);
