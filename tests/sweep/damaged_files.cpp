@@ -70,6 +70,8 @@ TEST_CASE("a run whose results are cut short has failed, and the sweep's others 
   CHECK_THAT(table.out, Contains("| 1 | failed | NO | " + why + "run the experiment again |") &&
                             Contains("| 2 | converged | yes |"));
   drape_ends("report out", folder);
+  CHECK_THAT(drape_ends("sweep s.yaml --out out --dry-run", folder).out,
+             Contains("failed     " + run.substr(4)));
 
   CHECK_THAT(drape_ends("sweep s.yaml --out out", folder, 1).out,
              Contains("    " + why + "--retry-failed runs it again\n"));

@@ -37,10 +37,14 @@ int show_plan(const Sweep& sweep, const SweepFolder& folder, int threads) {
   std::printf("sweep %s: %zu runs in %s, each with %d thread%s\n", sweep.parameters.name.c_str(),
               sweep.runs.size(), folder.path().c_str(), threads, threads == 1 ? "" : "s");
   const MemoryEstimate memory(sweep, folder);
-  for (const SweepRun& run : sweep.runs)
-    std::printf("%-10s %s  levels %d, about %.0f vertices, %.1f GB  %s\n",
-                to_string(read_status(folder.files(run.folder)).state), run.folder.c_str(), run.levels,
-                run.vertices, memory.bytes(run) / 1e9, json_text(run.settings).c_str());
+  for (const SweepRun& run : sweep.runs) {
+    const RunFiles files = folder.files(run.folder);
+    RunStatus status = read_status(files);
+    if (status.has_results()) status = resolve_status(files, status);  // which may be damaged or gone since
+    std::printf("%-10s %s  levels %d, about %.0f vertices, %.1f GB  %s\n", to_string(status.state),
+                run.folder.c_str(), run.levels, run.vertices, memory.bytes(run) / 1e9,
+                json_text(run.settings).c_str());
+  }
   return exit_done;
 }
 
