@@ -5,6 +5,7 @@
 #include "core/app/cli/commands.h"
 #include "core/app/cli/config_arguments.h"
 #include "core/app/experiment/exit_codes.h"
+#include "core/app/report/run_data.h"
 #include "core/app/report/run_table.h"
 #include "core/app/run/runner.h"
 #include "core/app/run/saved_run.h"
@@ -87,7 +88,7 @@ int resume(RunRequest& r, const Registry& registry) {
   require_none(errors);
   if (!saved->interrupted) {
     std::cout << r.resumed << ": the run is complete; there is nothing to resume\n";
-    return all_methods_succeeded(r.out) ? exit_done : exit_not_converged;
+    return read_run(r.out).converged() ? exit_done : exit_not_converged;
   }
   r.methods = saved->interrupted->checkpoint.methods;
   return run(r, saved->experiment, *saved->scene, std::move(saved->interrupted));

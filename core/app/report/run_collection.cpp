@@ -11,7 +11,6 @@
 #include "core/app/files/yaml_file.h"
 #include "core/kernel/files/file.h"
 #include "core/kernel/files/message_text.h"
-#include "core/kernel/interfaces/solver.h"
 #include "core/kernel/plugin/parameters.h"
 
 namespace drape {
@@ -92,9 +91,7 @@ void read_single_runs(const std::vector<fs::path>& folders, RunCollection& colle
     run.data = read_run(folder);
     configs.push_back(config_but_seed(*run.data, run.seed));
     folder_of[run.data->experiment].try_emplace(configs.back(), folder.string());
-    bool converged = run.data->complete;
-    for (const MethodRecord& m : run.data->methods) converged = converged && has_converged(m.status);
-    run.status = converged ? "converged" : "not_converged";
+    run.status = run.data->converged() ? "converged" : "not_converged";
     collection.runs.push_back(std::move(run));
   }
   for (std::size_t k = 0; k < folders.size(); ++k) {

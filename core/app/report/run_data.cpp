@@ -7,6 +7,7 @@
 #include "core/app/files/json_file.h"
 #include "core/app/files/yaml_file.h"
 #include "core/kernel/files/file.h"
+#include "core/kernel/interfaces/solver.h"
 #include "core/kernel/plugin/parameters.h"
 #include "core/numerics/mesh_files/io.h"
 
@@ -95,6 +96,11 @@ OptionalNumber MethodRecord::cost(const std::string& value) const {
     if (const OptionalNumber known = level.values.of(value)) sum = sum.value_or(0) + *known;
   }
   return sum;
+}
+
+bool RunData::converged() const {
+  return complete &&
+         std::ranges::all_of(methods, [](const MethodRecord& m) { return has_converged(m.status); });
 }
 
 bool RunData::has_contact() const {

@@ -71,6 +71,8 @@ struct RunData {
   std::string reference;   ///< method or file of the state that errors are measured against
   bool reference_is_file = false;
 
+  /// Whether the run is complete and every method converged.
+  bool converged() const;
   /// Whether the run had contact: otherwise it has no gaps and intersections.
   bool has_contact() const;
   int finest_level() const;  ///< over all methods; -1 without levels

@@ -120,12 +120,6 @@ bool is_complete(const fs::path& folder) {
   return !complete_results(folder).is_null();  // the checkpoint holds damaged ones too
 }
 
-bool all_methods_succeeded(const fs::path& folder) {
-  const RunData run = read_run(folder);
-  const auto converged = [](const MethodRecord& method) { return has_converged(method.status); };
-  return run.complete && std::ranges::all_of(run.methods, converged);
-}
-
 InterruptedRun interrupted_run(RunFolder run, std::vector<std::string>& warnings) {
   const fs::path& folder = run.path();
   Checkpoint checkpoint = load_checkpoint(folder, warnings);

@@ -25,9 +25,6 @@ std::vector<FileFingerprint> fingerprints_of_files(const ConfigNode& saved,
 /// Whether the run in the folder is complete.
 bool is_complete(const std::filesystem::path& folder);
 
-/// Whether the run is complete and every method succeeded.
-bool all_methods_succeeded(const std::filesystem::path& folder);
-
 /// An interrupted run to be resumed: its folder, locked, with the checkpoint to resume it from.
 struct InterruptedRun {
   RunFolder folder;
