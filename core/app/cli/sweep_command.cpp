@@ -76,9 +76,9 @@ int run_local(const Sweep& sweep, const SweepFolder& folder, SweepRequest r) {
   const auto lock = folder.lock();
   refuse_while_queued(folder);
   if (r.workers == 0) r.workers = core_count() / r.threads;
-  folder.prepare(sweep, r.threads);
+  const std::vector<std::size_t> missing = folder.prepare(sweep, r.threads, r.retry_failed);
   return begun(folder, [&] {
-    run_locally(sweep, folder, folder.missing(sweep, r.retry_failed), r);
+    run_locally(sweep, folder, missing, r);
     const auto json = folder.refresh();
     if (!stop_signal()) return list_runs(folder, json);
     std::cout << printable_lines(list_of_runs(json));
@@ -97,9 +97,8 @@ int run_on_slurm(const Sweep& sweep, const SweepFolder& folder, const SweepReque
   {
     const auto lock = folder.lock();
     refuse_while_queued(folder);
-    folder.prepare(sweep, r.threads);
+    const std::vector<std::size_t> missing = folder.prepare(sweep, r.threads, r.retry_failed);
     const int submitted = begun(folder, [&] {
-      const std::vector<std::size_t> missing = folder.missing(sweep, r.retry_failed);
       if (missing.empty()) return exit_done;
       jobs = submit(sweep, folder, missing, r);
       std::cout << "submitted: " << missing.size() << " runs as job array " << jobs->array

@@ -182,8 +182,7 @@ const FitSample& FitRuns::at(double factor) {
   for (const ConfigError& error : errors) sample.left_out.push_back(error.text());
   if (!sweep) return samples_.emplace_back(std::move(sample));
   factors_ = factors;
-  folder_.prepare(*sweep, options_.threads);
-  std::vector<std::size_t> missing = folder_.missing(*sweep, true);
+  std::vector<std::size_t> missing = folder_.prepare(*sweep, options_.threads, true);
   std::erase_if(missing, [&](std::size_t k) { return sweep->runs[k].name != name_of(factor); });
   run_locally(*sweep, folder_, missing, options_);
   folder_.refresh();

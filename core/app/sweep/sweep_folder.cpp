@@ -43,7 +43,7 @@ Json SweepFolder::read() const {
   return json;
 }
 
-void SweepFolder::refuse_other_runs(const Sweep& sweep, int threads) const {
+std::vector<RunStatus> SweepFolder::checked_statuses(const Sweep& sweep, int threads) const {
   const auto refuse_results = [&](const std::string& fault, const RunFiles& files) {
     refuse_path(path_, fault +
                            "; give the new sweep another folder with --out, or undo the change, or delete "
@@ -55,7 +55,7 @@ void SweepFolder::refuse_other_runs(const Sweep& sweep, int threads) const {
     for (const auto& entry : fs::directory_iterator(path_))
       if (const std::string name = entry.path().filename(); name != "sweep.lock")
         refuse_path(path_, "holds " + name + ", and no sweep; name another folder with --out");
-    return;
+    return std::vector<RunStatus>(sweep.runs.size());
   }
   if (const std::string other = before["sweep"]; other != sweep.parameters.name)
     refuse_path(path_, "holds the sweep \"" + other + "\"; name another folder with --out");
@@ -67,14 +67,15 @@ void SweepFolder::refuse_other_runs(const Sweep& sweep, int threads) const {
       refuse_results("has results of " + title(run["name"], run["seed"]) + ", which the sweep no longer has",
                      files);
   }
+  std::vector<RunStatus> statuses;
   for (const SweepRun& run : sweep.runs) {
     const RunFiles files = this->files(run.folder);
-    const RunStatus status = read_status(files);
+    const RunStatus& status = statuses.emplace_back(resolve_status(files, read_status(files)));
     if (status.starts == 0 && fs::exists(files.folder))
       refuse_path(
           files.folder,
           "is there already, and not from this sweep; move it away, or name another folder with --out");
-    if (!resolve_status(files, status).has_results()) {
+    if (!status.has_results()) {
       if (!complete_results(files.folder).is_null())
         refuse_path(
             files.folder,
@@ -91,10 +92,12 @@ void SweepFolder::refuse_other_runs(const Sweep& sweep, int threads) const {
                          std::to_string(threads) + ", so times would not compare",
                      files);
   }
+  return statuses;
 }
 
-void SweepFolder::prepare(const Sweep& sweep, int threads) const {
-  refuse_other_runs(sweep, threads);
+std::vector<std::size_t> SweepFolder::prepare(const Sweep& sweep, int threads, bool retry_failed) const {
+  std::vector<RunStatus> statuses = checked_statuses(sweep, threads);
+  std::vector<std::size_t> missing;
   Json json = {{"sweep", sweep.parameters.name},
                {"description", sweep.parameters.description},
                {"config", sweep.file.string()},
@@ -102,32 +105,26 @@ void SweepFolder::prepare(const Sweep& sweep, int threads) const {
                {"threads", threads},
                {"time_limit", sweep.parameters.time_limit.value_or(0)},
                {"runs", Json::array()}};
-  for (const SweepRun& run : sweep.runs) {
+  for (std::size_t k = 0; k < sweep.runs.size(); ++k) {
+    const SweepRun& run = sweep.runs[k];
     json["runs"].push_back(
         {{"name", run.name}, {"settings", run.settings}, {"seed", run.seed}, {"folder", run.folder}});
     if (run.expect.status != "converged")
       json["runs"].back()["expect"] = {{"status", run.expect.status}, {"message", run.expect.message}};
     const RunFiles files = this->files(run.folder);
     make_folder(files.folder.parent_path());
-    const RunStatus before = read_status(files);
-    RunStatus status = resolve_status(files, before);
+    RunStatus& status = statuses[k];
     const bool is_other = text_of_file(files.config()) != run.config;
     if (is_other && (status.state == RunState::failed || status.state == RunState::cancelled))
       status.state = RunState::pending;
-    if (status.state != before.state) write_status(files, status);
+    if (status.state != read_status(files).state) write_status(files, status);
     if (is_other) write_file(files.config(), run.config);
+    const bool stays = status.has_results() || refused_as_expected(run, status) ||
+                       (status.state == RunState::failed && !retry_failed);
+    if (!stays) missing.push_back(k);
   }
   write(std::move(json));
-}
-
-std::vector<std::size_t> SweepFolder::missing(const Sweep& sweep, bool retry_failed) const {
-  std::vector<std::size_t> indices;
-  for (std::size_t k = 0; k < sweep.runs.size(); ++k) {
-    const RunStatus status = read_status(files(sweep.runs[k].folder));
-    if (refused_as_expected(sweep.runs[k], status)) continue;
-    if (!status.has_results() && (retry_failed || status.state != RunState::failed)) indices.push_back(k);
-  }
-  return indices;
+  return missing;
 }
 
 bool is_refused_as_expected(const Json& run) {

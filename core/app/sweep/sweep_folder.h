@@ -3,6 +3,7 @@
 #include <map>
 #include <memory>
 #include <utility>
+#include <vector>
 
 #include "core/app/files/file_lock.h"
 #include "core/app/sweep/run_status.h"
@@ -25,11 +26,10 @@ class SweepFolder {
   /// naming the process, if another one holds it.
   std::unique_ptr<FileLock> lock() const;
   /// Prepares the folder for a sweep: updates the statuses of interrupted runs and writes every run's config
-  /// and sweep.json. Throws std::runtime_error for a folder with other contents, with runs of a different
-  /// experiment or number of threads. Only under its lock.
-  void prepare(const Sweep& sweep, int threads) const;
-  /// Indices of the runs without results; failed ones only with `retry_failed`, expected refusals never.
-  std::vector<std::size_t> missing(const Sweep& sweep, bool retry_failed) const;
+  /// and sweep.json. Returns the indices of the runs without results; failed ones only with `retry_failed`,
+  /// expected refusals never. Throws std::runtime_error for a folder with other contents, with runs of a
+  /// different experiment or number of threads. Only under its lock.
+  std::vector<std::size_t> prepare(const Sweep& sweep, int threads, bool retry_failed) const;
   /// Writes sweep.json again, and returns it.
   nlohmann::ordered_json refresh() const;
   /// As `refresh`, when no run is active: also resolves runs that are still marked as running.
@@ -38,7 +38,8 @@ class SweepFolder {
   nlohmann::ordered_json read() const;
 
  private:
-  void refuse_other_runs(const Sweep& sweep, int threads) const;
+  /// The runs' statuses by their results. Throws for other contents, as prepare does.
+  std::vector<RunStatus> checked_statuses(const Sweep& sweep, int threads) const;
   /// Writes this sweep.json with every run's status, and returns it.
   nlohmann::ordered_json write(nlohmann::ordered_json json) const;
   std::filesystem::path path_;
