@@ -8,8 +8,8 @@
 #include "core/app/files/json_file.h"
 #include "core/app/files/machine.h"
 #include "core/app/report/run_table.h"
-#include "core/app/sweep/local_engine.h"
 #include "core/app/sweep/slurm_engine.h"
+#include "core/app/sweep/sweep_folder.h"
 #include "core/kernel/files/message_text.h"
 #include "core/kernel/threads/parallel.h"
 

@@ -8,7 +8,6 @@
 
 #include "core/app/experiment/experiment_path.h"
 #include "core/app/report/run_data.h"
-#include "core/app/sweep/local_engine.h"
 #include "core/kernel/files/message_text.h"
 #include "core/kernel/files/number_text.h"
 #include "core/kernel/files/string_utils.h"

@@ -1,5 +1,3 @@
-#include "core/app/sweep/local_engine.h"
-
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
@@ -10,6 +8,7 @@
 
 #include "core/app/files/machine.h"
 #include "core/app/sweep/process.h"
+#include "core/app/sweep/sweep_folder.h"
 #include "core/kernel/threads/stopwatch.h"
 
 namespace drape {

@@ -84,8 +84,7 @@ bool still_in_queue(const SlurmJobs& jobs, int& silent) {
   }
 }
 
-}  // namespace
-
+/// The last jobs that were submitted for the folder; empty without any.
 std::optional<SlurmJobs> submitted_jobs(const SweepFolder& folder) {
   const Json json = parse_json(text_of_file(folder.jobs()));
   if (!json.is_object()) return std::nullopt;
@@ -93,6 +92,8 @@ std::optional<SlurmJobs> submitted_jobs(const SweepFolder& folder) {
   return SlurmJobs{file.find<std::string>(json, "array").value_or(""),
                    file.find<std::string>(json, "collector").value_or("")};
 }
+
+}  // namespace
 
 void refuse_while_queued(const SweepFolder& folder) {
   const auto jobs = submitted_jobs(folder);

@@ -9,9 +9,6 @@ struct SlurmJobs {
   std::string array, collector;
 };
 
-/// The last jobs that were submitted for the folder; empty without any.
-std::optional<SlurmJobs> submitted_jobs(const SweepFolder& folder);
-
 /// Throws std::runtime_error while jobs of the folder are queued or running.
 void refuse_while_queued(const SweepFolder& folder);
 

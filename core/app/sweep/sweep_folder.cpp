@@ -22,6 +22,13 @@ std::string title(const std::string& name, int seed) {
   return "run \"" + name + "\", seed " + std::to_string(seed);
 }
 
+/// As refused_as_expected, of an entry of sweep.json's runs.
+bool is_refused_as_expected(const Json& run) {
+  const Json expect = run.value("expect", Json::object());
+  return run["status"] == to_string(RunState::failed) && run["exit_code"] == exit_bad_input &&
+         expect.value("status", "") == "refused";
+}
+
 }  // namespace
 
 Json SweepFolder::read() const {
@@ -125,12 +132,6 @@ std::vector<std::size_t> SweepFolder::prepare(const Sweep& sweep, int threads, b
   }
   write(std::move(json));
   return missing;
-}
-
-bool is_refused_as_expected(const Json& run) {
-  const Json expect = run.value("expect", Json::object());
-  return run["status"] == to_string(RunState::failed) && run["exit_code"] == exit_bad_input &&
-         expect.value("status", "") == "refused";
 }
 
 Json SweepFolder::refresh() const { return write(read()); }

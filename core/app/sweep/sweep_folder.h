@@ -50,9 +50,6 @@ inline bool refused_as_expected(const SweepRun& run, const RunStatus& status) {
   return status.refused() && run.expect.status == "refused";
 }
 
-/// The same of an entry of sweep.json's runs.
-bool is_refused_as_expected(const nlohmann::ordered_json& run);
-
 /// Estimates the peak memory of runs: that of the largest finished run with as many vertices and levels, or
 /// estimated_memory without one.
 class MemoryEstimate {
@@ -67,6 +64,12 @@ class MemoryEstimate {
  private:
   std::map<std::pair<double, int>, double> peaks_;  // by vertices of the finest level, levels
 };
+
+/// Executes the missing runs of a sweep, several at a time, each in its own process. Keeps sweep.json up to
+/// date and reports progress on standard error. A failed run does not stop the others. On `stop`, running
+/// ones save their state and exit, and no further ones start.
+void run_locally(const Sweep& sweep, const SweepFolder& folder, const std::vector<std::size_t>& missing,
+                 const SweepOptions& options);
 
 /// "3.2 s", "4 min", "1.5 h"
 std::string duration_text(double seconds);
