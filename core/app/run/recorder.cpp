@@ -229,14 +229,13 @@ void Recorder::level_finished(const LevelResult& r) {
   const Stopwatch watch;
   const LevelModel model = scene_.model(r.level)->with_stiffness(r.contact_stiffness);
   RecordedState state{s_.method, r.level, r.x, model.contact_pressure(r.x)};
-  const std::string ply = ply_of(state);
-  write_state(state, ply);
+  const std::uint32_t mesh_checksum = write_state(state);
   Json& entry = method_entry();
   // By the clock of the rows, which includes the setup of the objective; a level's own seconds exclude it.
   const double own = r.seconds - (s_.overhead - s_.overhead_before);
   const Cost cost = {std::max(own, s_.last.seconds), r.iterations, r.flops};
   entry["levels"].push_back(state_entry(r, cost));
-  entry["levels"].back()["mesh_checksum"] = checksum_of(ply);
+  entry["levels"].back()["mesh_checksum"] = mesh_checksum;
   if (experiment_.parameters.snapshots > 0)
     entry["levels"].back()["snapshots"] = add_snapshots(r, cost, state);
   s_.states.push_back(std::move(state));

@@ -92,8 +92,8 @@ class Recorder : public Observer {
   void write_scene();
   /// The obstacles under the load that the finest level has reached.
   void write_obstacles();
-  void write_state(const RecordedState& state, const std::string& ply);
-  std::string ply_of(const RecordedState& state) const;
+  /// Returns the checksum of the .ply.
+  std::uint32_t write_state(const RecordedState& state);
   /// The states of a method as a ParaView collection.
   void write_collection(const std::string& method);
   /// Measures the fields of finished methods again whose file is not as recorded.

@@ -13,15 +13,6 @@
 
 namespace drape {
 
-namespace {
-
-VertexFields fields_of(const RecordedState& state) {
-  if (state.contact_pressure.size() == 0) return {};
-  return {{"contact_pressure", state.contact_pressure}};
-}
-
-}  // namespace
-
 nlohmann::ordered_json finite_or_null(double value) {
   return std::isfinite(value) ? nlohmann::ordered_json(value) : nlohmann::ordered_json();
 }
@@ -126,19 +117,19 @@ void Recorder::follow_schedule() {
   write_obstacles();
 }
 
-std::string Recorder::ply_of(const RecordedState& state) const {
-  return ply_bytes({state.x, scene_.hierarchy.levels[state.level].rest.triangles}, fields_of(state));
-}
-
-void Recorder::write_state(const RecordedState& state, const std::string& ply) {
+std::uint32_t Recorder::write_state(const RecordedState& state) {
+  const TriangleMesh mesh{state.x, scene_.hierarchy.levels[state.level].rest.triangles};
+  VertexFields fields;
+  if (state.contact_pressure.size() > 0) fields.push_back({"contact_pressure", state.contact_pressure});
+  const std::string ply = ply_bytes(mesh, fields);
   const auto write_level = [&](const char* extension, const std::string& bytes) {
     const std::string name = level_file(state.method, state.level, extension);
     write(name, bytes);
     sync_to_disk(folder_.file(name));  // later checkpoints rely on it
   };
   write_level(".ply", ply);
-  write_level(".vtp",
-              vtp_text({state.x, scene_.hierarchy.levels[state.level].rest.triangles}, fields_of(state)));
+  write_level(".vtp", vtp_text(mesh, fields));
+  return checksum_of(ply);
 }
 
 void Recorder::write_collection(const std::string& method) {
@@ -153,7 +144,7 @@ void Recorder::write_collection(const std::string& method) {
 void Recorder::write_again() {
   for (const char* part : {"levels", "fields", "obstacles"}) make_folder(folder_.file(part));
   write_scene();
-  for (const RecordedState& state : s_.states) write_state(state, ply_of(state));
+  for (const RecordedState& state : s_.states) write_state(state);
   for (const auto& [name, method] : results_["methods"].items())
     if (method["status"].get<std::string>() != "running") write_collection(name);
   restore_fields();

@@ -117,7 +117,7 @@ std::vector<FileFingerprint> fingerprints_of_files(const ConfigNode& saved, cons
 
 bool is_complete(const fs::path& folder) {
   if (!has_checkpoint(folder)) return member_of(read_results(folder), "complete") == true;
-  return !complete_results(folder).is_null();  // the checkpoint holds damaged ones too
+  return !complete_results(folder).is_null();  // damaged ones are written again from the checkpoint
 }
 
 InterruptedRun interrupted_run(RunFolder run, std::vector<std::string>& warnings) {
@@ -167,7 +167,7 @@ SavedState saved_state(const fs::path& folder, const std::string& method, std::o
   const nlohmann::ordered_json results = read_results(folder);
   SavedState state{method, 0, {}};
   std::optional<Checkpoint> checkpoint;
-  if (member_of(results, "complete") != true) {
+  if (!(member_of(results, "complete") == true)) {
     std::vector<std::string> warnings;
     checkpoint = load_checkpoint(folder, warnings);
     if (state.method.empty()) state.method = checkpoint->methods.at(checkpoint->method);
