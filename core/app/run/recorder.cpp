@@ -12,7 +12,6 @@
 #include "core/kernel/threads/parallel.h"
 #include "core/kernel/threads/stopwatch.h"
 #include "core/kernel/version.h"
-#include "core/numerics/mesh_files/io_formats.h"
 
 namespace drape {
 

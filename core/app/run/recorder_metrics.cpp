@@ -1,7 +1,5 @@
 // The recorder's job at the end of a method: metrics of its levels and of pairs of them.
 
-#include <algorithm>
-
 #include "core/app/run/recorder.h"
 #include "core/app/run/recorder_files.h"
 #include "core/kernel/files/file.h"

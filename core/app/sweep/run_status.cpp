@@ -2,9 +2,7 @@
 
 #include <algorithm>
 #include <cstring>
-#include <fstream>
 #include <iterator>
-#include <stdexcept>
 
 #include "core/app/experiment/experiment.h"
 #include "core/app/files/file_lock.h"
