@@ -2,7 +2,9 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <limits>
 #include <set>
+#include <string>
 
 #include "core/kernel/interfaces/metric.h"
 #include "core/kernel/threads/parallel.h"
@@ -103,6 +105,25 @@ TEST_CASE("Metrics give finite, named values with units", "[conformance]") {
   for (const auto& [name, metric] : metrics(MetricScope::pair)) {
     INFO(name);
     check_form(*metric, metric->evaluate(f.pair(f.a, f.b)), f.s.level().vertex_count());
+  }
+}
+
+TEST_CASE("Metrics refuse states that are missing, of another size or not finite", "[conformance]") {
+  const Fixture f;
+  const Positions few = f.a.topRows(4);
+  Positions broken = f.a;
+  broken(1, 1) = std::numeric_limits<double>::infinity();
+  const std::string vertices = std::to_string(f.a.rows());
+  for (const auto& [name, metric] : metrics(MetricScope::pair)) {
+    INFO(name);
+    CHECK_THROWS_WITH(metric->evaluate(f.state(f.a)), Catch::Contains("two states"));
+    CHECK_THROWS_WITH(metric->evaluate(f.pair(f.a, few)), Catch::Contains(vertices + " and 4"));
+    CHECK_THROWS_WITH(metric->evaluate(f.pair(f.a, broken)), Catch::Contains("not finite"));
+  }
+  for (const auto& [name, metric] : metrics(MetricScope::state)) {
+    INFO(name);
+    CHECK_THROWS_WITH(metric->evaluate(f.state(few)), Catch::Contains("4 vertices, the level " + vertices));
+    CHECK_THROWS_WITH(metric->evaluate(f.state(broken)), Catch::Contains("not finite"));
   }
 }
 

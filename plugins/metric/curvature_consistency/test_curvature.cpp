@@ -366,13 +366,3 @@ TEST_CASE("rings end with the mesh, however many are asked for", "[curvature_con
   CHECK((all.mean - more.mean).cwiseAbs().maxCoeff() == 0);
   CHECK((all.mean - fit(s, 2).mean).cwiseAbs().maxCoeff() > 0);
 }
-
-TEST_CASE("consistency needs two states of the level", "[curvature_consistency]") {
-  const Surface s = plane(6);
-  const Level level = Level::of(0, {s.x, s.triangles});
-  const CurvatureConsistency metric({});
-  CHECK(metric.scope() == MetricScope::pair);
-  CHECK_THROWS_WITH(metric.evaluate({level, empty_model(), s.x, nullptr}), Catch::Contains("two states"));
-  const Positions wrong = s.x.topRows(5);
-  CHECK_THROWS_WITH(metric.evaluate({level, empty_model(), s.x, &wrong}), Catch::Contains("49 and 5"));
-}

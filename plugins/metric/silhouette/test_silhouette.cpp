@@ -1,6 +1,5 @@
 #include <Eigen/Geometry>
 #include <cmath>
-#include <limits>
 
 #include "core/numerics/hierarchy/midpoint.h"
 #include "tests/support/metric_check.h"
@@ -154,16 +153,4 @@ TEST_CASE("A state that has flown apart is seen in larger pixels", "[silhouette]
   const Positions& x = level.rest.vertices;
   CHECK(overlap(level, x, 1e9 * x) == Approx(0).margin(1e-6));
   CHECK(overlap(level, 1e9 * x, 1e9 * x) == 1);
-}
-
-TEST_CASE("A silhouette needs two finite states of the level", "[silhouette]") {
-  const Level level = square(2);
-  const Positions& x = level.rest.vertices;
-  const Silhouette metric({});
-  CHECK(metric.scope() == MetricScope::pair);
-  CHECK_THROWS_WITH(metric.evaluate({level, empty_model(), x, nullptr}), Catch::Contains("two states"));
-  CHECK_THROWS_WITH(evaluate(level, x, x.topRows(4)), Catch::Contains("9 and 4"));
-  Positions broken = x;
-  broken(1, 1) = std::numeric_limits<double>::infinity();
-  CHECK_THROWS_WITH(evaluate(level, x, broken), Catch::Contains("not finite"));
 }
