@@ -117,12 +117,6 @@ std::vector<State> states(const Candidate& candidate, const Level& level) {
   return all;
 }
 
-class Threads {
- public:
-  explicit Threads(int count) { set_thread_count(count); }
-  ~Threads() { set_thread_count(0); }
-};
-
 /// Runs the body on every energy, on a flat and, unless the energy is for flat ones alone, a curved level.
 template <class Body>
 void for_each_binding(const Body& body) {
@@ -136,48 +130,49 @@ void for_each_binding(const Body& body) {
     }
 }
 
-}  // namespace
-
-TEST_CASE("An energy's gradient is that of its value", "[conformance]") {
-  for_each_binding([](const Candidate& candidate, const Level& level, const BoundEnergy& energy) {
+/// Runs the body in every state of these.
+template <class Body>
+void for_each_deformation(const Body& body) {
+  for_each_binding([&](const Candidate& candidate, const Level& level, const BoundEnergy& energy) {
     for (const State& s : states(candidate, level)) {
       INFO(s.name);
-      const Eigen::VectorXd g = flat(gradient_of(energy, s.x));
-      REQUIRE(g.norm() > 0);
-      const Eigen::VectorXd expected = gradient_by_differences(energy, s.x, s.step);
-      const double rounding = 1e-15 * std::abs(energy.value(s.x)) / s.step * std::sqrt(g.size());
-      CHECK((g - expected).norm() <= 1e-7 * g.norm() + rounding);
+      body(candidate, energy, s);
     }
   });
 }
 
+}  // namespace
+
+TEST_CASE("An energy's gradient is that of its value", "[conformance]") {
+  for_each_deformation([](const Candidate&, const BoundEnergy& energy, const State& s) {
+    const Eigen::VectorXd g = flat(gradient_of(energy, s.x));
+    REQUIRE(g.norm() > 0);
+    const Eigen::VectorXd expected = gradient_by_differences(energy, s.x, s.step);
+    const double rounding = 1e-15 * std::abs(energy.value(s.x)) / s.step * std::sqrt(g.size());
+    CHECK((g - expected).norm() <= 1e-7 * g.norm() + rounding);
+  });
+}
+
 TEST_CASE("An energy's Hessian is that of its gradient, and symmetric", "[conformance]") {
-  for_each_binding([](const Candidate& candidate, const Level& level, const BoundEnergy& energy) {
-    for (const State& s : states(candidate, level)) {
-      INFO(s.name);
-      const BlockMatrix matrix = hessian_of(energy, s.x, Projection::none);
-      for (int i = 0; i < matrix.pattern->rows(); ++i) {
-        const Eigen::Map<const Eigen::Matrix3d> diagonal(matrix.block(matrix.pattern->find(i, i)));
-        REQUIRE((diagonal - diagonal.transpose()).norm() <= 1e-13 * diagonal.norm());
-      }
-      const Eigen::MatrixXd h = dense(matrix);
-      if (energy.stencils().rows() > 0) REQUIRE(h.norm() > 0);
-      const Eigen::MatrixXd expected = hessian_by_differences(energy, s.x, s.step);
-      const double rounding = 1e-15 * flat(gradient_of(energy, s.x)).norm() / s.step * std::sqrt(h.rows());
-      CHECK((h - expected).norm() <= 1e-7 * h.norm() + rounding);
-      CHECK((expected - expected.transpose()).norm() <= 1e-7 * h.norm() + rounding);
+  for_each_deformation([](const Candidate&, const BoundEnergy& energy, const State& s) {
+    const BlockMatrix matrix = hessian_of(energy, s.x, Projection::none);
+    for (int i = 0; i < matrix.pattern->rows(); ++i) {
+      const Eigen::Map<const Eigen::Matrix3d> diagonal(matrix.block(matrix.pattern->find(i, i)));
+      REQUIRE((diagonal - diagonal.transpose()).norm() <= 1e-13 * diagonal.norm());
     }
+    const Eigen::MatrixXd h = dense(matrix);
+    if (energy.stencils().rows() > 0) REQUIRE(h.norm() > 0);
+    const Eigen::MatrixXd expected = hessian_by_differences(energy, s.x, s.step);
+    const double rounding = 1e-15 * flat(gradient_of(energy, s.x)).norm() / s.step * std::sqrt(h.rows());
+    CHECK((h - expected).norm() <= 1e-7 * h.norm() + rounding);
+    CHECK((expected - expected.transpose()).norm() <= 1e-7 * h.norm() + rounding);
   });
 }
 
 TEST_CASE("Projected Hessians are positive semidefinite and lie above the exact one", "[conformance]") {
   int indefinite = 0;
-  for_each_binding([&](const Candidate& candidate, const Level& level, const BoundEnergy& energy) {
-    if (energy.stencils().rows() == 0) return;
-    for (const State& s : states(candidate, level)) {
-      INFO(s.name);
-      indefinite += check_projections(energy, s.x);
-    }
+  for_each_deformation([&](const Candidate&, const BoundEnergy& energy, const State& s) {
+    if (energy.stencils().rows() > 0) indefinite += check_projections(energy, s.x);
   });
   REQUIRE(indefinite > 0);  // else nothing was projected
 }
@@ -185,32 +180,25 @@ TEST_CASE("Projected Hessians are positive semidefinite and lie above the exact 
 TEST_CASE("Internal energies are invariant under rigid motions", "[conformance]") {
   const Eigen::Matrix3d turn =
       Eigen::AngleAxisd(1.1, Eigen::Vector3d(1, -2, 0.5).normalized()).toRotationMatrix();
-  const Eigen::RowVector3d shift(0.3, -0.2, 0.7);
   int internal = 0;
-  for_each_binding([&](const Candidate& candidate, const Level& level, const BoundEnergy& energy) {
+  for_each_deformation([&](const Candidate& candidate, const BoundEnergy& energy, const State& s) {
     if (!candidate.internal()) return;
     ++internal;
-    for (const State& s : states(candidate, level)) {
-      INFO(s.name);
-      const Positions moved = (s.x * turn.transpose()).rowwise() + shift;
-      REQUIRE(energy.value(s.x) > 0);
-      CHECK(energy.value(moved) == Approx(energy.value(s.x)).epsilon(1e-9));
-      const Positions g = gradient_of(energy, s.x) * turn.transpose();
-      CHECK((gradient_of(energy, moved) - g).norm() <= 1e-9 * g.norm());
-    }
+    const Positions moved = (s.x * turn.transpose()).rowwise() + Eigen::RowVector3d(0.3, -0.2, 0.7);
+    REQUIRE(energy.value(s.x) > 0);
+    CHECK(energy.value(moved) == Approx(energy.value(s.x)).epsilon(1e-9));
+    const Positions g = gradient_of(energy, s.x) * turn.transpose();
+    CHECK((gradient_of(energy, moved) - g).norm() <= 1e-9 * g.norm());
   });
   REQUIRE(internal > 0);
 }
 
 TEST_CASE("add_gradient adds, and returns the value", "[conformance]") {
-  for_each_binding([](const Candidate& candidate, const Level& level, const BoundEnergy& energy) {
-    for (const State& s : states(candidate, level)) {
-      INFO(s.name);
-      const Positions before = noise(level.vertex_count(), 1, 6), g = gradient_of(energy, s.x);
-      Positions sum = before;
-      CHECK(energy.add_gradient(s.x, sum) == Approx(energy.value(s.x)).epsilon(1e-13));
-      CHECK((sum - before - g).norm() <= 1e-13 * (g.norm() + before.norm()));
-    }
+  for_each_deformation([](const Candidate&, const BoundEnergy& energy, const State& s) {
+    const Positions before = noise(s.x.rows(), 1, 6), g = gradient_of(energy, s.x);
+    Positions sum = before;
+    CHECK(energy.add_gradient(s.x, sum) == Approx(energy.value(s.x)).epsilon(1e-13));
+    CHECK((sum - before - g).norm() <= 1e-13 * (g.norm() + before.norm()));
   });
 }
 
@@ -225,8 +213,7 @@ TEST_CASE("Energies give the same bits with any number of threads", "[conformanc
     std::vector<double> hessian;
     for (int threads : {1, 2, 3}) {
       INFO(threads << " threads");
-      const Threads scope(threads);
-      REQUIRE(thread_count() == threads);
+      set_thread_count(threads);
       const double v = energy->value(x);
       const Positions g = gradient_of(*energy, x);
       const std::vector<double> h = hessian_of(*energy, x, Projection::clamp).values;
@@ -235,6 +222,7 @@ TEST_CASE("Energies give the same bits with any number of threads", "[conformanc
       CHECK(g == gradient);
       CHECK((h == hessian));
     }
+    set_thread_count(0);
   }
 }
 

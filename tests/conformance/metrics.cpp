@@ -37,6 +37,8 @@ methods: {newton: {}}
     return {s.level(), s.model(), x, &other};
   }
   MetricInput state(const Positions& x) const { return {s.level(), s.model(), x, nullptr}; }
+  /// What a metric of this scope takes.
+  MetricInput of(MetricScope scope) const { return scope == MetricScope::pair ? pair(a, b) : state(a); }
 };
 
 std::vector<std::pair<std::string, std::shared_ptr<Metric>>> metrics(MetricScope scope) {
@@ -98,14 +100,11 @@ void check_form(const Metric& metric, const MetricResult& result, int vertices) 
 
 TEST_CASE("Metrics give finite, named values with units", "[conformance]") {
   const Fixture f;
-  for (const auto& [name, metric] : metrics(MetricScope::state)) {
-    INFO(name);
-    check_form(*metric, metric->evaluate(f.state(f.a)), f.s.level().vertex_count());
-  }
-  for (const auto& [name, metric] : metrics(MetricScope::pair)) {
-    INFO(name);
-    check_form(*metric, metric->evaluate(f.pair(f.a, f.b)), f.s.level().vertex_count());
-  }
+  for (const MetricScope scope : {MetricScope::state, MetricScope::pair})
+    for (const auto& [name, metric] : metrics(scope)) {
+      INFO(name);
+      check_form(*metric, metric->evaluate(f.of(scope)), f.s.level().vertex_count());
+    }
 }
 
 TEST_CASE("Metrics refuse states that are missing, of another size or not finite", "[conformance]") {
@@ -149,15 +148,13 @@ TEST_CASE("Metrics of a pair do not see a rigid motion of both", "[conformance]"
   const std::set<std::string> of_fixed_directions = {"silhouette", "energy_above_end"};
   const Eigen::Matrix3d turn =
       Eigen::AngleAxisd(0.8, Eigen::Vector3d(2, 1, -1).normalized()).toRotationMatrix();
-  const auto moved = [&](const Positions& x) -> Positions {
-    return (x * turn.transpose()).rowwise() + Eigen::RowVector3d(0.5, -0.3, 0.2);
-  };
   for (const auto& [name, metric] : metrics(MetricScope::pair)) {
-    const bool turned = !of_fixed_directions.count(name);
-    const auto shifted = [](const Positions& x) -> Positions {
-      return x.rowwise() + Eigen::RowVector3d(0.5, -0.3, 0.2);
+    Eigen::Matrix3d own = turn;
+    if (of_fixed_directions.count(name)) own.setIdentity();
+    const auto moved = [&](const Positions& x) -> Positions {
+      return (x * own.transpose()).rowwise() + Eigen::RowVector3d(0.5, -0.3, 0.2);
     };
-    const Positions a = turned ? moved(f.a) : shifted(f.a), b = turned ? moved(f.b) : shifted(f.b);
+    const Positions a = moved(f.a), b = moved(f.b);
     const MetricResult before = metric->evaluate(f.pair(f.a, f.b)), after = metric->evaluate(f.pair(a, b));
     REQUIRE(before.values.size() == after.values.size());
     for (std::size_t i = 0; i < before.values.size(); ++i) {
@@ -177,8 +174,7 @@ TEST_CASE("Metrics give the same bits with any number of threads", "[conformance
         set_thread_count(threads);
         // A metric of its own: one may keep what it computed last.
         for (const auto& [own_name, own] : metrics(scope))
-          if (own_name == name)
-            results.push_back(own->evaluate(scope == MetricScope::pair ? f.pair(f.a, f.b) : f.state(f.a)));
+          if (own_name == name) results.push_back(own->evaluate(f.of(scope)));
       }
       set_thread_count(0);
       for (const MetricResult& r : results) {
