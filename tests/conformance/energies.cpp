@@ -12,6 +12,7 @@
 #include "tests/support/conformance.h"
 #include "tests/support/decompositions.h"
 #include "tests/support/evaluate.h"
+#include "tests/support/meshes.h"
 
 using namespace drape;
 
@@ -291,6 +292,19 @@ TEST_CASE("A collapsed triangle has an energy that is a number or +infinity", "[
     infinite += unbounded;
   }
   REQUIRE(infinite >= 1);
+}
+
+TEST_CASE("A single triangle does not bend", "[conformance]") {
+  const Level level = Level::of(0, mesh_of({{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {{0, 1, 2}}));
+  const Positions x = level.rest.vertices + noise(3, 0.1, 12);
+  for (const Candidate& candidate : all_energies()) {
+    if (candidate.energy->role() != EnergyRole::bending) continue;
+    INFO(candidate.name);
+    const auto energy = candidate.energy->bind(level, material);
+    CHECK(energy->value(x) == 0);
+    CHECK(gradient_of(*energy, x).isZero(0));
+    CHECK(dense(hessian_of(*energy, x, Projection::clamp)).isZero(0));
+  }
 }
 
 TEST_CASE("Energies: midpoint_factor holds on the surface split at midpoints", "[conformance]") {

@@ -12,7 +12,6 @@ using namespace drape;
 
 namespace {
 
-using Hinge = FoldFormula<formulas::hinge>;
 using Kernel = FoldFormulaKernel<formulas::hinge, 5>;
 using Check = KernelCheck<Kernel>;
 constexpr double pi = 3.14159265358979323846, k = 0.7;
@@ -116,17 +115,10 @@ TEST_CASE("hinge: a fold in closed form") {
           Approx(c * std::pow(angle - 0.6, 2)).epsilon(1e-13));
 }
 
-TEST_CASE("hinge: a single triangle has no hinge") {
-  const TriangleMesh mesh = mesh_of({{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {{0, 1, 2}});
-  const auto bound = Hinge({}).bind(Level::of(0, mesh), Material());
-  CHECK(bound->value(mesh.vertices) == 0);
-  CHECK(bound->stencils().rows() == 0);
-}
-
 TEST_CASE("hinge: a triangle without area is refused") {
   Level level = Level::of(0, grid({1, 1}, 3, 3, Diagonals::one_way));
   level.rest.vertices.row(4) = level.rest.vertices.row(0);
   CHECK_THROWS_WITH(
-      Hinge({}).bind(level, Material()),
+      FoldFormula<formulas::hinge>({}).bind(level, Material()),
       Catch::Contains("a triangle at the edge of vertices ") && Catch::Contains(" has no area at rest"));
 }

@@ -307,16 +307,6 @@ TEST_CASE("midedge_bending: derivatives where neighbours across different edges 
   CHECK((hessian_by_differences(*bound, x, 1e-4) - h).norm() <= 1e-7 * h.norm());
 }
 
-TEST_CASE("midedge_bending: a single triangle does not bend") {
-  const TriangleMesh mesh = mesh_of({{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {{0, 1, 2}});
-  const auto bound = bind(Level::of(0, mesh));
-  Positions g = Positions::Zero(3, 3);
-  CHECK(bound->value(mesh.vertices) == 0);
-  CHECK(bound->add_gradient(mesh.vertices, g) == 0);
-  CHECK(g.isZero(0));
-  CHECK(hessian_of(*bound, mesh.vertices, Projection::clamp).values == std::vector<double>(9 * 6, 0.0));
-}
-
 TEST_CASE("midedge_bending: a triangle without area is refused") {
   Level level = Level::of(0, grid({1, 1}, 3, 3, Diagonals::one_way));
   level.rest.vertices.row(4) = level.rest.vertices.row(0);
