@@ -1,12 +1,15 @@
-#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <numeric>
 
 #include "core/numerics/elements/dihedral_angle.h"
 #include "core/numerics/elements/orthotropic_stiffness.h"
+#include "core/numerics/elements/stretch.h"
 #include "core/numerics/patterns/generate.h"
 #include "plugins/energy/midedge_bending/shape_operators.h"
+#include "tests/support/decompositions.h"
+#include "tests/support/evaluate.h"
 #include "tests/support/kernel_check.h"
 #include "tests/support/meshes.h"
 #include "tests/support/unregistered.h"
@@ -53,6 +56,16 @@ double angle_at(const Level& level, const Positions& x, int hinge) {
   return DihedralAngle<double>(d).angle();
 }
 
+/// What has the energy of a triangle as its squared norm, by the operators of the level [√J].
+Eigen::Vector3d bend_of(const ShapeOperators& operators, const Level& level, const Positions& x, int t) {
+  Eigen::Vector3d s = Eigen::Vector3d::Zero();
+  for (int i = operators.start[t]; i < operators.start[t + 1]; ++i) {
+    const auto& [hinge, weight] = operators.terms[i];
+    s += weight * (angle_at(level, x, hinge) - angle_at(level, level.rest.vertices, hinge));
+  }
+  return s;
+}
+
 /// Energies per rest area [J/m²] of triangles without a border vertex.
 std::vector<double> inner_densities(const Level& level, const Positions& x, double tolerance,
                                     const Material& of = material) {
@@ -62,18 +75,15 @@ std::vector<double> inner_densities(const Level& level, const Positions& x, doub
     const auto v = level.rest.triangles.row(t);
     bool inner = true;
     for (int i = 0; i < 3; ++i) inner &= !level.topology.on_border[v[i]];
-    if (!inner) continue;
-    const Eigen::Vector3d a = level.rest.vertices.row(v[1]) - level.rest.vertices.row(v[0]),
-                          b = level.rest.vertices.row(v[2]) - level.rest.vertices.row(v[0]);
-    Eigen::Vector3d s = Eigen::Vector3d::Zero();
-    for (int i = operators.start[t]; i < operators.start[t + 1]; ++i) {
-      const auto& term = operators.terms[i];
-      s += term.weight * (angle_at(level, x, term.hinge) - angle_at(level, level.rest.vertices, term.hinge));
-    }
-    densities.push_back(s.squaredNorm() / (a.cross(b).norm() / 2));
+    if (inner)
+      densities.push_back(bend_of(operators, level, x, t).squaredNorm() / RestTriangle::of(level, t).area);
   }
   REQUIRE(densities.size() > 10);
   return densities;
+}
+
+double mean_of(const std::vector<double>& values) {
+  return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
 }
 
 /// Of a plate with the curvatures of shape.
@@ -111,6 +121,25 @@ Positions bent(const TriangleMesh& mesh, const Eigen::Matrix2d& shape) {
   return x;
 }
 
+/// A flat mesh in waves of this height [m].
+Positions wavy(const TriangleMesh& mesh, double height) {
+  Positions x = mesh.vertices;
+  for (auto vertex : x.rowwise()) vertex[2] = height * std::sin(7 * vertex[0]) * std::cos(5 * vertex[1] + 1);
+  return x;
+}
+
+/// A flat mesh that is rolled up along one of its axes.
+Positions rolled(const TriangleMesh& mesh, double curvature, int axis = 0) {
+  Positions x = mesh.vertices;
+  if (curvature == 0) return x;
+  for (auto vertex : x.rowwise()) {
+    const double angle = vertex[axis] * curvature;
+    vertex[axis] = std::sin(angle) / curvature;
+    vertex[2] = (std::cos(angle) - 1) / curvature;
+  }
+  return x;
+}
+
 }  // namespace
 
 TEST_CASE(
@@ -122,10 +151,7 @@ TEST_CASE(
       INFO(name << ", shape\n" << shape);
       const double expected = small_curvature * small_curvature * plate_density(shape);
       CHECK(largest_miss(inner_densities(level, x, 0), expected) < 1e-6);
-      const std::vector<double> as_made = inner_densities(level, x, default_tolerance);
-      double mean = 0;
-      for (const double d : as_made) mean += d / as_made.size();
-      CHECK(mean == Approx(expected).epsilon(0.005));
+      CHECK(mean_of(inner_densities(level, x, default_tolerance)) == Approx(expected).epsilon(0.005));
     }
   }
 }
@@ -162,9 +188,7 @@ TEST_CASE("midedge_bending: equal rigidities are the isotropic plate, and a quar
   for (auto& [name, mesh] : triangulations(8)) {
     INFO(name);
     const Level level = Level::of(0, mesh);
-    Positions x = mesh.vertices;
-    for (int i = 0; i < level.vertex_count(); ++i)
-      x(i, 2) = 0.1 * std::sin(7 * x(i, 0)) * std::cos(5 * x(i, 1) + 1);
+    const Positions x = wavy(mesh, 0.1);
     const double plain = bind(level)->value(x);
     CHECK(std::abs(MidedgeBending().bind(level, isotropic)->value(x) / plain - 1) < 1e-12);
 
@@ -190,19 +214,14 @@ TEST_CASE("midedge_bending: friction adds its moment to a bent strip's, and deri
     const auto own = MidedgeBending().bind(level, rubbing);
     CHECK(own->value(mesh.vertices) == 0);
     for (const double height : {1e-4, 0.01, 0.1}) {  // sticking to sliding
-      Positions x = mesh.vertices;
-      for (int i = 0; i < level.vertex_count(); ++i)
-        x(i, 2) = height * std::sin(7 * x(i, 0)) * std::cos(5 * x(i, 1) + 1);
+      const Positions x = wavy(mesh, height);
       const ShapeOperators operators = ShapeOperators::of(level, rubbing, default_tolerance);
       double expected = 0;
       for (int t = 0; t < level.triangle_count(); ++t) {
-        Eigen::Vector3d s = Eigen::Vector3d::Zero();
-        for (int i = operators.start[t]; i < operators.start[t + 1]; ++i)
-          s += operators.terms[i].weight * angle_at(level, x, operators.terms[i].hinge);
-        const auto at = [&](int i) -> Eigen::Vector3d { return mesh.vertices.row(mesh.triangles(t, i)); };
-        const double area = (at(1) - at(0)).cross(at(2) - at(0)).norm() / 2,
-                     curvature = std::sqrt(2 * s.squaredNorm() / (rigidity * area));  // of the strip
-        expected += s.squaredNorm() + area * moment * (std::hypot(curvature, sliding) - sliding);
+        const double elastic = bend_of(operators, level, x, t).squaredNorm(),
+                     area = RestTriangle::of(level, t).area,
+                     curvature = std::sqrt(2 * elastic / (rigidity * area));  // of the strip
+        expected += elastic + area * moment * (std::hypot(curvature, sliding) - sliding);
       }
       CHECK(own->value(x) == Approx(expected));
       CHECK(own->value(x) > bind(level)->value(x));
@@ -210,9 +229,8 @@ TEST_CASE("midedge_bending: friction adds its moment to a bent strip's, and deri
       CHECK((gradient_by_differences(*own, x, 1e-5) - flat(g)).norm() <= 1e-6 * g.norm());
       const Eigen::MatrixXd h = dense(hessian_of(*own, x, Projection::none));
       CHECK((hessian_by_differences(*own, x, 1e-5) - h).norm() <= 1e-5 * h.norm());
-      const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(
-          dense(hessian_of(*own, x, Projection::clamp)));
-      CHECK(eigen.eigenvalues().minCoeff() > -1e-10 * eigen.eigenvalues().maxCoeff());
+      const Eigen::VectorXd clamped = eigenvalues_of(dense(hessian_of(*own, x, Projection::clamp)));
+      CHECK(clamped.minCoeff() > -1e-10 * clamped.maxCoeff());
     }
   }
   Material limp = rubbing;
@@ -230,30 +248,22 @@ TEST_CASE("midedge_bending: a bias rigidity that no plate has is refused with it
 
 TEST_CASE("midedge_bending: the average of the triangles' normals alone is not the plate's") {
   const Level level = Level::of(0, grid({0.6, 0.6}, 12, 12, Diagonals::criss_cross));
-  Positions x = level.rest.vertices;
-  for (int i = 0; i < level.vertex_count(); ++i) x(i, 2) = 1e-4 * x(i, 0) * x(i, 1);
-  const double expected = 1e-8 * plate_density(shapes()[5]);
-  for (const double d : inner_densities(level, x, 1))
+  const Eigen::Matrix2d saddle = shapes()[5];
+  const double expected = small_curvature * small_curvature * plate_density(saddle);
+  for (const double d : inner_densities(level, bent(level.rest, saddle), 1))
     CHECK(d / expected == Approx(2 / (1 - nu)).epsilon(1e-4));
 }
 
 TEST_CASE(
     "midedge_bending: sheets rolled up have the plate's energy, to second order where it is not exact") {
   const double radius = 0.4;
-  for (const bool along_x : {true, false}) {
+  for (const int axis : {0, 1}) {
     std::vector<std::vector<double>> errors(4);
     for (const int n : {11, 21, 41}) {
       const auto meshes = triangulations(n);
       for (std::size_t m = 0; m < meshes.size(); ++m) {
-        const Level level = Level::of(0, meshes[m].mesh);
-        Positions x = level.rest.vertices;
-        for (int i = 0; i < level.vertex_count(); ++i) {
-          const double s = x(i, along_x ? 0 : 1) / radius, other = x(i, along_x ? 1 : 0);
-          x.row(i) << radius * std::sin(s), other, radius * std::cos(s);
-        }
-        const std::vector<double> densities = inner_densities(level, x, default_tolerance);
-        double mean = 0;
-        for (const double d : densities) mean += d / densities.size();
+        const Positions x = rolled(meshes[m].mesh, 1 / radius, axis);
+        const double mean = mean_of(inner_densities(Level::of(0, meshes[m].mesh), x, default_tolerance));
         errors[m].push_back(std::abs(mean / (k / (radius * radius)) - 1));
       }
     }
@@ -268,22 +278,12 @@ TEST_CASE(
 
 TEST_CASE("midedge_bending: a curved rest shape is free of stress, and costs what bends it further") {
   // A rest cylinder of radius 1 that is rolled to radius 1/2, and one that is unrolled.
-  for (const auto& [name, flat_mesh] : triangulations(21)) {
-    const auto rolled = [&](double curvature) {
-      Positions x = flat_mesh.vertices;
-      for (Eigen::Index i = 0; i < x.rows(); ++i) {
-        const double s = x(i, 0) * curvature;
-        if (curvature != 0) x.row(i) << std::sin(s) / curvature, x(i, 1), (std::cos(s) - 1) / curvature;
-      }
-      return x;
-    };
-    const Level level = Level::of(0, {rolled(1), flat_mesh.triangles});
+  for (const auto& [name, mesh] : triangulations(21)) {
+    const Level level = Level::of(0, {rolled(mesh, 1), mesh.triangles});
     INFO(name);
     CHECK(bind(level)->value(level.rest.vertices) <= 1e-28 * k);
     for (const double curvature : {0.0, 2.0, 3.0}) {
-      const std::vector<double> densities = inner_densities(level, rolled(curvature), default_tolerance);
-      double mean = 0;
-      for (const double d : densities) mean += d / densities.size();
+      const double mean = mean_of(inner_densities(level, rolled(mesh, curvature), default_tolerance));
       CHECK(mean == Approx(k * std::pow(curvature - 1, 2)).epsilon(0.01));
     }
   }
