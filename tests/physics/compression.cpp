@@ -5,7 +5,6 @@
 #include "core/numerics/hierarchy/hierarchy.h"
 #include "core/numerics/patterns/generate.h"
 #include "tests/support/equilibrium.h"
-#include "tests/support/evaluate.h"
 #include "tests/support/strip.h"
 
 using namespace drape;
@@ -110,29 +109,6 @@ TEST_CASE("A coarse strip between clamps has about the energy of the buckled clo
       CHECK(buckling > 0.25 * finest);
       if (cells == 1) CHECK(coarse > 50 * finest);
     }
-}
-
-TEST_CASE("A membrane that buckles on coarse levels is the plain one in tension", "[physics]") {
-  for (const std::string membrane : {"neo_hookean", "stvk"}) {
-    Material stretchy = fabric;
-    stretchy.poisson_ratio = 0.3;
-    const Level level = Level::of(0, random_triangulation({0.6, 0.5}, 200, 3));
-    const LevelModel plain(level, stretchy, energies(membrane), {}),
-        buckling = plain.with_effective_membranes(1);
-    Positions x = level.rest.vertices;
-    for (Eigen::Index i = 0; i < x.rows(); ++i) {
-      x(i, 0) *= 1.05 + 0.03 * x(i, 1);
-      x(i, 1) *= 1.02;
-      x(i, 2) = 0.02 * std::sin(4 * x(i, 0));
-    }
-    Positions g, expected;
-    CHECK(buckling.gradient(x, g) == Approx(plain.gradient(x, expected)).epsilon(1e-10));
-    CHECK((g - expected).norm() <= 1e-10 * expected.norm());
-    BlockMatrix h(plain.pattern()), h_plain(plain.pattern());
-    buckling.hessian(x, Projection::clamp, h);
-    plain.hessian(x, Projection::clamp, h_plain);
-    CHECK((dense(h) - dense(h_plain)).norm() <= 1e-8 * dense(h_plain).norm());
-  }
 }
 
 TEST_CASE("A strip that hangs or bends under its weight is the same with a membrane that buckles",

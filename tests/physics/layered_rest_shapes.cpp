@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
-#include <ctime>
 #include <functional>
 #include <map>
 #include <utility>
@@ -16,25 +15,12 @@
 #include "tests/support/slope.h"
 #include "tests/support/solve.h"
 #include "tests/support/strip.h"
-#include "tests/support/time_limit.h"
 
 using namespace drape;
 
 namespace {
 
 constexpr double degree = M_PI / 180;
-
-/// The processor time that this process takes from here on, divided by the slowdown that the tests run with:
-/// neither a busy machine nor a sanitizer makes it longer.
-class ProcessorTime {
- public:
-  double seconds() const {
-    return static_cast<double>(std::clock() - begun_) / CLOCKS_PER_SEC / test_slowdown();
-  }
-
- private:
-  std::clock_t begun_ = std::clock();
-};
 
 // Rest shapes whose layers lie on each other, and starts in which the layers are apart. Lengths in metres.
 
@@ -166,17 +152,16 @@ LayeredShape opened(LayeredShape shape) {
 void check_rests(const std::function<LayeredShape(double spacing)>& shape_of, double top = 2 * dhat,
                  const std::string& obstacle = "", double height = 0) {
   row("\n%s", std::string(Catch::getResultCapture().getCurrentTestName()).c_str());
-  row("%9s %8s %10s %12s %9s %8s", "vertices", "hinges", "iterations", "smallest gap", "top", "seconds");
+  row("%9s %8s %10s %12s %9s", "vertices", "hinges", "iterations", "smallest gap", "top");
   for (const double spacing : {0.01, 0.005})
     for (const bool hinges : {false, true}) {
       const LayeredShape shape = shape_of(spacing);
       Solved s = hinges ? scene_of(opened(shape), "neo_hookean, hinge, gravity", obstacle, height)
                         : scene_of(shape, "neo_hookean, gravity", obstacle, height);
-      const ProcessorTime time;
       run_method(s);
       const LevelResult& r = s.levels.back();
-      row("%9d %8s %10d %12.2e %9.2e %8.2f", s.level().vertex_count(), hinges ? "yes" : "no", r.iterations,
-          *r.smallest_gap, r.x.col(2).maxCoeff(), time.seconds());
+      row("%9d %8s %10d %12.2e %9.2e", s.level().vertex_count(), hinges ? "yes" : "no", r.iterations,
+          *r.smallest_gap, r.x.col(2).maxCoeff());
       CAPTURE(spacing, hinges, r.message);
       CHECK(has_converged(r.outcome));
       CHECK(*r.smallest_gap > dhat / 100);
