@@ -1,4 +1,3 @@
-#include <Eigen/Geometry>
 #include <catch2/catch.hpp>
 
 #include "core/numerics/patterns/generate.h"
@@ -91,20 +90,6 @@ TEST_CASE("hinge: projection is that of the matrix by the axis and the points' d
   REQUIRE(smallest < -1e-3);  // else nothing was projected
   CHECK(Check::projections<Pack<native_pack_width>>(folded(0), flat_rest) >
         -1e-12);  // rank one: nothing to project
-}
-
-TEST_CASE("hinge: rest shapes, flat or bent, are stress-free") {
-  const Eigen::Matrix3d turn =
-      Eigen::AngleAxisd(0.8, Eigen::Vector3d(1, 2, -1).normalized()).toRotationMatrix();
-  for (const double angle : {0.0, 0.6, -2.5}) {
-    const Check::State x = folded(angle);
-    Check::State turned;
-    for (int i = 0; i < 3; ++i) turned.segment<3>(3 * i) = turn * x.segment<3>(3 * i);
-    const auto r = Check::evaluate(turned, rest_of(x));
-    CHECK(std::abs(r.value) <= 1e-28 * k);
-    CHECK(r.gradient.norm() <= 1e-13 * k);
-    CHECK(r.hessian.norm() > k);
-  }
 }
 
 TEST_CASE("hinge: a fold in closed form") {

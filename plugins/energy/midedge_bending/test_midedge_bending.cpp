@@ -276,12 +276,11 @@ TEST_CASE(
   }
 }
 
-TEST_CASE("midedge_bending: a curved rest shape is free of stress, and costs what bends it further") {
+TEST_CASE("midedge_bending: a curved rest shape costs what bends it further") {
   // A rest cylinder of radius 1 that is rolled to radius 1/2, and one that is unrolled.
   for (const auto& [name, mesh] : triangulations(21)) {
     const Level level = Level::of(0, {rolled(mesh, 1), mesh.triangles});
     INFO(name);
-    CHECK(bind(level)->value(level.rest.vertices) <= 1e-28 * k);
     for (const double curvature : {0.0, 2.0, 3.0}) {
       const double mean = mean_of(inner_densities(level, rolled(mesh, curvature), default_tolerance));
       CHECK(mean == Approx(k * std::pow(curvature - 1, 2)).epsilon(0.01));
