@@ -1,11 +1,15 @@
 // Up to its rim a flat surface is a half-space: cloth slides over the rim as if there were none.
 
 #include <catch2/catch.hpp>
+#include <map>
+#include <set>
+#include <utility>
+#include <vector>
 
-#include "core/kernel/interfaces/topology.h"
 #include "core/numerics/mesh_files/io.h"
 #include "core/numerics/patterns/generate.h"
 #include "tests/support/command.h"
+#include "tests/support/meshes.h"
 #include "tests/support/slope.h"
 #include "tests/support/solve.h"
 
@@ -23,40 +27,23 @@ TriangleMesh slab(double cell, bool with_sides) {
   TriangleMesh mesh = grid({0.6, 0.6}, columns, columns, Diagonals::criss_cross);
   mesh.vertices.rowwise() += Eigen::RowVector3d(rim - 0.6, -0.2951, 0);
   if (!with_sides) return mesh;
-  const Eigen::Index n = mesh.vertices.rows(), count = mesh.triangles.rows();
-  Positions both(2 * n, 3);
-  both << mesh.vertices, mesh.vertices.rowwise() - Eigen::RowVector3d(0, 0, 0.1);
-  std::vector<std::array<int, 3>> sides;
-  for (Eigen::Index t = 0; t < count; ++t)
-    for (int k = 0; k < 3; ++k) {
-      const int a = mesh.triangles(t, k), b = mesh.triangles(t, (k + 1) % 3);
-      int uses = 0;
-      for (Eigen::Index s = 0; s < count; ++s)
-        for (int m = 0; m < 3; ++m) {
-          const int c = mesh.triangles(s, m), d = mesh.triangles(s, (m + 1) % 3);
-          uses += (a == c && b == d) || (a == d && b == c);
-        }
-      if (uses > 1) continue;
-      const int low_a = a + static_cast<int>(n), low_b = b + static_cast<int>(n);
-      sides.push_back({b, a, low_a});
-      sides.push_back({b, low_a, low_b});
+  std::set<std::pair<int, int>> sides;  // of triangles, in their direction
+  for (const auto& t : mesh.triangles.rowwise())
+    for (int k = 0; k < 3; ++k) sides.emplace(t[k], t[(k + 1) % 3]);
+  std::map<int, int> lower;  // vertices of the border, and those below them
+  for (const auto& [a, b] : sides)
+    if (!sides.count({b, a})) lower.emplace(a, static_cast<int>(mesh.vertices.rows() + lower.size()));
+  std::vector<Eigen::Vector3d> vertices(lower.size());
+  std::vector<Eigen::Vector3i> triangles;
+  for (const auto& [a, below] : lower)
+    vertices[below - mesh.vertices.rows()] = mesh.vertices.row(a) - Eigen::RowVector3d(0, 0, 0.1);
+  for (const auto& [a, b] : sides)
+    if (!sides.count({b, a})) {
+      triangles.emplace_back(b, a, lower.at(a));
+      triangles.emplace_back(b, lower.at(a), lower.at(b));
     }
-  // Of the lower vertices only those of the sides are there.
-  std::vector<int> index(2 * n, -1);
-  for (Eigen::Index v = 0; v < n; ++v) index[v] = static_cast<int>(v);
-  int used = static_cast<int>(n);
-  for (const auto& side : sides)
-    for (const int v : side)
-      if (index[v] < 0) index[v] = used++;
-  TriangleMesh box;
-  box.vertices.resize(used, 3);
-  for (Eigen::Index v = 0; v < 2 * n; ++v)
-    if (index[v] >= 0) box.vertices.row(index[v]) = both.row(v);
-  box.triangles.resize(count + static_cast<Eigen::Index>(sides.size()), 3);
-  box.triangles.topRows(count) = mesh.triangles;
-  for (std::size_t s = 0; s < sides.size(); ++s)
-    for (int k = 0; k < 3; ++k) box.triangles(count + s, k) = index[sides[s][k]];
-  return box;
+  append(mesh, vertices, triangles);
+  return mesh;
 }
 
 /// Displacements along the slope after so many steps of `advance` on a half-space.
