@@ -53,12 +53,6 @@ Eigen::VectorXd deflections(const Level& level, const BlockMatrix& h, const Eige
   return w;
 }
 
-int vertex_at(const Level& level, const Eigen::Vector2d& p) {
-  Eigen::Index nearest = 0;
-  (level.rest.vertices.leftCols<2>().rowwise() - p.transpose()).rowwise().squaredNorm().minCoeff(&nearest);
-  return static_cast<int>(nearest);
-}
-
 /// A strip on two supports under its weight, ν = 0: stiffness over the beam's, from 5 q L⁴ / 384 D in the
 /// middle.
 double beam(const std::string& triangulation, const Model& model, double a) {
@@ -86,7 +80,8 @@ double twisted_plate(const std::string& triangulation, const Model& model, doubl
   const Level level = Level::of(0, triangulated(triangulation, {1, 1}, a));
   const BlockMatrix h = hessian_at_rest(level, model, nu);
   Eigen::VectorXd force = Eigen::VectorXd::Zero(level.vertex_count());
-  const int corner = vertex_at(level, {1, 1});
+  Eigen::Index corner = 0;  // (1, 1)
+  level.rest.vertices.leftCols<2>().rowwise().sum().maxCoeff(&corner);
   force[corner] = 1;
   const Eigen::VectorXd w = deflections(level, h, force, [](const Eigen::Vector2d& p) {
     return (p.x() == 0 && p.y() == 0) || (p.x() == 1 && p.y() == 0) || (p.x() == 0 && p.y() == 1);
