@@ -27,8 +27,12 @@ struct Stepped : Solved, Observer {
   }
 };
 
-/// A square above a ball, of which one pin is moved by the schedule.
-std::string dragged_onto_a_ball(int levels, const std::string& schedule) {
+/// A square above a ball, of which one pin is moved down onto it, and back up in the second half of the steps
+/// if asked for.
+std::string dragged_onto_a_ball(int levels, int steps, bool and_back = false) {
+  const std::string up = "[-0.25, -0.25, 0.22]", down = "[-0.25, -0.25, 0.1]";
+  const std::string way = and_back ? "times: [0, 1, 2], values: [" + up + ", " + down + ", " + up + "]"
+                                   : "times: [0, 1], values: [" + up + ", " + down + "]";
   return R"(
 name: dragged
 cloth: {shape: square, side: 0.5, columns: 10, rows: 10}
@@ -41,7 +45,8 @@ contact: [ipc, shapes]
 obstacles: [{name: ball, shape: sphere, radius: 0.2}]
 methods: {pcs: {}}
 )" + std::string("levels: ") +
-         std::to_string(levels) + "\nschedule: " + schedule + "\n";
+         std::to_string(levels) + "\nschedule: {steps: " + std::to_string(steps) +
+         ", keys: [{parameter: pins.0.translate, " + way + "}]}\n";
 }
 
 }  // namespace
@@ -141,9 +146,7 @@ methods: {pcs: {}}
 }
 
 TEST_CASE("A pin that is dragged into an obstacle stops there and is named", "[physics]") {
-  Stepped s(dragged_onto_a_ball(2,
-                                "{steps: 3, keys: [{parameter: pins.0.translate, times: [0, 1], "
-                                "values: [[-0.25, -0.25, 0.22], [-0.25, -0.25, 0.1]]}]}"));
+  const Stepped s(dragged_onto_a_ball(2, 3));
   REQUIRE(s.levels.size() == 2);
   for (const LevelResult& level : s.levels) {
     CHECK(level.outcome == Outcome::infeasible);
@@ -162,10 +165,7 @@ TEST_CASE("A pin that is dragged into an obstacle stops there and is named", "[p
 
 TEST_CASE("A pin that stopped short of its target is named where the level ends without equilibrium too",
           "[physics]") {
-  const std::string scene = dragged_onto_a_ball(
-      1,
-      "{steps: 1, keys: [{parameter: pins.0.translate, times: [0, 1], values: [[-0.25, -0.25, 0.22], [-0.25, "
-      "-0.25, 0.1]]}]}");
+  const std::string scene = dragged_onto_a_ball(1, 1);
   // Short steps approach the equilibrium slowly, after the target has been found infeasible.
   const std::string newton = "newton: {step_size: 0.02, step_growth: 1, force_tolerance: 1e-6, max_steps: ";
   const Stepped whole(scene + newton + "5000}\n");
@@ -180,9 +180,7 @@ TEST_CASE("A pin that stopped short of its target is named where the level ends 
 }
 
 TEST_CASE("A target that an earlier increment did not reach stays in the level's message", "[physics]") {
-  Stepped s(dragged_onto_a_ball(1,
-                                "{steps: 4, keys: [{parameter: pins.0.translate, times: [0, 1, 2], values: "
-                                "[[-0.25, -0.25, 0.22], [-0.25, -0.25, 0.1], [-0.25, -0.25, 0.22]]}]}"));
+  const Stepped s(dragged_onto_a_ball(1, 4, true));
   REQUIRE(s.levels.size() == 1);
   CHECK(s.levels[0].outcome == Outcome::converged);
   CHECK_THAT(s.levels[0].message, Catch::StartsWith("at pseudo-time 0.5 pin 0 stopped 0.0") &&
