@@ -146,8 +146,6 @@ TEST_CASE("The membrane energy of a rolled sheet falls with h as of chords, up t
     const double h = side / cells;
     const TriangleMesh flat = grid({side, side}, cells + 1, cells + 1, Diagonals::criss_cross);
     const Level level = Level::of(0, flat);
-    std::vector<NamedEnergy> membrane = energies("stvk");
-    membrane.pop_back();
     const Positions x = rolled(flat, radius);
     const double chord = 2 * radius * std::sin(h / (2 * radius)) / h, strain = (1 - chord * chord) / 2;
     const double stiffness = fabric.membrane_modulus * fabric.thickness;

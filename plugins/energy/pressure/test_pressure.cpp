@@ -22,9 +22,6 @@ std::unique_ptr<BoundEnergy> bound(const Level& level, double pressure,
   return p.bind(level, Material());
 }
 
-Level open_level() { return Level::of(0, random_triangulation({0.6, 0.5}, 30, 7)); }
-Level closed_level() { return Level::of(0, sphere_mesh(0.3, 1)); }
-
 }  // namespace
 
 TEST_CASE("pressure: projection is that of every edge's matrix") {
@@ -57,7 +54,7 @@ TEST_CASE("pressure: projection is that of every edge's matrix") {
 }
 
 TEST_CASE("pressure: a closed mesh feels no net force and no torque, wherever it is") {
-  const Level level = closed_level();
+  const Level level = Level::of(0, sphere_mesh(0.3, 1));
   const Positions x = shaken(level.rest.vertices, 0.05, 5);
   const auto energy = bound(level, 100);
   const Positions near = gradient_of(*energy, x);
@@ -97,7 +94,7 @@ TEST_CASE("pressure: a sphere's volume, and a force along every normal") {
 }
 
 TEST_CASE("pressure: inner vertices of an open cloth carry a third of the area around them") {
-  const Level level = open_level();
+  const Level level = Level::of(0, random_triangulation({0.6, 0.5}, 30, 7));
   const Positions x = shaken(level.rest.vertices, 0.02, 6);
   Positions expected = Positions::Zero(x.rows(), 3);
   for (int t = 0; t < level.triangle_count(); ++t) {

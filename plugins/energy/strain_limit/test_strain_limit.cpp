@@ -57,9 +57,9 @@ std::vector<Check::State> states() {
 
 Level square() { return Level::of(0, grid({1, 1}, 5, 4, Diagonals::criss_cross)); }
 
-std::unique_ptr<BoundEnergy> bound_to(const Level& level, double own_limit = limit) {
+std::unique_ptr<BoundEnergy> bound_to(const Level& level) {
   StrainLimit energy;
-  energy.limit = own_limit;
+  energy.limit = limit;
   return energy.bind(level, Material());
 }
 
