@@ -149,9 +149,9 @@ LayeredShape opened(LayeredShape shape) {
 }
 
 /// The shape comes to rest, no higher than `top` above where it lies.
-void check_rests(const std::function<LayeredShape(double spacing)>& shape_of, double top = 2 * dhat,
-                 const std::string& obstacle = "", double height = 0) {
-  row("\n%s", std::string(Catch::getResultCapture().getCurrentTestName()).c_str());
+void check_rests(const char* name, const std::function<LayeredShape(double spacing)>& shape_of,
+                 double top = 2 * dhat, const std::string& obstacle = "", double height = 0) {
+  row("\n%s", name);
   row("%9s %8s %10s %12s %9s", "vertices", "hinges", "iterations", "smallest gap", "top");
   for (const double spacing : {0.01, 0.005})
     for (const bool hinges : {false, true}) {
@@ -162,7 +162,7 @@ void check_rests(const std::function<LayeredShape(double spacing)>& shape_of, do
       const LevelResult& r = s.levels.back();
       row("%9d %8s %10d %12.2e %9.2e", s.level().vertex_count(), hinges ? "yes" : "no", r.iterations,
           *r.smallest_gap, r.x.col(2).maxCoeff());
-      CAPTURE(spacing, hinges, r.message);
+      CAPTURE(name, spacing, hinges, r.message);
       CHECK(has_converged(r.outcome));
       CHECK(*r.smallest_gap > dhat / 100);
       CHECK(r.x.col(2).maxCoeff() < top);
@@ -214,55 +214,36 @@ LayeredShape sock(double spacing) {
 
 }  // namespace
 
-TEST_CASE("A hem rests with its layers apart", "[physics]") {
-  check_rests([](double spacing) {
+TEST_CASE("Folded strips rest with their layers apart", "[physics]") {
+  check_rests("hem", [](double spacing) {
     const double up = M_PI - std::asin(3e-4 / spacing);
     return folded({{0.1, 0, 0}, {spacing, up, up}, {0.03 - spacing, M_PI, M_PI}}, 0.08, spacing);
   });
+  struct Strip {
+    const char* name;
+    double width;
+    std::vector<Leaf> leaves;
+  };
+  const Strip strips[] = {
+      {"sharp pleat", 0.08, {{0.06, 0, 0}, {0.03, M_PI, M_PI - 2 * degree}, {0.06, 0, 2 * degree}}},
+      {"box pleat",
+       0.06,
+       {{0.05, 0, 0},
+        {0.02, M_PI, M_PI + 2 * degree},
+        {0.042, 0, 0},
+        {0.02, M_PI, M_PI - 2 * degree},
+        {0.05, 0, 0}}},
+      {"letter", 0.06, {{0.06, M_PI, M_PI + 6 * degree}, {0.06, 0, 0}, {0.04, M_PI, M_PI - degree}}},
+      {"book that is shut at rest", 0.08, {{0.08, M_PI, M_PI}, {0.08, 0, 20 * degree}}}};
+  for (const Strip& strip : strips)
+    check_rests(strip.name, [&](double spacing) { return folded(strip.leaves, strip.width, spacing); });
 }
 
-TEST_CASE("A sharp pleat rests with its layers apart", "[physics]") {
-  check_rests([](double spacing) {
-    return folded({{0.06, 0, 0}, {0.03, M_PI, M_PI - 2 * degree}, {0.06, 0, 2 * degree}}, 0.08, spacing);
-  });
-}
-
-TEST_CASE("A box pleat rests with its layers apart", "[physics]") {
-  check_rests([](double spacing) {
-    return folded({{0.05, 0, 0},
-                   {0.02, M_PI, M_PI + 2 * degree},
-                   {0.042, 0, 0},
-                   {0.02, M_PI, M_PI - 2 * degree},
-                   {0.05, 0, 0}},
-                  0.06, spacing);
-  });
-}
-
-TEST_CASE("A sheet that is folded as a letter rests with its layers apart", "[physics]") {
-  check_rests([](double spacing) {
-    return folded({{0.06, M_PI, M_PI + 6 * degree}, {0.06, 0, 0}, {0.04, M_PI, M_PI - degree}}, 0.06,
-                  spacing);
-  });
-}
-
-TEST_CASE("A book that is shut at rest shuts", "[physics]") {
-  check_rests([](double spacing) {
-    return folded({{0.08, M_PI, M_PI}, {0.08, 0, 20 * degree}}, 0.08, spacing);
-  });
-}
-
-TEST_CASE("A pocket rests with its layers apart", "[physics]") {
-  check_rests([](double spacing) { return bag(spacing, false); });
-}
-
-TEST_CASE("An envelope with a flap rests with its layers apart", "[physics]") {
-  check_rests([](double spacing) { return bag(spacing, true); });
-}
-
-TEST_CASE("A sock rests with its layers apart", "[physics]") { check_rests(sock); }
-
-TEST_CASE("A cushion without pressure rests with its layers apart", "[physics]") {
-  check_rests([](double spacing) {
+TEST_CASE("Layers that are sewn together rest apart", "[physics]") {
+  check_rests("pocket", [](double spacing) { return bag(spacing, false); });
+  check_rests("envelope with a flap", [](double spacing) { return bag(spacing, true); });
+  check_rests("sock", sock);
+  check_rests("cushion without pressure", [](double spacing) {
     const int rings = cells(0.05, spacing);
     const auto disc = [&](double bulge) { return cushion_mesh(0.05, 6 * rings, rings, bulge); };
     return LayeredShape{disc(0), disc(5e-4).vertices};
@@ -271,6 +252,7 @@ TEST_CASE("A cushion without pressure rests with its layers apart", "[physics]")
 
 TEST_CASE("Two coats rest on a ball and the floor with their layers apart", "[physics]") {
   check_rests(
+      "two coats",
       [](double spacing) {
         const int n = cells(0.1, spacing);
         Sewing coats(spacing);
