@@ -179,13 +179,12 @@ TEST_CASE("derivatives are exact for every function") {
   const double p[3] = {0.7, 1.3, 0.9};
   for (const std::string& energy : energies) {
     INFO(energy);
-    const std::string text = energy;
     const auto moved = [&](int i, double h) {
       double q[3] = {p[0], p[1], p[2]};
       q[i] += h;
-      return at(text, q[0], q[1], q[2]);
+      return at(energy, q[0], q[1], q[2]);
     };
-    const std::vector<double> own = at(text, p[0], p[1], p[2]);
+    const std::vector<double> own = at(energy, p[0], p[1], p[2]);
     constexpr double h = 1e-3;
     for (int i = 0; i < 3; ++i) {
       const auto a = moved(i, -2 * h), b = moved(i, -h), c = moved(i, h), d = moved(i, 2 * h);

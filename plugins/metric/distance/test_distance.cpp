@@ -87,17 +87,6 @@ TEST_CASE("a lift across the surface counts in every distance, a slide along it 
   CHECK(value(result, "distance_rms") == Approx(std::sqrt(sum) / diagonal));
 }
 
-TEST_CASE("the Hausdorff distance looks both ways", "[distance]") {
-  // x is the square; other has its right half folded over onto the left one. Seen from other the square is
-  // nowhere away, seen from the square its right border is half a side away.
-  const Level level = square(10);
-  const Positions& x = level.rest.vertices;
-  Positions folded = x;
-  folded.col(0) = 0.5 - (x.col(0).array() - 0.5).abs();
-  CHECK(value(evaluate(level, x, folded), "distance_hausdorff") == Approx(0.5 / std::sqrt(2.0)));
-  CHECK(value(evaluate(level, folded, x), "distance_hausdorff") == Approx(0.5 / std::sqrt(2.0)));
-}
-
 TEST_CASE("distances are relative to the rest diagonal and ordered", "[distance]") {
   const Level level = square(16);
   Level large = level;

@@ -102,7 +102,6 @@ TEST_CASE("an equilateral rectangle has four corners, on every level", "[refiner
 TEST_CASE("Loop keeps the rectangle of a criss-cross grid but moves its vertices", "[refiner][loop]") {
   const Hierarchy hierarchy = Hierarchy::of(grid({0.7, 1.9}, 6, 8, Diagonals::criss_cross), loop, 3);
   for (const Level& level : hierarchy.levels) {
-    CHECK(level.vertex_area.sum() == Approx(0.7 * 1.9).epsilon(1e-13));
     for (int v = 0; v < level.vertex_count(); ++v) {
       const auto p = level.rest.vertices.row(v);
       const double to_side = std::min({p.x(), 0.7 - p.x(), p.y(), 1.9 - p.y()});
