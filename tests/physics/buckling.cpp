@@ -14,7 +14,6 @@ double load_ratio(double angle) { return std::pow(2 * std::comp_ellint_1(std::si
 Solved column(int cells, double ratio) {
   BeamStrip strip{cells};
   strip.stiffness = 100;
-  strip.membrane_modulus = 1e9;
   const double load =
       ratio * M_PI * M_PI * strip.stiffness * strip.width() / (4 * strip.length * strip.length);
   return solve_yaml(strip.yaml("[neo_hookean, hinge, " + strip.end_load({-load, 0, 0}) + "]",

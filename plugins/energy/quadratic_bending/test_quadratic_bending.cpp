@@ -20,29 +20,20 @@ Check::State folded(double angle) {
   return x;
 }
 
-QuadraticBendingKernel::Rest rest_of(const Check::State& x) {
+const QuadraticBendingKernel::Rest rest = [] {
+  const Check::State x = folded(0);
   const Eigen::Vector3d d[3] = {x.segment<3>(0), x.segment<3>(3), x.segment<3>(6)};
   return QuadraticBendingKernel::rest(d, k);
-}
-
-const QuadraticBendingKernel::Rest rest = rest_of(folded(0));
+}();
 
 }  // namespace
 
-TEST_CASE("quadratic_bending: the matrix needs no projection") {
-  CHECK(Check::projections<double>(folded(2), rest) > -1e-12);
-  CHECK(Check::projections<Pack<native_pack_width>>(folded(2), rest) > -1e-12);
-}
-
-TEST_CASE("quadratic_bending: flat hinges are stress-free, deformed in their plane or not") {
+TEST_CASE("quadratic_bending: a flat hinge that is deformed in its plane is stress-free") {
   Check::State sheared = folded(0);
   for (int i = 0; i < 3; ++i) sheared[3 * i] = 1.3 * sheared[3 * i] + 0.4 * sheared[3 * i + 1];
-  for (const auto& x : {folded(0), sheared}) {
-    const auto r = Check::evaluate(x, rest);
-    CHECK(std::abs(r.value) <= 1e-28 * k);
-    CHECK(r.gradient.norm() <= 1e-13 * k);
-    CHECK(r.hessian.norm() > k);
-  }
+  const auto r = Check::evaluate(sheared, rest);
+  CHECK(std::abs(r.value) <= 1e-28 * k);
+  CHECK(r.gradient.norm() <= 1e-13 * k);
 }
 
 TEST_CASE("quadratic_bending: an isometric fold has the hinge energy with θ replaced by 2 sin θ/2") {
