@@ -71,9 +71,7 @@ Topology make_topology(const Triangles& triangles, int vertex_count, bool is_man
   neighbours = AdjacencyList::of(vertex_count, [&](const auto& add) {
     for (const auto& edge : topology.edges.rowwise()) add(edge[0], edge[1]), add(edge[1], edge[0]);
   });
-  for (int v = 0; v < vertex_count; ++v)
-    std::sort(neighbours.items.begin() + neighbours.start[v],
-              neighbours.items.begin() + neighbours.start[v + 1]);
+  for (int v = 0; v < vertex_count; ++v) std::ranges::sort(neighbours.row(v));
   return topology;
 }
 

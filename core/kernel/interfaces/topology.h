@@ -3,34 +3,41 @@
 #include <Eigen/Core>
 #include <algorithm>
 #include <numeric>
+#include <span>
 #include <vector>
 
 #include "core/kernel/interfaces/triangle_mesh.h"
 
 namespace drape {
 
-/// Rows of neighbours in one array: row i is items[start[i]] … items[start[i + 1] - 1].
-struct AdjacencyList {
+/// Rows of items in one array: row i is items[start[i]] … items[start[i + 1] - 1].
+template <class Item>
+struct Grouped {
   std::vector<int> start;
-  std::vector<int> items;
+  std::vector<Item> items;
 
-  const int* begin(int row) const { return items.data() + start[row]; }
-  const int* end(int row) const { return items.data() + start[row + 1]; }
+  const Item* begin(int row) const { return items.data() + start[row]; }
+  const Item* end(int row) const { return items.data() + start[row + 1]; }
   int size(int row) const { return start[row + 1] - start[row]; }
+  std::span<const Item> row(int i) const { return {begin(i), end(i)}; }
+  std::span<Item> row(int i) { return {items.data() + start[i], items.data() + start[i + 1]}; }
 
   /// Row by row the items that visit(add) gives by add(row, item), in its order, which is the same in two
   /// calls. A counting sort.
   template <class Visit>
-  static AdjacencyList of(int row_count, const Visit& visit) {
-    AdjacencyList list{std::vector<int>(row_count + 1, 0), {}};
-    visit([&](int row, int) { ++list.start[row + 1]; });
+  static Grouped of(int row_count, const Visit& visit) {
+    Grouped list{std::vector<int>(row_count + 1, 0), {}};
+    visit([&](int row, const Item&) { ++list.start[row + 1]; });
     std::partial_sum(list.start.begin(), list.start.end(), list.start.begin());
     list.items.resize(list.start.back());
     std::vector<int> end(list.start.begin(), list.start.end() - 1);
-    visit([&](int row, int item) { list.items[end[row]++] = item; });
+    visit([&](int row, const Item& item) { list.items[end[row]++] = item; });
     return list;
   }
 };
+
+/// Rows of neighbours, by their indices.
+using AdjacencyList = Grouped<int>;
 
 /// One side of a triangle, in the triangle's direction. Half-edge number 3t + k is the side of triangle t
 /// opposite its vertex k.

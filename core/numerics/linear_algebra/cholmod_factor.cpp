@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "core/kernel/interfaces/topology.h"
 #include "core/kernel/threads/parallel.h"
 #include "core/numerics/linear_algebra/cholmod_context.h"
 
@@ -48,8 +49,7 @@ class CholmodFactor : public NumericFactor {
   cholmod_factor* factor_ = nullptr;
   cholmod_dense *solution_ = nullptr, *y_ = nullptr, *e_ = nullptr;  // CHOLMOD keeps them between solves
   std::vector<int> ordering_;
-  std::vector<int> entry_start_;  // of each position's block column
-  std::vector<Entry> entries_;    // rows ascending, so the diagonal block comes first
+  Grouped<Entry> entries_;  // of each position's block column, rows ascending, so the diagonal comes first
 };
 
 void CholmodFactor::set_structure(const BlockPattern& pattern, const std::vector<int>& ordering, Supernodes) {
@@ -63,21 +63,17 @@ void CholmodFactor::set_structure(const BlockPattern& pattern, const std::vector
 
 void CholmodFactor::find_entries(const BlockPattern& pattern) {
   const std::vector<int> position = positions_in(ordering_, pattern.rows());
-  entry_start_.assign(ordering_.size() + 1, 0);
-  for_each_lower_block(pattern, position, [&](int column, int, int, bool) { ++entry_start_[column + 1]; });
-  for (std::size_t p = 0; p < ordering_.size(); ++p) entry_start_[p + 1] += entry_start_[p];
-  entries_.resize(entry_start_.back());
-  std::vector<int> at(entry_start_.begin(), entry_start_.end() - 1);
-  for_each_lower_block(pattern, position, [&](int column, int row, int block, bool transposed) {
-    entries_[at[column]++] = {row, block, transposed};
+  const int columns = static_cast<int>(ordering_.size());
+  entries_ = Grouped<Entry>::of(columns, [&](const auto& add) {
+    for_each_lower_block(pattern, position, [&](int column, int row, int block, bool transposed) {
+      add(column, {row, block, transposed});
+    });
   });
-  for (std::size_t p = 0; p < ordering_.size(); ++p)
-    std::sort(entries_.begin() + entry_start_[p], entries_.begin() + entry_start_[p + 1],
-              [](const Entry& a, const Entry& b) { return a.row < b.row; });
+  for (int p = 0; p < columns; ++p) std::ranges::sort(entries_.row(p), {}, &Entry::row);
 }
 
 void CholmodFactor::allocate_matrix() {
-  const std::size_t size = 3 * ordering_.size(), nonzeros = 9 * entries_.size() - size;
+  const std::size_t size = 3 * ordering_.size(), nonzeros = 9 * entries_.items.size() - size;
   matrix_ = cholmod_allocate_sparse(size, size, nonzeros, 1, 1, -1, CHOLMOD_REAL, &context_.common);
   context_.require(matrix_, "allocating the matrix");
   auto* start = static_cast<int*>(matrix_->p);
@@ -86,8 +82,8 @@ void CholmodFactor::allocate_matrix() {
   for (int p = 0; p < static_cast<int>(ordering_.size()); ++p)
     for (int c = 0; c < 3; ++c) {
       start[3 * p + c] = at;
-      for (int k = entry_start_[p]; k < entry_start_[p + 1]; ++k)
-        for (int r = entries_[k].row == p ? c : 0; r < 3; ++r) rows[at++] = 3 * entries_[k].row + r;
+      for (const Entry& e : entries_.row(p))
+        for (int r = e.row == p ? c : 0; r < 3; ++r) rows[at++] = 3 * e.row + r;
     }
   start[size] = at;
 }
@@ -100,8 +96,7 @@ void CholmodFactor::set_values(const BlockMatrix& matrix, const Eigen::VectorXd&
       for (int c = 0; c < 3; ++c) {
         double* to = values + start[3 * p + c];
         double& diagonal = *to;
-        for (int k = entry_start_[p]; k < entry_start_[p + 1]; ++k) {
-          const Entry& e = entries_[k];
+        for (const Entry& e : entries_.row(p)) {
           const double* b = matrix.block(e.block);
           const int down = e.transposed ? 1 : 3, right = e.transposed ? 3 : 1;
           for (int r = e.row == p ? c : 0; r < 3; ++r) *to++ = b[r * down + c * right];

@@ -13,20 +13,16 @@ void SupernodalFactor<Scalar>::set_structure(const BlockPattern& pattern, const 
   std::vector<int> supernode(ordering.size());
   for (int s = 0; s < tree_.count(); ++s) std::fill_n(supernode.begin() + tree_.first(s), tree_.pivots(s), s);
 
-  entry_start_.assign(tree_.count() + 1, 0);
-  for_each_lower_block(pattern, position,
-                       [&](int column, int, int, bool) { ++entry_start_[supernode[column] + 1]; });
-  for (int s = 0; s < tree_.count(); ++s) entry_start_[s + 1] += entry_start_[s];
-  entries_.resize(entry_start_.back());
-  std::vector<int> at(entry_start_.begin(), entry_start_.end() - 1);
-  for_each_lower_block(pattern, position, [&](int column, int row, int block, bool transposed) {
-    const int s = supernode[column];
-    int local = row - tree_.first(s);
-    if (local >= tree_.pivots(s)) {
-      const int* rows = tree_.rows().begin(s);
-      local = tree_.pivots(s) + static_cast<int>(std::lower_bound(rows, tree_.rows().end(s), row) - rows);
-    }
-    entries_[at[s]++] = {block, local, column - tree_.first(s), transposed};
+  entries_ = Grouped<Entry>::of(tree_.count(), [&](const auto& add) {
+    for_each_lower_block(pattern, position, [&](int column, int row, int block, bool transposed) {
+      const int s = supernode[column];
+      int local = row - tree_.first(s);
+      if (local >= tree_.pivots(s)) {
+        const int* rows = tree_.rows().begin(s);
+        local = tree_.pivots(s) + static_cast<int>(std::lower_bound(rows, tree_.rows().end(s), row) - rows);
+      }
+      add(s, {block, local, column - tree_.first(s), transposed});
+    });
   });
 
   const auto grow = [](Vector& v, std::size_t size) {
@@ -87,8 +83,7 @@ void SupernodalFactor<Scalar>::assemble(int s, const Front<Scalar>& f, const Blo
                                         const Eigen::VectorXd& shift) {
   set_zero(f.panel, Front<Scalar>::panel_size(f.pivots, f.updates));
   set_zero(f.update, Front<Scalar>::update_size(f.updates));
-  for (int k = entry_start_[s]; k < entry_start_[s + 1]; ++k) {
-    const Entry& e = entries_[k];
+  for (const Entry& e : entries_.row(s)) {
     const double* b = matrix.block(e.block);
     const RowPanel<Scalar> row_panel = f.panel_rows(f.row_panel_of(e.row));
     Scalar* to = row_panel.column(3 * e.column) + f.row_of(e.row);

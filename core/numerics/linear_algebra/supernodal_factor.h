@@ -4,6 +4,7 @@
 #include <atomic>
 #include <vector>
 
+#include "core/kernel/interfaces/topology.h"
 #include "core/numerics/linear_algebra/numeric_factor.h"
 #include "core/numerics/linear_algebra/supernodal_front.h"
 #include "core/numerics/linear_algebra/supernodal_tree.h"
@@ -46,8 +47,7 @@ class SupernodalFactor : public NumericFactor {
 
   SupernodalTree tree_;
   std::vector<int> ordering_;
-  std::vector<int> entry_start_;  // of each supernode
-  std::vector<Entry> entries_;
+  Grouped<Entry> entries_;  // of each supernode
   Vector panels_, updates_;
   std::vector<int> vector_start_;  // of each supernode's work space in a solve
   Vector work_;

@@ -5,6 +5,7 @@
 #include <numeric>
 #include <utility>
 
+#include "core/kernel/interfaces/topology.h"
 #include "core/kernel/threads/parallel.h"
 
 namespace drape {
@@ -87,33 +88,25 @@ void MultigridMesh::resize() {
 void MultigridMesh::set_pattern(const std::shared_ptr<const BlockPattern>& given) {
   if (pattern_ == given) return;
   pattern_ = given;
-  const int n = size();
-  std::vector<int> start(static_cast<std::size_t>(n) + 1);
-  const auto visit = [&](const auto& each) {
-    for (int i = 0; i < n; ++i)
-      for (int k = given->row_start[i]; k < given->row_start[i + 1]; ++k) {
-        const int p = position[i], q = position[given->columns[k]];
-        each(p, q, k);
-        if (p != q) each(q, p, ~k);
-      }
-  };
-  visit([&](int row, int, int) { ++start[row + 1]; });
-  std::partial_sum(start.begin(), start.end(), start.begin());
   struct Entry {
     int column, source;
   };
-  std::vector<Entry> entries(static_cast<std::size_t>(start[n]));
-  std::vector<int> next(start.begin(), start.end() - 1), columns(entries.size());
-  visit([&](int row, int column, int block) { entries[next[row]++] = {column, block}; });
-  source_.resize(entries.size());
-  parallel_for(n, 4096, [&](int begin, int end) {
-    for (int i = begin; i < end; ++i)
-      std::sort(entries.begin() + start[i], entries.begin() + start[i + 1],
-                [](const Entry& a, const Entry& b) { return a.column < b.column; });
-    for (int k = start[begin]; k < start[end]; ++k)
-      columns[k] = entries[k].column, source_[k] = entries[k].source;
+  auto entries = Grouped<Entry>::of(size(), [&](const auto& add) {
+    for (int i = 0; i < size(); ++i)
+      for (int k = given->row_start[i]; k < given->row_start[i + 1]; ++k) {
+        const int p = position[i], q = position[given->columns[k]];
+        add(p, {q, k});
+        if (p != q) add(q, {p, ~k});
+      }
   });
-  set_pattern({std::move(start), std::move(columns)});
+  std::vector<int> columns(entries.items.size());
+  source_.resize(entries.items.size());
+  parallel_for(size(), 4096, [&](int begin, int end) {
+    for (int i = begin; i < end; ++i) std::ranges::sort(entries.row(i), {}, &Entry::column);
+    for (int k = entries.start[begin]; k < entries.start[end]; ++k)
+      columns[k] = entries.items[k].column, source_[k] = entries.items[k].source;
+  });
+  set_pattern({std::move(entries.start), std::move(columns)});
 }
 
 void MultigridMesh::set_pattern(ColumnSets pattern) {
