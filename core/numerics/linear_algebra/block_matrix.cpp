@@ -6,7 +6,6 @@
 
 #include "core/kernel/interfaces/topology.h"
 #include "core/kernel/threads/parallel.h"
-#include "core/numerics/linear_algebra/column_sets.h"
 
 namespace drape {
 namespace {
@@ -39,16 +38,13 @@ std::shared_ptr<const BlockPattern> BlockPattern::of(int vertex_count,
           if (v >= 0) add(v, e);
     }));
   }
-  ColumnSets sets = ColumnSets::collect(vertex_count, vertex_count, [&](int i, const auto& add) {
-    add(i);
+  return collect(vertex_count, [&](int i, const auto& add) {
     for (std::size_t s = 0; s < stencils.size(); ++s)
-      for (const int* e = elements[s].begin(i); e != elements[s].end(i); ++e) {
-        const int* row = stencils[s].data() + *e * stencils[s].cols();
-        for (Eigen::Index k = 0; k < stencils[s].cols(); ++k)
-          if (row[k] > i) add(row[k]);
+      for (const int e : elements[s].row(i)) {
+        const int* row = stencils[s].data() + e * stencils[s].cols();
+        std::for_each_n(row, stencils[s].cols(), add);
       }
   });
-  return std::make_shared<const BlockPattern>(std::move(sets.row_start), std::move(sets.columns));
 }
 
 BlockPattern::BlockPattern(std::vector<int> row_start_in, std::vector<int> columns_in)

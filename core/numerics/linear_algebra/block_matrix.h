@@ -2,9 +2,12 @@
 
 #include <Eigen/Core>
 #include <memory>
+#include <span>
+#include <utility>
 #include <vector>
 
 #include "core/kernel/interfaces/block_sink.h"
+#include "core/numerics/linear_algebra/column_sets.h"
 
 namespace drape {
 
@@ -15,11 +18,28 @@ class BlockPattern {
   /// All pairs (i, j) that occur together in a row of any of the stencils.
   static std::shared_ptr<const BlockPattern> of(int vertex_count, const std::vector<Stencils>& stencils);
 
+  /// The diagonal, and all pairs (i, j), i < j, for which find(i, add) calls add(j). It may repeat a j, and
+  /// add smaller ones, which are left out. Rows are found in parallel.
+  template <class Find>
+  static std::shared_ptr<const BlockPattern> collect(int rows, const Find& find) {
+    ColumnSets sets = ColumnSets::collect(rows, rows, [&](int i, const auto& add) {
+      add(i);
+      find(i, [&](int j) {
+        if (j > i) add(j);
+      });
+    });
+    return std::make_shared<const BlockPattern>(std::move(sets.row_start), std::move(sets.columns));
+  }
+
   /// From rows of ascending columns j ≥ i, diagonal first.
   BlockPattern(std::vector<int> row_start, std::vector<int> columns);
 
   int rows() const { return static_cast<int>(row_start.size()) - 1; }
   int blocks() const { return static_cast<int>(columns.size()); }
+  /// The columns of row i.
+  std::span<const int> row(int i) const {
+    return {columns.data() + row_start[i], columns.data() + row_start[i + 1]};
+  }
   /// Index of block (i, j), i ≤ j; -1 if it is not in the pattern.
   int find(int i, int j) const;
 

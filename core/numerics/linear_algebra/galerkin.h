@@ -1,9 +1,9 @@
 #pragma once
 
 #include <memory>
-#include <vector>
 
 #include "core/kernel/interfaces/prolongation_matrix.h"
+#include "core/kernel/interfaces/topology.h"
 #include "core/numerics/linear_algebra/block_matrix.h"
 
 namespace drape {
@@ -20,10 +20,11 @@ class GalerkinProduct {
 
  private:
   std::shared_ptr<const BlockPattern> coarse_;
-  // Of coarse block c: terms start_[c] … start_[c + 1] - 1.
-  std::vector<int> start_;
-  std::vector<int> source_;  // fine block, bitwise complemented if transposed
-  std::vector<double> weight_;
+  struct Term {
+    int source;  // fine block, bitwise complemented if transposed
+    double weight;
+  };
+  Grouped<Term> terms_;  // of each coarse block
 };
 
 }  // namespace drape

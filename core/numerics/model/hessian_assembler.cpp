@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "core/kernel/interfaces/topology.h"
 #include "core/kernel/threads/parallel.h"
 
 namespace drape {
@@ -59,19 +60,13 @@ std::vector<std::pair<int, int>> padded_pairs(const std::vector<std::pair<int, i
 
 std::shared_ptr<const BlockPattern> with_blocks(const BlockPattern& base,
                                                 const std::vector<std::pair<int, int>>& extra) {
-  std::vector<int> row_start = {0}, columns;
-  columns.reserve(base.columns.size() + extra.size());
-  std::size_t next = 0;
-  for (int i = 0; i < base.rows(); ++i) {
-    const auto first = static_cast<std::ptrdiff_t>(columns.size());
-    columns.insert(columns.end(), base.columns.begin() + base.row_start[i],
-                   base.columns.begin() + base.row_start[i + 1]);
-    const auto extra_begin = static_cast<std::ptrdiff_t>(columns.size());
-    for (; next < extra.size() && extra[next].first == i; ++next) columns.push_back(extra[next].second);
-    std::inplace_merge(columns.begin() + first, columns.begin() + extra_begin, columns.end());
-    row_start.push_back(static_cast<int>(columns.size()));
-  }
-  return std::make_shared<const BlockPattern>(std::move(row_start), std::move(columns));
+  const AdjacencyList more = AdjacencyList::of(base.rows(), [&](const auto& add) {
+    for (const auto& [i, j] : extra) add(i, j);
+  });
+  return BlockPattern::collect(base.rows(), [&](int i, const auto& add) {
+    for (const int j : base.row(i)) add(j);
+    for (const int j : more.row(i)) add(j);
+  });
 }
 
 }  // namespace

@@ -1,8 +1,5 @@
 #include "plugins/solver/pcs/proxy_objective.h"
 
-#include <algorithm>
-#include <utility>
-
 #include "core/numerics/model/lone_pins.h"
 
 namespace drape {
@@ -14,24 +11,17 @@ std::vector<int> slots_of(const BlockPattern& part, const BlockPattern& whole) {
   std::vector<int> result;
   result.reserve(part.blocks());
   for (int i = 0; i < part.rows(); ++i)
-    for (int k = part.row_start[i]; k < part.row_start[i + 1]; ++k)
-      result.push_back(whole.find(i, part.columns[k]));
+    for (const int j : part.row(i)) result.push_back(whole.find(i, j));
   return result;
 }
 
 /// The pattern of a sum of matrices, blocks ascending; a single pattern is returned itself.
 std::shared_ptr<const BlockPattern> united(const std::vector<std::shared_ptr<const BlockPattern>>& patterns) {
   if (patterns.size() == 1) return patterns.front();
-  std::vector<int> row_start(1, 0), columns;
-  for (int i = 0; i < patterns.front()->rows(); ++i) {
-    std::vector<int> row;
+  return BlockPattern::collect(patterns.front()->rows(), [&](int i, const auto& add) {
     for (const auto& p : patterns)
-      row.insert(row.end(), p->columns.begin() + p->row_start[i], p->columns.begin() + p->row_start[i + 1]);
-    std::sort(row.begin(), row.end());
-    columns.insert(columns.end(), row.begin(), std::unique(row.begin(), row.end()));
-    row_start.push_back(static_cast<int>(columns.size()));
-  }
-  return std::make_shared<const BlockPattern>(std::move(row_start), std::move(columns));
+      for (const int j : p->row(i)) add(j);
+  });
 }
 
 void add_blocks(const BlockMatrix& part, const std::vector<int>& slots, double factor, BlockMatrix& whole) {
