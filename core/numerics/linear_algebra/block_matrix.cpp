@@ -4,7 +4,6 @@
 #include <stdexcept>
 #include <string>
 
-#include "core/kernel/interfaces/topology.h"
 #include "core/kernel/threads/parallel.h"
 
 namespace drape {
@@ -59,6 +58,16 @@ BlockPattern::BlockPattern(std::vector<int> row_start_in, std::vector<int> colum
       throw std::runtime_error("block pattern: row " + std::to_string(i) +
                                " must have its diagonal first, then ascending columns");
   }
+}
+
+AdjacencyList BlockPattern::neighbours() const {
+  return AdjacencyList::of(rows(), [&](const auto& add) {
+    for (int i = 0; i < rows(); ++i)
+      for (const int j : row(i)) {
+        add(i, j);
+        if (j != i) add(j, i);
+      }
+  });
 }
 
 int BlockPattern::find(int i, int j) const {

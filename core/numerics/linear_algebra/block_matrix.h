@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/kernel/interfaces/block_sink.h"
+#include "core/kernel/interfaces/topology.h"
 #include "core/numerics/linear_algebra/column_sets.h"
 
 namespace drape {
@@ -40,6 +41,8 @@ class BlockPattern {
   std::span<const int> row(int i) const {
     return {columns.data() + row_start[i], columns.data() + row_start[i + 1]};
   }
+  /// Of each row i all j with a block (i, j) or (j, i), i itself among them.
+  AdjacencyList neighbours() const;
   /// Index of block (i, j), i ≤ j; -1 if it is not in the pattern.
   int find(int i, int j) const;
 

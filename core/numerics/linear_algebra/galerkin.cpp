@@ -7,10 +7,7 @@ namespace drape {
 GalerkinProduct::GalerkinProduct(const BlockPattern& fine, const ProlongationMatrix& weights) {
   using Weight = ProlongationMatrix::InnerIterator;
   const ProlongationMatrix children = weights.transpose();
-  const AdjacencyList neighbours = AdjacencyList::of(fine.rows(), [&](const auto& add) {
-    for (int i = 0; i < fine.rows(); ++i)
-      for (const int j : fine.row(i)) add(i, j), add(j, i);
-  });
+  const AdjacencyList neighbours = fine.neighbours();
   coarse_ = BlockPattern::collect(static_cast<int>(weights.cols()), [&](int a, const auto& add) {
     for (Weight child(children, a); child; ++child)
       for (const int j : neighbours.row(static_cast<int>(child.col())))

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-#include "core/kernel/interfaces/topology.h"
 #include "core/kernel/threads/parallel.h"
 
 namespace drape {
@@ -29,28 +28,16 @@ std::vector<std::pair<int, int>> missing_in(const BlockPattern& pattern,
   return missing;
 }
 
-std::vector<std::vector<int>> neighbours_in(const BlockPattern& pattern) {
-  std::vector<std::vector<int>> neighbours(pattern.rows());
-  for (int i = 0; i < pattern.rows(); ++i)
-    for (int b = pattern.row_start[i]; b < pattern.row_start[i + 1]; ++b) {
-      const int j = pattern.columns[b];
-      neighbours[i].push_back(j);
-      if (j != i) neighbours[j].push_back(i);
-    }
-  return neighbours;
-}
-
 /// Pads the pairs: adds those of each end with the neighbours of the other. Leaves out blocks of `base`.
 std::vector<std::pair<int, int>> padded_pairs(const std::vector<std::pair<int, int>>& pairs,
-                                              const std::vector<std::vector<int>>& neighbours,
-                                              const BlockPattern& base) {
+                                              const AdjacencyList& neighbours, const BlockPattern& base) {
   std::vector<std::pair<int, int>> all;
   const auto add = [&](int i, int j) {
     if (i != j) all.emplace_back(std::min(i, j), std::max(i, j));
   };
   for (const auto& [i, j] : pairs) {
-    for (int k : neighbours[j]) add(i, k);
-    for (int k : neighbours[i]) add(k, j);
+    for (const int k : neighbours.row(j)) add(i, k);
+    for (const int k : neighbours.row(i)) add(k, j);
   }
   std::sort(all.begin(), all.end());
   all.erase(std::unique(all.begin(), all.end()), all.end());
@@ -91,7 +78,7 @@ void HessianAssembler::reset(const std::shared_ptr<const BlockPattern>& base) {
   base_slot_.clear();
   extra_ = {};
   persistent_slots_.clear();
-  neighbours_.clear();
+  neighbours_ = {};
 }
 
 const std::shared_ptr<const BlockPattern>& HessianAssembler::restore(
@@ -127,7 +114,7 @@ void HessianAssembler::grow_pattern(const std::shared_ptr<const BlockPattern>& b
       retained.push_back(extra[e]);
       retained_idle.push_back(idle[e]);
     }
-  if (neighbours_.empty()) neighbours_ = neighbours_in(*base_);
+  if (neighbours_.start.empty()) neighbours_ = base_->neighbours();
   const std::vector<std::pair<int, int>> padded = padded_pairs(needed, neighbours_, *base_);
   std::vector<std::pair<int, int>> all;
   std::set_union(retained.begin(), retained.end(), padded.begin(), padded.end(), std::back_inserter(all));

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "core/kernel/interfaces/energy.h"
+#include "core/kernel/interfaces/topology.h"
 #include "core/numerics/linear_algebra/block_matrix.h"
 
 namespace drape {
@@ -49,7 +50,7 @@ class HessianAssembler {
   std::vector<std::unique_ptr<BlockSlots>> persistent_slots_;
   BlockMatrix matrix_;
   ExtraPattern extra_;
-  std::vector<std::vector<int>> neighbours_;  // of each vertex in base_, itself included
+  AdjacencyList neighbours_;  // in base_; without rows until they are needed
 };
 
 }  // namespace drape
