@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <type_traits>
 
 #ifdef __SSE2__
 #include <immintrin.h>
@@ -87,20 +88,8 @@ struct Pack {
 };
 
 template <int W>
-Pack<W> select(PackMask<W> m, Pack<W> yes, Pack<W> no) {
+Pack<W> select(PackMask<W> m, std::type_identity_t<Pack<W>> yes, std::type_identity_t<Pack<W>> no) {
   return Pack<W>::of(m.v ? yes.v : no.v);
-}
-template <int W>
-Pack<W> select(PackMask<W> m, Pack<W> yes, double no) {
-  return select(m, yes, Pack<W>(no));
-}
-template <int W>
-Pack<W> select(PackMask<W> m, double yes, Pack<W> no) {
-  return select(m, Pack<W>(yes), no);
-}
-template <int W>
-Pack<W> select(PackMask<W> m, double yes, double no) {
-  return select(m, Pack<W>(yes), Pack<W>(no));
 }
 inline double select(bool m, double yes, double no) { return m ? yes : no; }
 
