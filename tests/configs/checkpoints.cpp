@@ -564,8 +564,8 @@ TEST_CASE("A checkpoint whose values do not fit its experiment is refused before
           [&](auto& c) { under_way(c).dirichlet.unsatisfied = {1 << 20}; });
   refused("the settings of the step",
           [&](auto& c) { under_way(c).step.controller.step_size = std::nan(""); });
-  refused("the settings of the step", [&](auto& c) { under_way(c).step.factor.modification.blend = -1; });
-  refused("the settings of the step", [&](auto& c) { under_way(c).step.factor.modification.blend = 7; });
+  refused("the settings of the step", [&](auto& c) { under_way(c).step.factor.blend = -1; });
+  refused("the settings of the step", [&](auto& c) { under_way(c).step.factor.blend = 7; });
   refused("the response to an increment",
           [&](auto& c) { under_way(c).load_stepper.response.predicted = Positions::Zero(1, 3); });
   refused("the contacts: ", [&](auto& c) { under_way(c).contacts.reference.resize(0, 3); });

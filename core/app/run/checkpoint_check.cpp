@@ -94,10 +94,9 @@ class Check {
     result(s.so_far);
     // The load under way may pin more vertices than the first: DirichletEnforcer checks against its number.
     for (const int k : s.dirichlet.unsatisfied) require(k >= 0 && k < n, "a Dirichlet vertex out of range");
-    const int blend = s.step.factor.modification.blend;
-    require(s.step.controller.step_size > 0 && s.step.implicit_step.max_iterations > 0 &&
-                s.step.factor.age >= 0 && s.step.factor.fallback_updates >= 0 && blend >= 0 &&
-                blend < HessianModification::blend_count,
+    const int blend = s.step.factor.blend;
+    require(s.step.controller.step_size > 0 && s.step.max_iterations > 0 && s.step.factor.age >= 0 &&
+                s.step.factor.fallback_updates >= 0 && blend >= 0 && blend < HessianModification::blend_count,
             "the settings of the step");
     for (const Positions* x : {&s.load_stepper.response.from, &s.load_stepper.response.predicted})
       if (x->rows() > 0) positions(*x, level, "the response to an increment");

@@ -141,7 +141,7 @@ void FactorCache::end_iteration(double step_length) {
 
 FactorCache::State FactorCache::state() const {
   State s;
-  s.modification = modification_.state();
+  s.blend = modification_.blend();
   s.pattern = iterate_.objective().pattern_state();
   s.analysis = cholesky_.analysis();
   s.age = age_;
@@ -156,7 +156,7 @@ FactorCache::State FactorCache::state() const {
 }
 
 void FactorCache::restore(const State& s) {
-  modification_.restore(s.modification);
+  modification_.set_blend(s.blend);
   age_ = s.age;
   fallback_ = s.fallback;
   fallback_updates_ = s.fallback_updates;

@@ -22,7 +22,7 @@ namespace drape {
 class FactorCache {
  public:
   struct State {
-    HessianModification::State modification;
+    int blend = HessianModification::blend_count - 1;  ///< HessianModification::blend
     Objective::PatternState pattern;
     BlockCholesky::Analysis analysis;
     int age = 0;                                  ///< iterations since the Hessian was updated

@@ -57,13 +57,13 @@ std::string HessianModification::factorise(const Assemble& assemble, const Facto
 const BlockMatrix* HessianModification::blend_until_definite(const Assemble& assemble,
                                                              const Factorise& factorise,
                                                              bool after_full_step) {
-  int& blend = s_.blend;
   const BlockMatrix* matrix = nullptr;
-  for (blend = after_full_step ? std::max(blend - 1, 0) : blend; blend < blend_count; ++blend) {
-    matrix = &assemble({projection_, blends[blend]});
+  if (after_full_step) blend_ = std::max(blend_ - 1, 0);
+  for (; blend_ < blend_count; ++blend_) {
+    matrix = &assemble({projection_, blends[blend_]});
     if (factorise(*matrix, 0)) return nullptr;
   }
-  blend = blend_count - 1;
+  blend_ = blend_count - 1;
   return matrix;
 }
 

@@ -25,13 +25,11 @@ class HessianModification {
   static constexpr double blends[] = {0, 0.05, 0.1, 0.2, 0.4, 0.7, 1};
   static constexpr int blend_count = std::size(blends);
 
-  struct State {
-    int blend = blend_count - 1;  ///< index of the fraction that worked last
-  };
-  State state() const { return s_; }
-  void restore(const State& state) { s_ = state; }
-
   explicit HessianModification(const NewtonParameters& parameters);
+
+  /// Index of the fraction that worked last.
+  int blend() const { return blend_; }
+  void set_blend(int blend) { blend_ = blend; }
 
   /// Returns the Hessian [N/m], with its element Hessians projected as asked. It stays valid until the next
   /// call.
@@ -50,7 +48,7 @@ class HessianModification {
   const BlockMatrix* blend_until_definite(const Assemble& assemble, const Factorise& factorise,
                                           bool after_full_step);
 
-  State s_;
+  int blend_ = blend_count - 1;
   Projection::Kind projection_;
   bool adaptive_;
   double first_shift_;  // [1/s²]

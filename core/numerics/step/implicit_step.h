@@ -8,18 +8,11 @@ namespace drape {
 /// static form has no inertia.
 class ImplicitStep {
  public:
-  struct State {
-    int max_iterations = 1;  ///< of the current step
-  };
-  State state() const { return s_; }
-  /// Restores a step that has just begun at x.
-  void restore(const State& state, const Positions& x) { begin(x, state.max_iterations); }
-
   void begin(const Positions& x, int max_iterations) {
     origin_ = x;
-    s_.max_iterations = max_iterations;
+    max_iterations_ = max_iterations;
   }
-  int max_iterations() const { return s_.max_iterations; }
+  int max_iterations() const { return max_iterations_; }
 
   /// Evaluates the step at the iterate; `inverse_h2` is 1/h² [1/s²], 0 for the static form.
   void evaluate(const Iterate& iterate, double inverse_h2);
@@ -35,7 +28,7 @@ class ImplicitStep {
   double gradient_norm_at(const Positions& x, const Positions& gradient, const Iterate& iterate) const;
 
  private:
-  State s_;
+  int max_iterations_ = 1;
   Positions origin_;  // x^t
   Positions gradient_;
   double inertia_ = 0;

@@ -21,7 +21,7 @@ bool LineSearch::search(Iterate& iterate, const ImplicitStep& step, const Positi
   PhaseTimer t(iterate.result().seconds_by_phase, "gradient");
   const Eigen::VectorXd& masses = iterate.model().masses();
   const double norm_before = free_norm(step.gradient(), iterate.fixed());
-  double& alpha = s_.step_length;
+  double& alpha = step_length_;
   for (alpha = limit.fraction; alpha >= min_step_length; alpha *= 0.5) {
     trial_ = iterate.x() + alpha * direction;
     const double energy = iterate.objective().gradient(trial_, trial_gradient_);

@@ -12,26 +12,19 @@ class LineSearch {
   /// The shortest step that is tried, as a fraction of the direction.
   static constexpr double min_step_length = 1e-6;
 
-  struct State {
-    double step_length = 1;  ///< α of the last search
-  };
-  State state() const { return s_; }
-  void restore(const State& state) { s_ = state; }
-
   /// Moves the iterate, at which `step` was evaluated, along the direction p (n×3) [m]. Returns false, with
   /// the iterate as it was, if p is no descent direction or no step length is accepted.
   bool search(Iterate& iterate, const ImplicitStep& step, const Positions& direction);
 
   /// α of the last search that had a descent direction, in [0, 1].
-  double step_length() const { return s_.step_length; }
+  double step_length() const { return step_length_; }
+  /// Restores α from a checkpoint, or sets that of a step which no search has moved.
+  void set_step_length(double step_length) { step_length_ = step_length; }
   /// Slope of the step's energy along the last direction [J].
   double slope() const { return slope_; }
-  /// Counts a step that round-off keeps from moving as a full one.
-  void accept_zero_step() { s_.step_length = 1; }
 
  private:
-  State s_;
-  double slope_ = 0;
+  double step_length_ = 1, slope_ = 0;
   Positions trial_, trial_gradient_;
 };
 

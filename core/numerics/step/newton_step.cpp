@@ -32,9 +32,9 @@ NewtonStep::NewtonStep(Iterate& iterate, EquilibriumCheck& check, const NewtonPa
       factor_(iterate, parameters, hierarchy) {}
 
 void NewtonStep::restore(const State& s) {
-  step_.restore(s.implicit_step, iterate_.x());
+  step_.begin(iterate_.x(), s.max_iterations);
   controller_.restore(s.controller);
-  line_search_.restore(s.line_search);
+  line_search_.set_step_length(s.step_length);
   factor_.restore(s.factor);
 }
 
@@ -108,7 +108,7 @@ bool NewtonStep::iterate() {
     direction_ *= -1;
     if (line_search_.search(iterate_, step_, direction_)) break;
     if (is_solved_to(round_off_fraction)) {
-      line_search_.accept_zero_step();
+      line_search_.set_step_length(1);  // a step that round-off keeps from moving counts as a full one
       break;
     }
     // A stale factor may give no descent: update the Hessian first. If that does not help, the step is too

@@ -18,12 +18,14 @@ class NewtonStep {
  public:
   /// At the beginning of a step.
   struct State {
-    ImplicitStep::State implicit_step;
+    int max_iterations = 1;  ///< of the step
     StepController::State controller;
-    LineSearch::State line_search;
+    double step_length = 1;  ///< α of the last line search
     FactorCache::State factor;
   };
-  State state() const { return {step_.state(), controller_.state(), line_search_.state(), factor_.state()}; }
+  State state() const {
+    return {step_.max_iterations(), controller_.state(), line_search_.step_length(), factor_.state()};
+  }
   /// The iterate must have been evaluated.
   void restore(const State& state);
 

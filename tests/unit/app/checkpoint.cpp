@@ -40,9 +40,9 @@ Checkpoint full() {
   s.so_far.force_residual = std::nan("");
   s.check = {{1, 2, 3}, {7, 8, 9}, {3, -0.5, 1e-6}, {6, {1, 2, 3, 4, 5}, {6, 7, 8, 9, 10}, {1, 0, 2}}};
   s.iterate = {2, "ball"};
-  s.step.implicit_step.max_iterations = 30;
+  s.step.max_iterations = 30;
   s.step.controller = {0.25, -4, 3e3, true, 0.5};
-  s.step.line_search.step_length = 0.125;
+  s.step.step_length = 0.125;
   s.switched_to_plain = true;
   s.dirichlet = {{3}, 1e4, 0.5, 2, false, true, "post"};
   s.load_stepper = {{4, 5, 6}, {Positions::Random(9, 3), Positions::Random(9, 3), 0.5}, 2};
@@ -55,7 +55,7 @@ Checkpoint full() {
                 {14.7, 240},
                 {0.25, {{{{{1, 2, 3, 4, 0}, {1, 2, -1, -1}, {1, 0, 0, 0}, {0, 0, 1}, 0.75, {3}}}}, {}}}};
   FactorCache::State& factor = s.step.factor;
-  factor.modification.blend = 3;
+  factor.blend = 3;
   factor.pattern.extra = {{{0, 4}, {2, 7}}, {0, 3}};
   factor.pattern.smooth_only = false;
   factor.analysis = {{0, 1, 0}, {2, 0}, {0, 2}, 123, 4};
@@ -114,10 +114,11 @@ TEST_CASE("A checkpoint is read as it was written") {
   const NewtonState& s = c.state.under_way.value();
   CHECK(std::isnan(s.so_far.force_residual));
   CHECK(s.iterate.limited_by == "ball");
-  CHECK(s.step.implicit_step.max_iterations == 30);
+  CHECK(s.step.max_iterations == 30);
   CHECK(s.step.controller.stall_count == -4);
   CHECK(s.step.controller.backed_off);
-  CHECK(s.step.line_search.step_length == 0.125);
+  CHECK(s.step.step_length == 0.125);
+  CHECK(s.step.factor.blend == 3);
   CHECK(s.step.factor.pattern.extra.blocks.at(1) == std::pair(2, 7));
   CHECK(s.step.factor.solver == LinearSolver::supernodal);
   CHECK(s.step.factor.values == std::vector<double>{1, 2, 3});

@@ -105,10 +105,10 @@ TEST_CASE("Where single precision does not suffice, factors are in double precis
 TEST_CASE("A lower blend whose factor does not serve in single precision is refused as indefinite") {
   CacheSolve c(energy_of(StiffPairs()), {});
   FactorCache::State state = c.cache.state();
-  state.modification.blend = 0;
+  state.blend = 0;
   c.cache.restore(state);
   CHECK(c.factorisations() == HessianModification::blend_count + 1);
-  CHECK(c.cache.state().modification.blend == HessianModification::blend_count - 1);
+  CHECK(c.cache.state().blend == HessianModification::blend_count - 1);
 }
 
 TEST_CASE("The static form has factors in double precision, and so have matrices of moved pins") {

@@ -65,7 +65,7 @@ TEST_CASE("The adaptive blend keeps the fraction that worked, and tries a smalle
   CHECK(r.shifts == std::vector<double>{0, 0, 0});
 
   HessianModification restored{NewtonParameters()};
-  restored.restore(modification.state());
+  restored.set_blend(modification.blend());
   CHECK(r.factorise(restored) == "");
   CHECK(r.blends() == std::vector<double>{0.7});
 }
@@ -87,7 +87,7 @@ TEST_CASE("Where no blend works, multiples of the masses are added") {
       CHECK(r.assembled.size() == 1);
       CHECK(r.assembled.back().kind == kind);
       CHECK(r.assembled.back().blend == 1);
-      CHECK(modification.state().blend == HessianModification::blend_count - 1);
+      CHECK(modification.blend() == HessianModification::blend_count - 1);
     }
 }
 

@@ -87,8 +87,6 @@ TEST_CASE("No step is taken uphill, or where no step length decreases the energy
   CHECK(wrong.line_search.step_length() < LineSearch::min_step_length);
   CHECK(wrong.problem.iterate.x() == x);
   CHECK(wrong.problem.iterate.energy() == energy);
-  wrong.line_search.accept_zero_step();
-  CHECK(wrong.line_search.state().step_length == 1);
 }
 
 TEST_CASE("The search starts from the largest step that a limit allows, and names the limit") {
