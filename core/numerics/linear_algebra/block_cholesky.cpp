@@ -111,60 +111,60 @@ void BlockCholesky::use(LinearSolver solver) {
   factor_ = make_factor(solver);
   solver_ = solver;
   has_factor_ = false;
-  if (pattern_ && !ordering_.empty()) set_structure();
+  if (pattern_ && !analysis_.ordering.empty()) set_structure();
 }
 
 void BlockCholesky::analyse(std::shared_ptr<const BlockPattern> pattern, const std::vector<char>& fixed) {
-  if (pattern == pattern_ && fixed == fixed_) return;
+  if (pattern == pattern_ && fixed == analysis_.fixed) return;
   std::vector<int> ordering;
-  if (fixed == fixed_) ordering.swap(ordering_);
+  if (fixed == analysis_.fixed) ordering.swap(analysis_.ordering);
   pattern_ = std::move(pattern);
-  fixed_ = fixed;
-  ++analyses_;
-  order_and_analyse(std::move(ordering), max_flops_growth * ordering_flops_);
+  analysis_.fixed = fixed;
+  ++analysis_.count;
+  order_and_analyse(std::move(ordering), max_flops_growth * analysis_.ordering_flops);
 }
 
 void BlockCholesky::restore(std::shared_ptr<const BlockPattern> pattern, Analysis analysis) {
-  pattern_ = analysis.fixed.empty() ? nullptr : std::move(pattern);
-  fixed_ = std::move(analysis.fixed);
-  analyses_ = analysis.count;
-  ordering_ = std::move(analysis.ordering);
+  analysis_ = std::move(analysis);
+  pattern_ = analysis_.fixed.empty() ? nullptr : std::move(pattern);
   has_factor_ = false;
-  if (pattern_)
-    order_and_analyse(std::move(analysis.reused_ordering), std::numeric_limits<double>::infinity());
-  ordering_flops_ = analysis.ordering_flops;
+  if (!pattern_) return;
+  const double ordering_flops = analysis_.ordering_flops;
+  order_and_analyse(std::move(analysis_.reused_ordering), std::numeric_limits<double>::infinity());
+  analysis_.ordering_flops = ordering_flops;
 }
 
 void BlockCholesky::forget() {
-  const int analyses = analyses_;
+  const int analyses = analysis_.count;
   *this = BlockCholesky(solver_);
-  analyses_ = analyses;
+  analysis_.count = analyses;
 }
 
 void BlockCholesky::order_and_analyse(std::vector<int> ordering, double max_flops) {
   has_factor_ = false;
   std::vector<int> free;
   for (int v = 0; v < pattern_->rows(); ++v)
-    if (!fixed_[v]) free.push_back(v);
+    if (!analysis_.fixed[v]) free.push_back(v);
   flops_ = entries_ = 0;
   if (free.empty()) {
-    ordering_.clear();
-    reused_ordering_.clear();
+    analysis_.ordering.clear();
+    analysis_.reused_ordering.clear();
     return;
   }
 
   SymbolicAnalysis c;
   make_graph(*pattern_, free, c);
-  reused_ordering_ = std::move(ordering);
-  if (!reused_ordering_.empty()) c.analyse(indices_in(free, reused_ordering_, pattern_->rows()));
-  if (reused_ordering_.empty() || c.common.fl > max_flops) {
-    reused_ordering_.clear();
+  analysis_.reused_ordering = std::move(ordering);
+  if (!analysis_.reused_ordering.empty())
+    c.analyse(indices_in(free, analysis_.reused_ordering, pattern_->rows()));
+  if (analysis_.reused_ordering.empty() || c.common.fl > max_flops) {
+    analysis_.reused_ordering.clear();
     c.analyse({});
-    ordering_flops_ = c.common.fl;
+    analysis_.ordering_flops = c.common.fl;
   }
   const auto* permutation = static_cast<const int*>(c.factor->Perm);
-  ordering_.clear();
-  for (std::size_t p = 0; p < free.size(); ++p) ordering_.push_back(free[permutation[p]]);
+  analysis_.ordering.clear();
+  for (std::size_t p = 0; p < free.size(); ++p) analysis_.ordering.push_back(free[permutation[p]]);
   for (std::size_t p = 0; p < free.size(); ++p)
     for (int k = 0; k < 3; ++k) {
       const double column = 3.0 * static_cast<const int*>(c.factor->ColCount)[p] - k;
@@ -177,7 +177,7 @@ void BlockCholesky::order_and_analyse(std::vector<int> ordering, double max_flop
 
 void BlockCholesky::set_structure() {
   try {
-    factor_->set_structure(*pattern_, ordering_, supernodes_);
+    factor_->set_structure(*pattern_, analysis_.ordering, supernodes_);
   } catch (const std::bad_alloc&) {
     const double bytes = entries_ * (solver_ == LinearSolver::mixed ? 4 : 8);
     throw std::runtime_error("sparse Cholesky: no memory for a factor of " + three_digits(bytes * 1e-9) +
@@ -187,11 +187,11 @@ void BlockCholesky::set_structure() {
 
 bool BlockCholesky::factorise(const BlockMatrix& matrix, const Eigen::VectorXd& shift) {
   if (solver_ == LinearSolver::mixed) matrix_ = &matrix, shift_ = shift;
-  return has_factor_ = ordering_.empty() || factor_->factorise(matrix, shift);
+  return has_factor_ = analysis_.ordering.empty() || factor_->factorise(matrix, shift);
 }
 
 bool BlockCholesky::solve(const Positions& right_hand_side, Positions& solution) {
-  if (ordering_.empty()) {
+  if (analysis_.ordering.empty()) {
     solution.setZero(right_hand_side.rows(), 3);
     return true;
   }
@@ -201,7 +201,7 @@ bool BlockCholesky::solve(const Positions& right_hand_side, Positions& solution)
     return true;
   }
   const auto end = gradients_.solve(
-      *matrix_, shift_, fixed_, right_hand_side,
+      *matrix_, shift_, analysis_.fixed, right_hand_side,
       [&](const Positions& r, Positions& z) {
         // To numbers of the order of 1, so that none is lost in single precision.
         const double scale = r.cwiseAbs().maxCoeff();
@@ -215,11 +215,11 @@ bool BlockCholesky::solve(const Positions& right_hand_side, Positions& solution)
 void BlockCholesky::apply_factor(const Positions& right_hand_side, Positions& solution) {
   solution.setZero(right_hand_side.rows(), 3);
   x_.resize(unknowns());
-  for (std::size_t p = 0; p < ordering_.size(); ++p)
-    for (int c = 0; c < 3; ++c) x_[3 * p + c] = right_hand_side(ordering_[p], c);
+  for (std::size_t p = 0; p < analysis_.ordering.size(); ++p)
+    for (int c = 0; c < 3; ++c) x_[3 * p + c] = right_hand_side(analysis_.ordering[p], c);
   factor_->solve(x_);
-  for (std::size_t p = 0; p < ordering_.size(); ++p)
-    for (int c = 0; c < 3; ++c) solution(ordering_[p], c) = x_[3 * p + c];
+  for (std::size_t p = 0; p < analysis_.ordering.size(); ++p)
+    for (int c = 0; c < 3; ++c) solution(analysis_.ordering[p], c) = x_[3 * p + c];
 }
 
 }  // namespace drape

@@ -32,12 +32,11 @@ class BlockCholesky {
 
   /// Input and result of a symbolic analysis. With the same pattern it gives the same layout.
   struct Analysis {
-    std::vector<char> fixed;
-    std::vector<int>
-        reused_ordering;        ///< ordering of the free vertices from before; empty if it was computed
-    std::vector<int> ordering;  ///< the resulting one
-    double ordering_flops = 0;  ///< cost of the factorisation when the ordering was computed
-    int count = 0;              ///< analyses so far, including this one
+    std::vector<char> fixed;           ///< one flag a vertex; empty before the first
+    std::vector<int> reused_ordering;  ///< of the free vertices from before; empty if it was computed
+    std::vector<int> ordering;         ///< the resulting one: the vertex at each position
+    double ordering_flops = 0;         ///< CHOLMOD's cost of a factorisation when the ordering was computed
+    int count = 0;                     ///< analyses so far, including this one
   };
 
   /// Orders and analyses; does nothing when called again with the same pattern and flags.
@@ -52,7 +51,7 @@ class BlockCholesky {
   /// with `mixed` only, if conjugate gradients find that the matrix is not definite or do not converge.
   bool solve(const Positions& right_hand_side, Positions& solution);
 
-  Analysis analysis() const { return {fixed_, reused_ordering_, ordering_, ordering_flops_, analyses_}; }
+  const Analysis& analysis() const { return analysis_; }
   /// Restores the layout that this analysis of the pattern gave, without a factor. If the pattern is null,
   /// since it was invalidated, restores only the ordering for the next analysis; if the analysis was
   /// forgotten, only the count.
@@ -61,16 +60,16 @@ class BlockCholesky {
   /// Drops the factor and the ordering: the next analysis does not depend on the ones before.
   void forget();
   /// Whether there is an ordering that the next analysis may reuse.
-  bool is_analysed() const { return !fixed_.empty(); }
+  bool is_analysed() const { return !analysis_.fixed.empty(); }
 
   bool has_factor() const { return has_factor_; }
-  int unknowns() const { return 3 * static_cast<int>(ordering_.size()); }
+  int unknowns() const { return 3 * static_cast<int>(analysis_.ordering.size()); }
   /// Floating-point operations of one numeric factorisation, and entries of the factor; both without the
   /// explicit zeros of supernodes.
   double flops() const { return flops_; }
   double factor_entries() const { return entries_; }
   /// Number of symbolic analyses.
-  int analyses() const { return analyses_; }
+  int analyses() const { return analysis_.count; }
 
  private:
   /// Uses `ordering` if the factorisation then costs at most `max_flops`, else computes one.
@@ -80,9 +79,7 @@ class BlockCholesky {
 
   LinearSolver solver_;
   std::shared_ptr<const BlockPattern> pattern_;
-  std::vector<char> fixed_;
-  std::vector<int> ordering_;         // ordering_[p] is the vertex at position p
-  std::vector<int> reused_ordering_;  // input of the analysis; empty if ordering_ was computed
+  Analysis analysis_;
   Supernodes supernodes_;
   std::unique_ptr<NumericFactor> factor_;
   Eigen::VectorXd x_;
@@ -91,9 +88,7 @@ class BlockCholesky {
   Eigen::VectorXd shift_;
   ConjugateGradients gradients_;
   double flops_ = 0, entries_ = 0;
-  double ordering_flops_ = 0;  // CHOLMOD's count when the ordering was computed
   bool has_factor_ = false;
-  int analyses_ = 0;
 };
 
 }  // namespace drape
