@@ -181,7 +181,6 @@ void register_class(const std::string& name, const py::object& type,
                                           name + ": the docstring", "text that UTF-8 can hold");
   entry->summary = entry->summary.substr(0, entry->summary.find('\n'));
   entry->schema = schema_of_class(type, name);
-  entry->make_parameters = entry->schema.fresh;
   entry->make = [type = share(type), schema = entry->schema, make](const void* values, const void*) {
     return with_python([&]() -> std::shared_ptr<void> {
       return make(instance_of(*type, schema, *static_cast<const Values*>(values)));

@@ -4,15 +4,10 @@
 
 namespace drape {
 
-/// The registered entry that a node names: the node is a name, or a map with the name as `type`. Null, with
-/// an error appended, if there is none.
-const RegistryEntry* find_plugin(const Registry& registry, const std::string& kind, const ConfigNode& node,
-                                 ConfigErrors& errors);
-
 /// A plugin's parameters, before the object is made from them.
 struct PluginParameters {
-  const RegistryEntry* entry = nullptr;
-  std::shared_ptr<void> values;  ///< the entry's parameter struct; null if the node is not valid
+  const RegistryEntry* entry = nullptr;  ///< that the node names, by itself or as `type`; null without one
+  std::shared_ptr<void> values;          ///< the entry's parameter struct; null if the node is not valid
 };
 /// Reads them. `prepare(schema, values)`, if given, may change the defaults before the node is read.
 PluginParameters read_plugin_parameters(const Registry& registry, const std::string& kind,

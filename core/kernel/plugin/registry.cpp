@@ -64,6 +64,28 @@ Location location_of(const ConfigNode& written, const std::string& path,
   return at ? location_in_text(*node, *at) : node->where;
 }
 
+/// The registered entry that a node names. Null, with an error appended, if there is none.
+const RegistryEntry* find_plugin(const Registry& registry, const std::string& kind, const ConfigNode& node,
+                                 ConfigErrors& errors) {
+  const ConfigNode* type = node.kind == ConfigNode::Kind::map ? node.find("type") : &node;
+  if (!type || type->kind != ConfigNode::Kind::scalar) {
+    errors.push_back({type ? type->where : node.where, "expected the name of a plugin of kind " + kind +
+                                                           ", or a map with its name as \"type\""});
+    return nullptr;
+  }
+  if (const RegistryEntry* entry = registry.find(kind, type->scalar)) return entry;
+  std::vector<std::string> names;
+  for (const RegistryEntry* entry : registry.of_kind(kind)) names.push_back(entry->name);
+  const std::string hint = did_you_mean(type->scalar, names, "");
+  errors.push_back(
+      {type->where, "unknown " + kind + " \"" + excerpt(type->scalar) + "\"; " +
+                        (hint.empty() ? "" : hint + " ") +
+                        (names.empty() ? "no plugin of that kind is loaded" : "known: " + joined(names)) +
+                        "; a plugin of your own is given by --plugin or found by DRAPE_PLUGIN_PATH; one "
+                        "registered in Python is known to that program alone"});
+  return nullptr;
+}
+
 }  // namespace
 
 const RegistryEntry* Registry::find(const std::string& kind, const std::string& name) const {
@@ -111,27 +133,6 @@ std::unique_ptr<RegistryEntry> Registry::remove(const std::string& kind, const s
   return entry;
 }
 
-const RegistryEntry* find_plugin(const Registry& registry, const std::string& kind, const ConfigNode& node,
-                                 ConfigErrors& errors) {
-  const ConfigNode* type = node.kind == ConfigNode::Kind::map ? node.find("type") : &node;
-  if (!type || type->kind != ConfigNode::Kind::scalar) {
-    errors.push_back({type ? type->where : node.where, "expected the name of a plugin of kind " + kind +
-                                                           ", or a map with its name as \"type\""});
-    return nullptr;
-  }
-  if (const RegistryEntry* entry = registry.find(kind, type->scalar)) return entry;
-  std::vector<std::string> names;
-  for (const RegistryEntry* entry : registry.of_kind(kind)) names.push_back(entry->name);
-  const std::string hint = did_you_mean(type->scalar, names, "");
-  errors.push_back(
-      {type->where, "unknown " + kind + " \"" + excerpt(type->scalar) + "\"; " +
-                        (hint.empty() ? "" : hint + " ") +
-                        (names.empty() ? "no plugin of that kind is loaded" : "known: " + joined(names)) +
-                        "; a plugin of your own is given by --plugin or found by DRAPE_PLUGIN_PATH; one "
-                        "registered in Python is known to that program alone"});
-  return nullptr;
-}
-
 PluginParameters read_plugin_parameters(const Registry& registry, const std::string& kind,
                                         const ConfigNode& node, ConfigErrors& errors, ConfigNode* resolved,
                                         const std::function<void(const Schema&, void*)>& prepare) {
@@ -144,7 +145,7 @@ PluginParameters read_plugin_parameters(const Registry& registry, const std::str
     map.add("type", node);
   }
   const Schema schema = section_schema(*read.entry);
-  const std::shared_ptr<void> values = read.entry->make_parameters();
+  const std::shared_ptr<void> values = read.entry->schema.fresh();
   const size_t before = errors.size();
   if (prepare) prepare(read.entry->schema, values.get());
   schema.read(values.get(), map, errors);

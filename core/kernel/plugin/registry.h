@@ -21,10 +21,9 @@ struct RegistryEntry {
   std::string library;  ///< path of its shared library
   std::string details;  ///< lines that `drape describe` prints below the parameters; may be empty
   Schema schema;        ///< its parameters
-  /// A default-constructed parameter struct, for `schema` to read into.
-  std::function<std::shared_ptr<void>()> make_parameters;
-  /// Makes the object from such a struct. `before`, null or an object of this entry with other parameters,
-  /// may share with it what does not differ. Both pointers to objects are to the kind's interface.
+  /// Makes the object from a struct of the schema. `before`, null or an object of this entry with other
+  /// parameters, may share with it what does not differ. Both pointers to objects are to the kind's
+  /// interface.
   std::function<std::shared_ptr<void>(const void* parameters, const void* before)> make;
 };
 

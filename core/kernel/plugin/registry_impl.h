@@ -6,25 +6,20 @@
 
 namespace drape {
 
-/// What a plugin's parameters are read into.
+/// What a plugin's parameters are read into, as std::type_identity.
 template <class Implementation>
-struct ParametersOf {
-  using Type = NoParameters;
-};
-template <class Implementation>
-requires requires(Declaration<Implementation>& d) { Implementation::declare(d); }
-struct ParametersOf<Implementation> {
-  using Type = Implementation;
-};
-template <class Implementation>
-requires requires { typename Implementation::Parameters; }
-struct ParametersOf<Implementation> {
-  using Type = typename Implementation::Parameters;
-};
+auto parameters_of() {
+  if constexpr (requires { typename Implementation::Parameters; })
+    return std::type_identity<typename Implementation::Parameters>();
+  else if constexpr (requires(Declaration<Implementation> & d) { Implementation::declare(d); })
+    return std::type_identity<Implementation>();
+  else
+    return std::type_identity<NoParameters>();
+}
 
 template <class Interface, class Implementation>
 void Registry::add(const std::string& name, const std::string& summary) {
-  using Parameters = typename ParametersOf<Implementation>::Type;
+  using Parameters = typename decltype(parameters_of<Implementation>())::type;
   auto entry = std::make_unique<RegistryEntry>();
   entry->kind = Interface::kind;
   entry->name = name;
@@ -32,7 +27,6 @@ void Registry::add(const std::string& name, const std::string& summary) {
   entry->library = current_library;
   if constexpr (requires { Implementation::details(); }) entry->details = Implementation::details();
   entry->schema = schema_of<Parameters>(name);
-  entry->make_parameters = entry->schema.fresh;
   entry->make = [](const void* parameters, [[maybe_unused]] const void* before) -> std::shared_ptr<void> {
     const auto& p = *static_cast<const Parameters*>(parameters);
     // Through Interface*, the type that the void pointer is cast back to.

@@ -279,7 +279,7 @@ TEST_CASE("an entry that is removed leaves its name free, and stays usable") {
   REQUIRE(entry);
   CHECK(registry.find("refiner", "loop") == nullptr);
   CHECK(registry.of_kind("refiner").empty());
-  CHECK(entry->make(entry->make_parameters().get(), nullptr) != nullptr);
+  CHECK(entry->make(entry->schema.fresh().get(), nullptr) != nullptr);
   entry->summary = "Another.";
   registry.add_entry(std::move(entry));
   CHECK(registry.find("refiner", "loop")->summary == "Another.");
