@@ -109,10 +109,7 @@ class Energy {
   virtual std::optional<double> midpoint_factor() const { return std::nullopt; }
   /// Stiffness D [J] of a bending energy as a plate's: a sheet rolled to a curvature κ has ½ D κ² for each
   /// unit of rest area. By default 0: it does not keep the cloth from wrinkling below a coarse mesh.
-  virtual double plate_stiffness(const Material& material) const {
-    (void)material;
-    return 0;
-  }
+  virtual double plate_stiffness([[maybe_unused]] const Material& material) const { return 0; }
   /// Copies what it needs: level and material need not outlive the result.
   virtual std::unique_ptr<BoundEnergy> bind(const Level& level, const Material& material) const = 0;
   /// Binds a membrane to a coarse level below whose mesh the cloth buckles: no compressive stress exceeds s /
@@ -121,15 +118,11 @@ class Energy {
   /// triangles resist compression as they do on the finest mesh. A triangle's law, but not s, is
   /// multiplied by the level's softening: areas of RestTriangle::of and material_triangles have that factor.
   virtual std::unique_ptr<BoundEnergy> bind_buckling(const Level& level, const Material& material,
-                                                     double s) const {
-    (void)s;
+                                                     [[maybe_unused]] double s) const {
     return bind(level, material);
   }
   /// Lines about the energy that `drape check` prints, such as a check of its derivatives. By default none.
-  virtual std::vector<std::string> remarks(const Material& material) const {
-    (void)material;
-    return {};
-  }
+  virtual std::vector<std::string> remarks([[maybe_unused]] const Material& material) const { return {}; }
 };
 
 }  // namespace drape
