@@ -1,5 +1,6 @@
 #include "core/numerics/linear_algebra/block_cholesky.h"
 
+#include <algorithm>
 #include <limits>
 #include <mutex>
 #include <new>
@@ -53,8 +54,8 @@ constexpr int mixed_iterations = 12;
 
 /// The ordering of vertices as indices into `free`.
 std::vector<int> indices_in(const std::vector<int>& free, const std::vector<int>& ordering, int vertices) {
-  std::vector<int> index(vertices, -1), indices;
-  for (std::size_t i = 0; i < free.size(); ++i) index[free[i]] = static_cast<int>(i);
+  const std::vector<int> index = positions_in(free, vertices);
+  std::vector<int> indices;
   for (int v : ordering) indices.push_back(index[v]);
   return indices;
 }
@@ -62,23 +63,16 @@ std::vector<int> indices_in(const std::vector<int>& free, const std::vector<int>
 /// The graph of the free vertices, by their index in `free`.
 void make_graph(const BlockPattern& pattern, const std::vector<int>& free, SymbolicAnalysis& c) {
   const int n = static_cast<int>(free.size());
-  std::vector<int> index(pattern.rows(), -1);
-  for (int i = 0; i < n; ++i) index[free[i]] = i;
-  std::size_t entries = 0;
-  for (int v : free)
-    for (int k = pattern.row_start[v]; k < pattern.row_start[v + 1]; ++k)
-      entries += index[pattern.columns[k]] >= 0;
-  c.graph = cholmod_allocate_sparse(n, n, entries, 1, 1, -1, CHOLMOD_PATTERN, &c.common);
+  const std::vector<int> index = positions_in(free, pattern.rows());
+  const AdjacencyList rows = AdjacencyList::of(n, [&](const auto& add) {
+    for (int i = 0; i < n; ++i)  // row i of the upper triangle is column i of the lower
+      for (const int j : pattern.row(free[i]))
+        if (index[j] >= 0) add(i, index[j]);
+  });
+  c.graph = cholmod_allocate_sparse(n, n, rows.items.size(), 1, 1, -1, CHOLMOD_PATTERN, &c.common);
   c.require(c.graph, "allocating the graph");
-  auto* start = static_cast<int*>(c.graph->p);
-  auto* rows = static_cast<int*>(c.graph->i);
-  int at = 0;
-  for (int i = 0; i < n; ++i) {  // row i of the upper triangle is column i of the lower
-    start[i] = at;
-    for (int k = pattern.row_start[free[i]]; k < pattern.row_start[free[i] + 1]; ++k)
-      if (const int r = index[pattern.columns[k]]; r >= 0) rows[at++] = r;
-  }
-  start[n] = at;
+  std::ranges::copy(rows.start, static_cast<int*>(c.graph->p));
+  std::ranges::copy(rows.items, static_cast<int*>(c.graph->i));
 }
 
 Supernodes supernodes_of(const cholmod_factor& factor) {
