@@ -1,6 +1,8 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
+#include <cstddef>
 #include <memory>
 #include <span>
 #include <utility>
@@ -8,9 +10,36 @@
 
 #include "core/kernel/interfaces/block_sink.h"
 #include "core/kernel/interfaces/topology.h"
-#include "core/numerics/linear_algebra/column_sets.h"
+#include "core/kernel/threads/parallel.h"
 
 namespace drape {
+
+/// The columns of each row of a sparse matrix, ascending and below `column_count`; find(i, add) calls
+/// add(column) for each column of row i, also repeatedly. Rows are found in parallel.
+template <class Find>
+AdjacencyList collect_columns(int rows, int column_count, const Find& find) {
+  const int grain = std::max(4096, rows / 16 + 1);
+  std::vector<AdjacencyList> pieces((rows + grain - 1) / grain);  // whose rows end at `start`
+  parallel_for(rows, grain, [&](int begin, int end) {
+    auto& [ends, found] = pieces[begin / grain];
+    std::vector<int> last_row(column_count, -1);  // that has the column
+    for (int i = begin; i < end; ++i) {
+      const auto first = static_cast<std::ptrdiff_t>(found.size());
+      find(i, [&, &all = found](int column) {
+        if (std::exchange(last_row[column], i) != i) all.push_back(column);
+      });
+      std::sort(found.begin() + first, found.end());
+      ends.push_back(static_cast<int>(found.size()));
+    }
+  });
+  AdjacencyList whole{{0}, {}};
+  for (const auto& [ends, found] : pieces) {
+    const int before = static_cast<int>(whole.items.size());
+    for (const int end : ends) whole.start.push_back(before + end);
+    whole.items.insert(whole.items.end(), found.begin(), found.end());
+  }
+  return whole;
+}
 
 /// Sparsity of a symmetric matrix of 3×3 blocks, one block row for each vertex. Stores blocks (i, j) with i ≤
 /// j row by row, columns ascending; every diagonal block is present. Immutable.
@@ -23,13 +52,13 @@ class BlockPattern {
   /// add smaller ones, which are left out. Rows are found in parallel.
   template <class Find>
   static std::shared_ptr<const BlockPattern> collect(int rows, const Find& find) {
-    ColumnSets sets = ColumnSets::collect(rows, rows, [&](int i, const auto& add) {
+    AdjacencyList all = collect_columns(rows, rows, [&](int i, const auto& add) {
       add(i);
       find(i, [&](int j) {
         if (j > i) add(j);
       });
     });
-    return std::make_shared<const BlockPattern>(std::move(sets.row_start), std::move(sets.columns));
+    return std::make_shared<const BlockPattern>(std::move(all.start), std::move(all.items));
   }
 
   /// From rows of ascending columns j ≥ i, diagonal first.

@@ -5,7 +5,6 @@
 #include <numeric>
 #include <utility>
 
-#include "core/kernel/interfaces/topology.h"
 #include "core/kernel/threads/parallel.h"
 
 namespace drape {
@@ -109,8 +108,8 @@ void MultigridMesh::set_pattern(const std::shared_ptr<const BlockPattern>& given
   set_pattern({std::move(entries.start), std::move(columns)});
 }
 
-void MultigridMesh::set_pattern(ColumnSets pattern) {
-  values_.resize(9 * pattern.columns.size() + 1);
+void MultigridMesh::set_pattern(AdjacencyList pattern) {
+  values_.resize(9 * pattern.items.size() + 1);
   half_ = {};
   matrix.set_pattern(std::move(pattern));
 }
@@ -118,7 +117,7 @@ void MultigridMesh::set_pattern(ColumnSets pattern) {
 void MultigridMesh::fill(const BlockMatrix& given, const Eigen::VectorXd& shift,
                          const std::vector<char>& fixed) {
   set_pattern(given.pattern);
-  const std::vector<int>&start = matrix.pattern().row_start, &columns = matrix.pattern().columns;
+  const std::vector<int>&start = matrix.pattern().start, &columns = matrix.pattern().items;
   parallel_for(size(), SmoothedMatrix::piece, [&](int begin, int end) {
     for (int i = begin; i < end; ++i) {
       const int vertex = order[i];
@@ -145,30 +144,28 @@ void MultigridMesh::fill(const BlockMatrix& given, const Eigen::VectorXd& shift,
 }
 
 void MultigridMesh::find_product_pattern(MultigridMesh& coarse) {
-  const std::vector<int>&start = matrix.pattern().row_start, &columns = matrix.pattern().columns;
-  half_ = ColumnSets::collect(coarse.size(), size(), [&](int i, const auto& add) {
+  half_ = collect_columns(coarse.size(), size(), [&](int i, const auto& add) {
     for (Weights::InnerIterator child(children, i); child; ++child)
-      for (int k = start[child.col()]; k < start[child.col() + 1]; ++k) add(columns[k]);
+      for (const int j : matrix.pattern().row(static_cast<int>(child.col()))) add(j);
   });
-  coarse.set_pattern(ColumnSets::collect(coarse.size(), coarse.size(), [&](int i, const auto& add) {
-    for (int k = half_.row_start[i]; k < half_.row_start[i + 1]; ++k)
-      for (Weights::InnerIterator parent(parents, half_.columns[k]); parent; ++parent)
-        add(static_cast<int>(parent.col()));
+  coarse.set_pattern(collect_columns(coarse.size(), coarse.size(), [&](int i, const auto& add) {
+    for (const int j : half_.row(i))
+      for (Weights::InnerIterator parent(parents, j); parent; ++parent) add(static_cast<int>(parent.col()));
     add(i);  // also where no child of the vertex has a block
   }));
 }
 
 double MultigridMesh::make_product(MultigridMesh& coarse) {
-  if (half_.row_start.empty()) find_product_pattern(coarse);
+  if (half_.start.empty()) find_product_pattern(coarse);
   SmoothedMatrix& to = coarse.matrix;
-  const std::vector<int>&start = matrix.pattern().row_start, &columns = matrix.pattern().columns;
-  const std::vector<int>&to_start = to.pattern().row_start, &to_columns = to.pattern().columns;
+  const std::vector<int>&start = matrix.pattern().start, &columns = matrix.pattern().items;
+  const std::vector<int>&to_start = to.pattern().start, &to_columns = to.pattern().items;
   return parallel_sum(coarse.size(), product_piece, [&](int begin, int end) {
     BlockRow half(size()), sums(coarse.size());
     double count = 0;
     for (int i = begin; i < end; ++i) {
-      const int* half_columns = half_.columns.data() + half_.row_start[i];
-      const int half_count = half_.row_start[i + 1] - half_.row_start[i];
+      const int* half_columns = half_.begin(i);
+      const int half_count = half_.size(i);
       half.clear(half_columns, half_count);
       for (Weights::InnerIterator child(children, i); child; ++child) {
         const int first = start[child.col()], last = start[child.col() + 1];
@@ -198,9 +195,9 @@ bool MultigridMesh::copy_to(BlockMatrix& to) const {
   std::vector<int> start = {0}, columns;
   std::vector<double> upper;
   for (int i = 0; i < size(); ++i) {
-    for (int k = matrix.pattern().row_start[i]; k < matrix.pattern().row_start[i + 1]; ++k) {
-      if (matrix.pattern().columns[k] < i) continue;
-      columns.push_back(matrix.pattern().columns[k]);
+    for (int k = matrix.pattern().start[i]; k < matrix.pattern().start[i + 1]; ++k) {
+      if (matrix.pattern().items[k] < i) continue;
+      columns.push_back(matrix.pattern().items[k]);
       const double* block = &values_[9 * static_cast<std::size_t>(k)];
       upper.insert(upper.end(), block, block + 9);
     }

@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "core/kernel/interfaces/prolongation_matrix.h"
+#include "core/kernel/interfaces/topology.h"
 #include "core/numerics/linear_algebra/block_matrix.h"
-#include "core/numerics/linear_algebra/column_sets.h"
 #include "core/numerics/multigrid/smoother.h"
 
 namespace drape {
@@ -46,7 +46,7 @@ struct MultigridMesh {
  private:
   void resize();
   void set_pattern(const std::shared_ptr<const BlockPattern>& given);
-  void set_pattern(ColumnSets pattern);
+  void set_pattern(AdjacencyList pattern);
   /// Finds which blocks Pᵀ A and Pᵀ A P have.
   void find_product_pattern(MultigridMesh& coarse);
 
@@ -54,7 +54,7 @@ struct MultigridMesh {
   // The block of a given matrix that each block is, complemented if transposed; of this pattern.
   std::vector<int> source_;
   std::shared_ptr<const BlockPattern> pattern_;
-  ColumnSets half_;  // of Pᵀ A; without rows if the matrix has another pattern by now
+  AdjacencyList half_;  // of Pᵀ A; without rows if the matrix has another pattern by now
 };
 
 }  // namespace drape

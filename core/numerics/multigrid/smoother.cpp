@@ -31,9 +31,9 @@ struct Products {
 
 }  // namespace
 
-void SmoothedMatrix::set_pattern(ColumnSets pattern) {
+void SmoothedMatrix::set_pattern(AdjacencyList pattern) {
   pattern_ = std::move(pattern);
-  const std::vector<int>&row_start = pattern_.row_start, &columns = pattern_.columns;
+  const std::vector<int>&row_start = pattern_.start, &columns = pattern_.items;
   place_.resize(columns.size());
   stored_columns_.clear();
   stored_columns_.reserve(columns.size());

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "core/numerics/linear_algebra/column_sets.h"
+#include "core/kernel/interfaces/topology.h"
 
 namespace drape {
 
@@ -20,13 +20,13 @@ class SmoothedMatrix {
   static constexpr int piece = 4096;  ///< rows
 
   /// Takes the columns of each row's blocks, the diagonal among them, and makes room for their values.
-  void set_pattern(ColumnSets pattern);
-  const ColumnSets& pattern() const { return pattern_; }
+  void set_pattern(AdjacencyList pattern);
+  const AdjacencyList& pattern() const { return pattern_; }
 
-  int rows() const { return static_cast<int>(pattern_.row_start.size()) - 1; }
+  int rows() const { return static_cast<int>(pattern_.start.size()) - 1; }
   /// The 9 numbers of the k-th block of the pattern, column by column.
   float* block(int k) { return values_.data() + 9 * static_cast<std::size_t>(place_[k]); }
-  double flops_of_product() const { return 18.0 * static_cast<double>(pattern_.columns.size()); }
+  double flops_of_product() const { return 18.0 * static_cast<double>(pattern_.items.size()); }
 
   /// Inverts the diagonal blocks. Returns false if one is not positive definite.
   bool finish();
@@ -48,7 +48,7 @@ class SmoothedMatrix {
     return inverse[0] * b[0] + inverse[1] * b[1] + inverse[2] * b[2];
   }
 
-  ColumnSets pattern_;
+  AdjacencyList pattern_;
   std::vector<int> place_;           // where each block is stored, in blocks
   Part below_, above_, elsewhere_;   // blocks of the row's own piece before and after the diagonal; others
   std::vector<int> stored_columns_;  // in the order of the values, the diagonal last

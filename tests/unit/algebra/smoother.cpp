@@ -40,8 +40,8 @@ struct PiecewiseMatrix {
   template <class Visit>
   void each_block(const Visit& visit) const {
     for (int i = 0; i < n; ++i)
-      for (int k = matrix.pattern().row_start[i]; k < matrix.pattern().row_start[i + 1]; ++k)
-        visit(i, matrix.pattern().columns[k], k);
+      for (int k = matrix.pattern().start[i]; k < matrix.pattern().start[i + 1]; ++k)
+        visit(i, matrix.pattern().items[k], k);
   }
   std::vector<Float4> vectors() {
     std::uniform_real_distribution<float> uniform(-1, 1);
