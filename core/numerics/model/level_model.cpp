@@ -15,12 +15,28 @@ namespace drape {
 namespace {
 
 constexpr const char* contact_part = "contact";
+/// Without a load the residual scale is at least this fraction of the cloth's weight under gravity.
+constexpr double min_weight_fraction = 1e-3;
 
 double norm_where(const Positions& g, const std::vector<char>& flags, char flag) {
   double sum = 0;
   for (Eigen::Index i = 0; i < g.rows(); ++i)
     if (flags[i] == flag) sum += g.row(i).squaredNorm();
   return std::sqrt(sum);
+}
+
+/// An energy without elements counts as linear: its forces are evaluated once.
+void require_constant_forces(const std::string& name, const BoundEnergy& energy, const Positions& rest) {
+  const Positions origin = Positions::Zero(rest.rows(), 3);
+  Positions at_origin = origin, elsewhere = origin;
+  energy.add_gradient(origin, at_origin);
+  const Positions x = (1.1 * rest).rowwise() + Eigen::RowVector3d(0.1, 0.2, 0.3);
+  energy.add_gradient(x, elsewhere);
+  const double scale = at_origin.cwiseAbs().maxCoeff();
+  if (!((elsewhere - at_origin).cwiseAbs().maxCoeff() <= 1e-9 * scale))
+    throw std::runtime_error("energy " + name +
+                             " has no elements, so it counts as linear, but its forces depend on the "
+                             "positions; return its elements from stencils()");
 }
 
 }  // namespace
@@ -42,12 +58,8 @@ LevelModel::LevelModel(const Level& level, const Material& material, const std::
   add_up_linear_energies();
   bind_contacts(contacts, before);
   if (load_is_constant_) constant_load_norm_ = external_force_norm(level.rest.vertices);
-  adapt_stiffness_to_load();
-}
-
-void LevelModel::adapt_stiffness_to_load() {
   if (contacts_.empty()) return;
-  const double pressure = load_pressure(level_->rest.vertices);
+  const double pressure = load_pressure(level.rest.vertices);
   ContactStiffness stiffness = stiffness_of(contacts_);
   for (double& own : stiffness) own = stiffness_for_load(own, pressure);
   contacts_ = stiffened(contacts_, stiffness);
@@ -142,22 +154,8 @@ void LevelModel::add_up_linear_energies() {
             ": its forces are too large to be computed with; are its parameters and the density in SI units? "
             "(An energy without elements is linear, and must be finite where all vertices are at the "
             "origin.)");
-      require_constant_forces(term.name, *term.energy);
+      require_constant_forces(term.name, *term.energy, level_->rest.vertices);
     }
-}
-
-/// An energy without elements counts as linear: its forces are evaluated once.
-void LevelModel::require_constant_forces(const std::string& name, const BoundEnergy& energy) const {
-  const Positions origin = Positions::Zero(level_->vertex_count(), 3);
-  Positions at_origin = origin, elsewhere = origin;
-  energy.add_gradient(origin, at_origin);
-  const Positions x = (1.1 * level_->rest.vertices).rowwise() + Eigen::RowVector3d(0.1, 0.2, 0.3);
-  energy.add_gradient(x, elsewhere);
-  const double scale = at_origin.cwiseAbs().maxCoeff();
-  if (!((elsewhere - at_origin).cwiseAbs().maxCoeff() <= 1e-9 * scale))
-    throw std::runtime_error("energy " + name +
-                             " has no elements, so it counts as linear, but its forces depend on the "
-                             "positions; return its elements from stencils()");
 }
 
 std::optional<double> LevelModel::midpoint_factor(EnergyRole role) const {
@@ -212,13 +210,6 @@ double LevelModel::external_force_norm(const Positions& x) const {
     }
   return sum;
 }
-
-namespace {
-
-/// Without a load the residual scale is at least this fraction of the cloth's weight under gravity.
-constexpr double min_weight_fraction = 1e-3;
-
-}  // namespace
 
 double LevelModel::residual_scale(const Positions& x, const Positions& gradient) const {
   if (const double load = load_norm(x); load > 0) return load;

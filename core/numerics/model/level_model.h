@@ -129,12 +129,10 @@ class LevelModel {
   std::string unused_name(const std::string& type) const;  // by terms_ and the contacts' part
   void bind_energies(const std::vector<NamedEnergy>& energies, const LevelModel* before);
   void bind_contacts(const std::vector<std::shared_ptr<ContactModel>>& contacts, const LevelModel* before);
-  void adapt_stiffness_to_load();
   double external_force_norm(const Positions& x) const;
   double barrier(const Positions& x) const;  // of the contacts [J]
   double add_barrier_gradient(const Positions& x, Positions& g) const;
   void add_up_linear_energies();
-  void require_constant_forces(const std::string& name, const BoundEnergy& energy) const;
   /// The value of the linear energies of these roles [J]. Overwrites g, unless it is null, with their
   /// gradient.
   double linear_value(const Positions& x, Positions* g, Roles roles) const;
