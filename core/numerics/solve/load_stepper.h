@@ -39,7 +39,6 @@ class LoadStepper {
   LoadStepper(LoadStepping* load_stepping, Iterate& iterate, DirichletEnforcer& dirichlet,
               const Stopwatch& clock, Observer& observer);
 
-  bool has_schedule() const { return load_stepping_ != nullptr; }
   /// Whether increments remain.
   bool loading() const { return load_stepping_ && !load_stepping_->finished(); }
   /// Whether the next increment begins without equilibrium. The remainder of an increment waits for
