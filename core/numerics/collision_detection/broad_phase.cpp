@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <atomic>
-#include <numeric>
 
 #include "core/kernel/threads/parallel.h"
 #include "core/numerics/collision_detection/box_tree.h"
@@ -67,25 +66,14 @@ class BvhBroadPhase final : public BroadPhase {
 }  // namespace
 
 AdjacencyList rows_of(const std::vector<IndexPairs>& lists, int row_count, int column_count) {
-  // A counting sort by column, then by row.
-  std::vector<int> column_end(column_count + 1, 0);
-  AdjacencyList rows;
-  rows.start.assign(row_count + 1, 0);
-  for (const IndexPairs& list : lists)
-    for (const auto& [i, j] : list) {
-      ++rows.start[i + 1];
-      ++column_end[j + 1];
-    }
-  std::partial_sum(rows.start.begin(), rows.start.end(), rows.start.begin());
-  std::partial_sum(column_end.begin(), column_end.end(), column_end.begin());
-  std::vector<int> by_column(rows.start[row_count]);
-  for (const IndexPairs& list : lists)
-    for (const auto& [i, j] : list) by_column[column_end[j]++] = i;  // turns starts into ends
-  rows.items.resize(by_column.size());
-  std::vector<int> row_end(rows.start.begin(), rows.start.end() - 1);
-  for (int j = 0, k = 0; j < column_count; ++j)
-    for (; k < column_end[j]; ++k) rows.items[row_end[by_column[k]]++] = j;
-  return rows;
+  const AdjacencyList columns = AdjacencyList::of(column_count, [&](const auto& add) {
+    for (const IndexPairs& list : lists)
+      for (const auto& [i, j] : list) add(j, i);
+  });
+  return AdjacencyList::of(row_count, [&](const auto& add) {
+    for (int j = 0; j < column_count; ++j)
+      for (const int* i = columns.begin(j); i != columns.end(j); ++i) add(*i, j);
+  });
 }
 
 std::unique_ptr<BroadPhase> make_broad_phase(BroadPhaseKind kind, const Stencils& vertices) {
