@@ -1,7 +1,5 @@
 #pragma once
 
-#include <vector>
-
 #include "core/kernel/interfaces/prolongation_matrix.h"
 #include "core/kernel/interfaces/triangle_mesh.h"
 
@@ -19,14 +17,9 @@ class Transfer {
   void restrict(const Positions& fine, Positions& coarse) const { apply(restrict_, fine, coarse); }
 
  private:
-  struct Rows {
-    std::vector<int> start, column;
-    std::vector<double> weight;
-  };
-  static Rows rows_of(const ProlongationMatrix& matrix);
-  static void apply(const Rows& rows, const Positions& x, Positions& y);
+  static void apply(const ProlongationMatrix& matrix, const Positions& x, Positions& y);
 
-  Rows prolong_, restrict_;
+  ProlongationMatrix prolong_, restrict_;
 };
 
 }  // namespace drape
