@@ -43,19 +43,6 @@ void represented_edges(const Side& a, int s, const Side& b, int t, const Found& 
   }
 }
 
-/// Pairs of overlapping boxes, with the row that each is from.
-struct Untested {
-  std::vector<ContactPair> pairs;
-  std::vector<int> rows;
-  std::vector<int> surface_triangles;  ///< of a cloth vertex and an obstacle triangle this, of others -1
-
-  void add(const ContactPair& pair, int row, int surface_triangle = -1) {
-    pairs.push_back(pair);
-    rows.push_back(row);
-    surface_triangles.push_back(surface_triangle);
-  }
-};
-
 /// Marks the pairs of this kind that may come within d̂.
 template <PairKind kind>
 void mark_near(const std::vector<ContactPair>& pairs, const LinearMotion& motion, std::vector<char>& near) {
@@ -71,51 +58,34 @@ void mark_near(const std::vector<ContactPair>& pairs, const LinearMotion& motion
 }
 
 /// Appends those that may come within d̂.
-void append_near(const Untested& untested, const LinearMotion& motion, BroadPhasePairs& list) {
-  std::vector<char> near(untested.pairs.size());
-  mark_near<PairKind::point_triangle>(untested.pairs, motion, near);
-  mark_near<PairKind::edge_edge>(untested.pairs, motion, near);
-  std::ptrdiff_t row_begin = 0;
-  const auto sort_row = [&] {
-    std::stable_sort(list.vertex_triangles.begin() + row_begin, list.vertex_triangles.end(),
-                     [](const VertexTriangleCandidate& a, const VertexTriangleCandidate& b) {
-                       return a.vertex < b.vertex;
-                     });
-    row_begin = static_cast<std::ptrdiff_t>(list.vertex_triangles.size());
-  };
-  for (std::size_t i = 0; i < near.size(); ++i) {
-    if (i > 0 && untested.rows[i] != untested.rows[i - 1]) sort_row();
-    if (!near[i]) continue;
-    list.pairs.push_back(untested.pairs[i]);
-    if (untested.surface_triangles[i] >= 0)
-      list.vertex_triangles.push_back({untested.pairs[i].vertices[0], untested.surface_triangles[i]});
-  }
-  sort_row();
+void append_near(const std::vector<ContactPair>& untested, const LinearMotion& motion,
+                 std::vector<ContactPair>& list) {
+  std::vector<char> near(untested.size());
+  mark_near<PairKind::point_triangle>(untested, motion, near);
+  mark_near<PairKind::edge_edge>(untested, motion, near);
+  for (std::size_t i = 0; i < near.size(); ++i)
+    if (near[i]) list.push_back(untested[i]);
 }
 
 /// Calls visit(s, t, untested) for every entry of the rows and concatenates the pairs that may come within d̂.
 template <class Visit>
-bool collect(const AdjacencyList& rows, const LinearMotion& motion, long limit, BroadPhasePairs& found,
-             const Visit& visit) {
+bool collect(const AdjacencyList& rows, const LinearMotion& motion, long limit,
+             std::vector<ContactPair>& found, const Visit& visit) {
   const int count = static_cast<int>(rows.start.size()) - 1;
-  std::vector<BroadPhasePairs> lists((count + rows_per_task - 1) / rows_per_task);
-  std::atomic<long> number = found.count();
+  std::vector<std::vector<ContactPair>> lists((count + rows_per_task - 1) / rows_per_task);
+  std::atomic<long> number = std::ssize(found);
   parallel_for(count, rows_per_task, [&](int begin, int end) {
     if (number.load(std::memory_order_relaxed) > limit) return;
-    Untested untested;
+    std::vector<ContactPair> untested;
     for (int s = begin; s < end; ++s)
       for (const int* t = rows.begin(s); t != rows.end(s); ++t) visit(s, *t, untested);
-    BroadPhasePairs& list = lists[begin / rows_per_task];
+    std::vector<ContactPair>& list = lists[begin / rows_per_task];
     append_near(untested, motion, list);
-    number += list.count();
+    number += std::ssize(list);
   });
   if (number > limit) return false;
-  found.pairs.reserve(number);
-  for (const BroadPhasePairs& list : lists) {
-    found.pairs.insert(found.pairs.end(), list.pairs.begin(), list.pairs.end());
-    found.vertex_triangles.insert(found.vertex_triangles.end(), list.vertex_triangles.begin(),
-                                  list.vertex_triangles.end());
-  }
+  found.reserve(number);
+  for (const std::vector<ContactPair>& list : lists) found.insert(found.end(), list.begin(), list.end());
   return true;
 }
 
@@ -140,21 +110,25 @@ bool may_come_within_dhat(const ContactPair& pair, const LinearMotion& motion) {
 
 bool find_obstacle_pairs(const Surface& cloth, const SweptBoxes& boxes, const ObstacleSurface& obstacles,
                          const SweptBoxes& obstacle_boxes, const AdjacencyList& rows,
-                         const LinearMotion& motion, double friction, long limit, BroadPhasePairs& found) {
+                         const LinearMotion& motion, double friction, long limit,
+                         std::vector<ContactPair>& found) {
   const Surface& other = obstacles.surface;
   const Dihedrals& dihedrals = obstacles.dihedrals;
   const Side own{cloth, boxes}, obstacle{other, obstacle_boxes};
   const auto first_other = static_cast<int>(motion.x0.rows());
-  return collect(rows, motion, limit, found, [&](int s, int t, Untested& untested) {
-    const auto add = [&](ContactPair pair, double weight, int surface_triangle = -1) {
+  return collect(rows, motion, limit, found, [&](int s, int t, std::vector<ContactPair>& untested) {
+    const auto add = [&](ContactPair pair, double weight) {
       pair.weight = weight;
       pair.dhat = motion.dhat;
       pair.obstacle = obstacles.body_of(other.triangles(t, 0));
       pair.friction = obstacles.friction_of(pair.obstacle, friction);
-      untested.add(pair, s, surface_triangle);
+      untested.push_back(pair);
     };
-    represented_vertices(own, s, obstacle, t,
-                         [&](int v) { add(vertex_triangle(0, v, other, first_other, t), 0, t); });
+    represented_vertices(own, s, obstacle, t, [&](int v) {
+      ContactPair pair = vertex_triangle(0, v, other, first_other, t);
+      pair.surface_triangle = t;
+      add(pair, 0);
+    });
     represented_vertices(obstacle, t, own, s, [&](int v) {
       // The side of an equilateral triangle of the same area.
       const double length = std::sqrt(4 / std::sqrt(3.0) * cloth.triangle_area[s]);
@@ -170,6 +144,20 @@ bool find_obstacle_pairs(const Surface& cloth, const SweptBoxes& boxes, const Ob
                     protrusion_factor(dihedrals.edge_sagitta(f, length), motion.dhat));
     });
   });
+}
+
+std::vector<VertexTriangleCandidate> surface_candidates(const std::vector<ContactPair>& pairs,
+                                                        const Surface& cloth) {
+  std::vector<VertexTriangleCandidate> all;
+  for (const ContactPair& pair : pairs)
+    if (pair.surface_triangle >= 0) all.push_back({pair.vertices[0], pair.surface_triangle});
+  // The pairs of the vertices that one triangle represents are contiguous already.
+  const auto row_of = [&](const VertexTriangleCandidate& c) { return cloth.vertex_corner[c.vertex] / 3; };
+  for (auto begin = all.begin(), end = begin; begin != all.end(); begin = end) {
+    end = std::find_if(begin, all.end(), [&](const auto& c) { return row_of(c) != row_of(*begin); });
+    std::ranges::stable_sort(begin, end, {}, &VertexTriangleCandidate::vertex);
+  }
+  return all;
 }
 
 }  // namespace drape

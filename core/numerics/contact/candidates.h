@@ -14,19 +14,6 @@
 
 namespace drape {
 
-/// Candidate pairs before classification. `vertex_triangles` repeats those of a cloth vertex and an obstacle
-/// triangle: contiguous for each vertex and ascending by triangle.
-struct BroadPhasePairs {
-  std::vector<ContactPair> pairs;
-  std::vector<VertexTriangleCandidate> vertex_triangles;
-
-  long count() const { return static_cast<long>(pairs.size()); }
-  void clear() {
-    pairs.clear();
-    vertex_triangles.clear();
-  }
-};
-
 /// Numbers of pairs: of overlapping boxes, and of primitives that may come within d̂.
 struct PairCounts {
   long boxes = 0, primitives = 0;
@@ -56,12 +43,18 @@ inline ContactPair edge_edge(const Surface& own, int first, int e, const Surface
 /// more than `limit` pairs.
 ///
 /// Cloth vertices against obstacle triangles, obstacle vertices against cloth triangles, edges against edges.
-/// The first have weight 0 as pairs: their barrier is that of the nearest features. The weight of the others
-/// is reduced where the obstacle protrudes between its vertices by less than d̂ / 8, to 0 where it is flat:
-/// there the cloth's vertices make contact first.
+/// The first have weight 0 as pairs: their barrier is that of the nearest features (surface_candidates). The
+/// weight of the others is reduced where the obstacle protrudes between its vertices by less than d̂ / 8, to 0
+/// where it is flat: there the cloth's vertices make contact first.
 bool find_obstacle_pairs(const Surface& cloth, const SweptBoxes& boxes, const ObstacleSurface& obstacles,
                          const SweptBoxes& obstacle_boxes, const AdjacencyList& rows,
-                         const LinearMotion& motion, double friction, long limit, BroadPhasePairs& found);
+                         const LinearMotion& motion, double friction, long limit,
+                         std::vector<ContactPair>& found);
+
+/// The cloth vertices and obstacle triangles among pairs that find_obstacle_pairs has found, contiguous for
+/// each vertex and ascending by triangle.
+std::vector<VertexTriangleCandidate> surface_candidates(const std::vector<ContactPair>& pairs,
+                                                        const Surface& cloth);
 
 /// Searches for vertex-triangle and edge-edge pairs of the cloth that share no vertex. Keeps the trees of its
 /// primitives between searches; results do not depend on earlier ones.
@@ -73,7 +66,7 @@ class SelfPairSearch {
   /// Appends the pairs that may come within d̂ during the motion, in the order of their representative
   /// triangles, and adds to `counts`. Returns false, without pairs, once `counts` exceed `limits`.
   bool find(const LinearMotion& motion, double friction, const PairCounts& limits, PairCounts& counts,
-            BroadPhasePairs& found);
+            std::vector<ContactPair>& found);
 
  private:
   struct Pair;

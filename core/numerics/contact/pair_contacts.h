@@ -19,13 +19,14 @@ enum class PairKind : char { point_triangle, edge_edge, point_plane, edge_end };
 struct ContactPair {
   std::array<int, 4> vertices;
   PairKind kind = PairKind::point_triangle;
-  int obstacle = -1;     ///< index in the contact model; -1 for two primitives of the cloth
-  double weight = 0;     ///< area weight of the pair's energy [m²]
-  double dhat = 0;       ///< d̂ of the pair, below which its barrier acts [m]
-  double offset = 0;     ///< a rounded obstacle's radius: gap = distance - offset [m]
-  double mollifier = 0;  ///< edge_edge, edge_end: ε of the mollifier, |u × v|² [m⁴]
-  double friction = 0;   ///< μ
-  bool at_rim = false;   ///< a cloth edge at a sharp edge of an obstacle (make_rim_contacts)
+  int obstacle = -1;          ///< index in the contact model; -1 for two primitives of the cloth
+  double weight = 0;          ///< area weight of the pair's energy [m²]
+  double dhat = 0;            ///< d̂ of the pair, below which its barrier acts [m]
+  double offset = 0;          ///< a rounded obstacle's radius: gap = distance - offset [m]
+  double mollifier = 0;       ///< edge_edge, edge_end: ε of the mollifier, |u × v|² [m⁴]
+  double friction = 0;        ///< μ
+  bool at_rim = false;        ///< a cloth edge at a sharp edge of an obstacle (make_rim_contacts)
+  int surface_triangle = -1;  ///< of a cloth vertex and an obstacle triangle: this triangle; else -1
 };
 
 /// The linear motion of the cloth from x0 to x1 and of the obstacles' vertices, searched for pairs within d̂.

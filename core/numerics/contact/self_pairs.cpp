@@ -117,7 +117,7 @@ std::vector<SelfPairSearch::Pair> SelfPairSearch::in_order(const std::vector<Pai
 }
 
 bool SelfPairSearch::find(const LinearMotion& motion, double friction, const PairCounts& limits,
-                          PairCounts& counts, BroadPhasePairs& found) {
+                          PairCounts& counts, std::vector<ContactPair>& found) {
   // A translation of the whole cloth changes no distance within it.
   boxes_.update(cloth_, motion.x0, motion.x1.rowwise() - (motion.x1 - motion.x0).colwise().mean(),
                 0.5 * motion.dhat);
@@ -129,11 +129,11 @@ bool SelfPairSearch::find(const LinearMotion& motion, double friction, const Pai
       !find_kind<PairKind::edge_edge>(*edges_, *edges_, motion, limits, counts, pairs))
     return false;
   counts.primitives += static_cast<long>(pairs.size());
-  found.pairs.reserve(found.pairs.size() + pairs.size());
+  found.reserve(found.size() + pairs.size());
   for (const Pair& p : in_order(pairs)) {
     const bool edges = p.kind == PairKind::edge_edge;
-    ContactPair& pair = found.pairs.emplace_back(edges ? edge_edge(cloth_, 0, p.a, cloth_, 0, p.b)
-                                                       : vertex_triangle(0, p.a, cloth_, 0, p.b));
+    ContactPair& pair = found.emplace_back(edges ? edge_edge(cloth_, 0, p.a, cloth_, 0, p.b)
+                                                 : vertex_triangle(0, p.a, cloth_, 0, p.b));
     pair.weight =
         edges ? 0.25 * std::min(cloth_.edge_area[p.a], cloth_.edge_area[p.b]) : 0.5 * cloth_.vertex_area[p.a];
     pair.dhat = motion.dhat;

@@ -6,7 +6,6 @@
 #include "core/numerics/collision_detection/intersections.h"
 #include "core/numerics/contact/contact_kernel.h"
 #include "core/numerics/contact/contact_stack.h"
-#include "core/numerics/contact/pair_contacts.h"
 #include "core/numerics/contact/surface_contacts.h"
 #include "plugins/contact/ipc/obstacle_trajectory.h"
 
@@ -36,13 +35,14 @@ const BoundIpc& as_ipc(const BoundContact& contact) {
 class BoundIpc::Candidates final : public CollisionCandidates {
  public:
   /// `found` has the pairs of the motion from x0 to x1, which is a fraction of the requested one.
-  Candidates(const BoundIpc& contact, Positions x0, Positions x1, double fraction, BroadPhasePairs found)
+  Candidates(const BoundIpc& contact, Positions x0, Positions x1, double fraction,
+             std::vector<ContactPair> found)
       : contact_(contact),
         x0_(std::move(x0)),
         x1_(std::move(x1)),
         fraction_(fraction),
-        vertex_triangles_(std::move(found.vertex_triangles)) {
-    for (ContactPair& pair : found.pairs) {
+        vertex_triangles_(surface_candidates(found, contact.cloth_)) {
+    for (ContactPair& pair : found) {
       if (pair.obstacle < 0) pair.dhat = contact.rest_->layers.dhat_of(pair.vertices);
       const bool has_barrier = pair.weight > 0 && pair.dhat > 0;
       (!has_barrier ? ccd_only_ : pair.at_rim ? rims_ : barrier_).push_back(pair);
@@ -145,7 +145,7 @@ std::shared_ptr<const BoundContact> BoundIpc::with_stiffness(double stiffness) c
 }
 
 bool BoundIpc::search(const Positions& x0, const Positions& x1, const PairCounts& limits,
-                      BroadPhasePairs& found, PairCounts& counts) const {
+                      std::vector<ContactPair>& found, PairCounts& counts) const {
   const LinearMotion motion{x0, x1, barrier_.dhat, obstacles_.vertices, obstacles_.vertices};
   found.clear();
   counts = {};
@@ -158,7 +158,7 @@ bool BoundIpc::search(const Positions& x0, const Positions& x1, const PairCounts
   if (!find_obstacle_pairs(cloth_, boxes_, obstacles_, obstacle_tree_->boxes, rows_, motion, p_.friction,
                            limits.primitives, found))
     return false;
-  counts.primitives = found.count();
+  counts.primitives = static_cast<long>(found.size());
   return true;
 }
 
@@ -167,7 +167,7 @@ std::unique_ptr<CollisionCandidates> BoundIpc::build_candidates(const Positions&
   const std::lock_guard lock(busy_);
   const long size = std::max<long>(cloth_.triangle_count(), min_counted_triangles);
   PairCounts limits{box_pairs_each * size, primitive_pairs_each * size}, counts;
-  BroadPhasePairs found;
+  std::vector<ContactPair> found;
   Positions end = x1;
   double fraction = 1;
   for (int tries = 1; !search(x0, end, limits, found, counts); ++tries) {

@@ -3,10 +3,12 @@
 #include <array>
 #include <memory>
 #include <mutex>
+#include <vector>
 
 #include "core/kernel/interfaces/contact_model.h"
 #include "core/numerics/collision_detection/broad_phase.h"
 #include "core/numerics/contact/candidates.h"
+#include "core/numerics/contact/pair_contacts.h"
 #include "plugins/contact/ipc/ipc.h"
 #include "plugins/contact/ipc/rest_layers.h"
 
@@ -61,8 +63,8 @@ class BoundIpc final : public BoundContact {
   class Candidates;
 
   /// Returns false if there are more pairs than `limits`. The caller holds busy_.
-  bool search(const Positions& x0, const Positions& x1, const PairCounts& limits, BroadPhasePairs& found,
-              PairCounts& counts) const;
+  bool search(const Positions& x0, const Positions& x1, const PairCounts& limits,
+              std::vector<ContactPair>& found, PairCounts& counts) const;
 
   Ipc::Parameters p_;
   BarrierParameters barrier_;

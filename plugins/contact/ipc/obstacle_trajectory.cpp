@@ -79,7 +79,7 @@ class ObstacleTrajectory {
   double smallest_gap() {
     find(segment(0, 0), std::numeric_limits<long>::max());
     double gap = dhat_;
-    for (const ContactPair& pair : found_.pairs) {
+    for (const ContactPair& pair : found_) {
       const PairPositions at = positions_of(pair, x_, before_.vertices);
       gap = std::min(gap, connection(at, closest(pair.kind, at)).norm());
     }
@@ -97,15 +97,15 @@ class ObstacleTrajectory {
         limit *= 2;
         continue;
       }
-      std::vector<double> fractions(found_.pairs.size());
+      std::vector<double> fractions(found_.size());
       parallel_for(static_cast<int>(fractions.size()), 64, [&](int begin, int stop) {
         for (int i = begin; i < stop; ++i)
-          fractions[i] = PairOnSegment(found_.pairs[i], x_, segment, after_).advance(min_gap, max_iterations);
+          fractions[i] = PairOnSegment(found_[i], x_, segment, after_).advance(min_gap, max_iterations);
       });
       const auto smallest = std::min_element(fractions.begin(), fractions.end());
       if (smallest != fractions.end() && *smallest < 1)
         return {interpolate<double>(time, end, *smallest),
-                name_of(found_.pairs[smallest - fractions.begin()], after_, static_cast<int>(x_.rows()))};
+                name_of(found_[smallest - fractions.begin()], after_, static_cast<int>(x_.rows()))};
       length = 2 * (end - time);
       time = end;
     }
@@ -180,7 +180,7 @@ class ObstacleTrajectory {
   std::unique_ptr<BroadPhase> cloth_tree_, tree_;
   SweptBoxes cloth_boxes_, boxes_;
   AdjacencyList rows_;
-  BroadPhasePairs found_;  // on the last segment
+  std::vector<ContactPair> found_;  // on the last segment
 };
 
 }  // namespace

@@ -24,9 +24,9 @@ constexpr double neighbourhood = 2;
 constexpr double smallest_reach = 0.25;
 constexpr int pairs_per_task = 4096;
 
-BroadPhasePairs pairs_within_dhat(const Surface& cloth, const Positions& rest, double dhat) {
+std::vector<ContactPair> pairs_within_dhat(const Surface& cloth, const Positions& rest, double dhat) {
   const Positions none;
-  BroadPhasePairs found;
+  std::vector<ContactPair> found;
   PairCounts counts;
   const PairCounts limits{max_pairs, std::numeric_limits<long>::max()};
   if (!SelfPairSearch(cloth, BroadPhaseKind::bvh)
@@ -124,7 +124,7 @@ class PathSearch {
 
 RestLayers RestLayers::of(const Surface& cloth, const Level& level, double dhat) {
   const Positions& rest = level.rest.vertices;
-  const std::vector<ContactPair> pairs = pairs_within_dhat(cloth, rest, dhat).pairs;
+  const std::vector<ContactPair> pairs = pairs_within_dhat(cloth, rest, dhat);
   std::vector<double> reach(pairs.size());
   parallel_for(static_cast<int>(pairs.size()), pairs_per_task, [&](int begin, int end) {
     PathSearch paths(level, neighbourhood * dhat);

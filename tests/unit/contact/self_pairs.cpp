@@ -139,12 +139,12 @@ TEST_CASE("self pairs: every kind of broad phase finds those of a brute-force se
         if (noise > 0.1 && (step > 0.1 || dhat > 0.01)) REQUIRE(expected.size() > 1000);
         for (const BroadPhaseKind kind : {BroadPhaseKind::bvh, BroadPhaseKind::fcl}) {
           SelfPairSearch search(cloth.surface, kind);
-          BroadPhasePairs found;
+          std::vector<ContactPair> found;
           PairCounts counts;
           REQUIRE(search.find(motion, 0.5, unlimited, counts, found));
-          check_same(found.pairs, expected);
-          CHECK(counts.primitives == found.count());
-          for (const ContactPair& pair : found.pairs) CHECK((pair.dhat == dhat && pair.friction == 0.5));
+          check_same(found, expected);
+          CHECK(counts.primitives == std::ssize(found));
+          for (const ContactPair& pair : found) CHECK((pair.dhat == dhat && pair.friction == 0.5));
         }
       }
 }
