@@ -10,12 +10,24 @@
 namespace drape {
 namespace {
 
-std::string counted(int count, const std::string& one, const std::string& many) {
-  return std::to_string(count) + " " + (count == 1 ? one : many);
+/// The elements of one kind, for a text.
+struct Kind {
+  std::size_t count;
+  const char *one, *many;
+};
+
+/// "dropped 3 loose vertices and 1 doubled triangle"; empty if all numbers are 0.
+std::string counted(const std::string& verb, const std::vector<Kind>& kinds) {
+  std::vector<std::string> parts;
+  for (const auto& [count, one, many] : kinds)
+    if (count > 0) parts.push_back(std::to_string(count) + " " + (count == 1 ? one : many));
+  return parts.empty() ? "" : verb + " " + joined(parts, ", ", " and ");
 }
 
-/// Marks the triangles without area. They must have none in every frame, or some in every one.
-void mark_empty(const std::vector<TriangleMesh>& frames, std::vector<char>& dropped, int& count) {
+/// Marks the triangles without area, and returns their number. They must have none in every frame, or some in
+/// every one.
+std::size_t mark_empty(const std::vector<TriangleMesh>& frames, std::vector<char>& dropped) {
+  std::size_t count = 0;
   std::vector<std::size_t> frames_without(dropped.size(), 0);
   for (const TriangleMesh& frame : frames)
     for (const int t : MeshFaults::of_elements(frame).empty_triangles) ++frames_without[t];
@@ -28,6 +40,7 @@ void mark_empty(const std::vector<TriangleMesh>& frames, std::vector<char>& drop
     dropped[t] = 1;
     ++count;
   }
+  return count;
 }
 
 /// The number of each element among those that are kept; -1 for others.
@@ -63,57 +76,34 @@ std::vector<TriangleMesh> reduced(const std::vector<TriangleMesh>& frames,
   return result;
 }
 
-void require_indices_in_range(const TriangleMesh& mesh) {
-  const auto n = static_cast<int>(mesh.vertices.rows());
-  for (Eigen::Index t = 0; t < mesh.triangles.rows(); ++t)
-    if (mesh.triangles.row(t).minCoeff() < 0 || mesh.triangles.row(t).maxCoeff() >= n)
-      throw std::runtime_error("triangle " + std::to_string(t) +
-                               " (counted from 0) names a vertex that is not there");
-}
-
 }  // namespace
 
-std::string MeshRepair::text() const {
-  std::vector<std::string> dropped, kept;
-  if (loose_vertices > 0) dropped.push_back(counted(loose_vertices, "loose vertex", "loose vertices"));
-  if (doubled_triangles > 0)
-    dropped.push_back(counted(doubled_triangles, "doubled triangle", "doubled triangles"));
-  if (empty_triangles > 0)
-    dropped.push_back(counted(empty_triangles, "triangle without area", "triangles without area"));
-  if (crowded_edges > 0)
-    kept.push_back(counted(crowded_edges, "edge", "edges") + " with more than two triangles");
-  if (inverted_edges > 0)
-    kept.push_back(counted(inverted_edges, "edge", "edges") + " between triangles that face opposite ways");
-  if (shared_vertices > 0)
-    kept.push_back(counted(shared_vertices, "vertex", "vertices") + " with separate fans of triangles");
-  return (dropped.empty() ? "" : "dropped " + joined(dropped, ", ", " and ")) +
-         (dropped.empty() || kept.empty() ? "" : "; ") +
-         (kept.empty() ? "" : "kept " + joined(kept, ", ", " and "));
-}
-
 RepairedMesh repair_mesh(std::vector<TriangleMesh> frames) {
-  require_indices_in_range(frames[0]);
-  RepairedMesh repaired;
-  MeshRepair& done = repaired.done;
   const MeshFaults elements = MeshFaults::of_elements(frames[0]);
-  done.loose_vertices = static_cast<int>(elements.loose_vertices.size());
   std::vector<char> dropped(frames[0].triangles.rows(), 0);
-  for (const int t : elements.repeating_triangles) dropped[t] = 1, ++done.empty_triangles;
+  std::size_t doubled = 0;
+  for (const int t : elements.repeating_triangles) dropped[t] = 1;
   for (const MeshFaults::Pair& pair : elements.doubled_triangles)
-    if (!dropped[pair.element]) dropped[pair.element] = 1, ++done.doubled_triangles;
-  mark_empty(frames, dropped, done.empty_triangles);
-  const bool is_whole =
-      elements.loose_vertices.empty() && std::ranges::count(dropped, 0) == std::ssize(dropped);
-  repaired.frames = is_whole ? std::move(frames) : reduced(frames, dropped);
-  if (repaired.frames[0].triangles.rows() == 0) throw std::runtime_error("no triangle has an area");
+    if (!dropped[pair.element]) dropped[pair.element] = 1, ++doubled;
+  const std::size_t empty = elements.repeating_triangles.size() + mark_empty(frames, dropped);
+  if (!elements.loose_vertices.empty() || std::ranges::count(dropped, 0) < std::ssize(dropped))
+    frames = reduced(frames, dropped);
+  if (frames[0].triangles.rows() == 0) throw std::runtime_error("no triangle has an area");
 
   MeshFaults left;
-  left.find_connectivity(repaired.frames[0].triangles, static_cast<int>(repaired.frames[0].vertices.rows()),
-                         {});
-  done.crowded_edges = static_cast<int>(left.crowded_edges.size());
-  done.inverted_edges = static_cast<int>(left.inverted_edges.size());
-  done.shared_vertices = static_cast<int>(left.shared_vertices.size());
-  return repaired;
+  left.find_connectivity(frames[0].triangles, static_cast<int>(frames[0].vertices.rows()), {});
+  const std::string lost =
+      counted("dropped", {{elements.loose_vertices.size(), "loose vertex", "loose vertices"},
+                          {doubled, "doubled triangle", "doubled triangles"},
+                          {empty, "triangle without area", "triangles without area"}});
+  const std::string kept = counted(
+      "kept",
+      {{left.crowded_edges.size(), "edge with more than two triangles", "edges with more than two triangles"},
+       {left.inverted_edges.size(), "edge between triangles that face opposite ways",
+        "edges between triangles that face opposite ways"},
+       {left.shared_vertices.size(), "vertex with separate fans of triangles",
+        "vertices with separate fans of triangles"}});
+  return {std::move(frames), lost + (lost.empty() || kept.empty() ? "" : "; ") + kept};
 }
 
 }  // namespace drape

@@ -53,7 +53,7 @@ ObstacleMeshes load_meshes(const std::vector<std::string>& files, const FileCoor
   ObstacleMeshes loaded;
   try {
     RepairedMesh repaired = repair_mesh(std::move(frames));
-    loaded.repair = repaired.done.text();
+    loaded.repair = std::move(repaired.remark);
     for (TriangleMesh& mesh : repaired.frames) loaded.frames.push_back(ValidatedMesh::of(std::move(mesh)));
   } catch (const std::runtime_error& error) {
     throw std::runtime_error(files[0] + ": " + error.what());
