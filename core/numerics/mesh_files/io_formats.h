@@ -1,5 +1,6 @@
 #pragma once
 
+#include <bit>
 #include <filesystem>
 #include <string>
 #include <string_view>
@@ -9,6 +10,8 @@
 #include "core/numerics/mesh_files/io.h"
 
 namespace drape {
+
+static_assert(std::endian::native == std::endian::little, "binary formats hold numbers as memory does");
 
 // The formats behind read_mesh and write_mesh; bytes are a file's whole contents, the path is for errors.
 

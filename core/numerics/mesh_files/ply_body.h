@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cstdint>
 #include <cstring>
 #include <filesystem>
@@ -16,8 +15,6 @@
 #include "core/numerics/mesh_files/ply_header.h"
 
 namespace drape {
-
-static_assert(std::endian::native == std::endian::little, "numbers are decoded on a little-endian machine");
 
 /// The number that these bytes begin with.
 template <class Number>

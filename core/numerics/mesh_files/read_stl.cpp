@@ -1,7 +1,6 @@
 // STL: triangles of three points each, as text or binary. Points that are equal become one vertex.
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cmath>
 #include <cstdint>
 #include <cstring>
@@ -15,8 +14,6 @@
 
 namespace drape {
 namespace {
-
-static_assert(std::endian::native == std::endian::little, "numbers are decoded on a little-endian machine");
 
 constexpr std::size_t header_size = 84, triangle_size = 50;  // of binary files [bytes]
 

@@ -1,25 +1,11 @@
 // PLY out: binary little endian, double.
-#include <bit>
 #include <cstdint>
-#include <cstring>
 
 #include "core/kernel/files/file.h"
 #include "core/numerics/mesh_files/io.h"
 #include "core/numerics/mesh_files/io_formats.h"
 
 namespace drape {
-namespace {
-
-static_assert(std::endian::native == std::endian::little, "numbers are written as memory holds them");
-
-template <class Number>
-void append(std::string& bytes, Number number) {
-  char raw[sizeof number];
-  std::memcpy(raw, &number, sizeof number);
-  bytes.append(raw, sizeof number);
-}
-
-}  // namespace
 
 std::string ply_bytes(const TriangleMesh& mesh, const VertexFields& fields) {
   std::string bytes = "ply\nformat binary_little_endian 1.0\nelement vertex " +
@@ -33,16 +19,19 @@ std::string ply_bytes(const TriangleMesh& mesh, const VertexFields& fields) {
   const bool with_warp = mesh.warp.rows() > 0;
   if (with_warp) bytes += "property double warp_x\nproperty double warp_y\nproperty double warp_z\n";
   bytes += "end_header\n";
+  const auto append = [&](auto number) {
+    bytes.append(reinterpret_cast<const char*>(&number), sizeof number);
+  };
   for (int v = 0; v < mesh.vertices.rows(); ++v) {
-    for (int k = 0; k < 3; ++k) append(bytes, mesh.vertices(v, k));
-    for (const VertexField& field : fields) append(bytes, field.values[v]);
+    for (int k = 0; k < 3; ++k) append(mesh.vertices(v, k));
+    for (const VertexField& field : fields) append(field.values[v]);
   }
   for (int t = 0; t < mesh.triangles.rows(); ++t) {
-    append(bytes, std::uint8_t{3});
-    for (int k = 0; k < 3; ++k) append(bytes, std::int32_t{mesh.triangles(t, k)});
-    if (with_uv) append(bytes, std::uint8_t{6});
-    for (int k = 0; with_uv && k < 6; ++k) append(bytes, mesh.uv(t, k));
-    for (int k = 0; with_warp && k < 3; ++k) append(bytes, mesh.warp(t, k));
+    append(std::uint8_t{3});
+    for (int k = 0; k < 3; ++k) append(std::int32_t{mesh.triangles(t, k)});
+    if (with_uv) append(std::uint8_t{6});
+    for (int k = 0; with_uv && k < 6; ++k) append(mesh.uv(t, k));
+    for (int k = 0; with_warp && k < 3; ++k) append(mesh.warp(t, k));
   }
   return bytes;
 }

@@ -1,8 +1,6 @@
 // VTK XML PolyData and ParaView collections, as in "VTK XML Formats" (Kitware): inline base64 of a
 // UInt64 byte count and the data, in one piece.
-#include <bit>
 #include <cstdint>
-#include <cstring>
 
 #include "core/kernel/files/file.h"
 #include "core/kernel/files/number_text.h"
@@ -12,8 +10,6 @@
 
 namespace drape {
 namespace {
-
-static_assert(std::endian::native == std::endian::little, "numbers are written as memory holds them");
 
 std::string escaped(const std::string& text) {
   std::string result;
@@ -25,9 +21,8 @@ std::string escaped(const std::string& text) {
 template <class Number>
 std::string data_array(const std::string& attributes, const Number* values, Eigen::Index count) {
   const std::uint64_t size = static_cast<std::uint64_t>(count) * sizeof(Number);
-  std::string bytes(sizeof size + size, '\0');
-  std::memcpy(bytes.data(), &size, sizeof size);
-  if (size > 0) std::memcpy(bytes.data() + sizeof size, values, size);
+  std::string bytes(reinterpret_cast<const char*>(&size), sizeof size);
+  if (size > 0) bytes.append(reinterpret_cast<const char*>(values), size);
   return "<DataArray " + attributes + " format=\"binary\">" + base64(bytes) + "</DataArray>\n";
 }
 
