@@ -1,11 +1,8 @@
 #include "core/numerics/mesh/check.h"
 
-#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
-#include <utility>
 
 #include "core/kernel/files/message_text.h"
 #include "core/kernel/plugin/bounds.h"
@@ -173,20 +170,6 @@ std::vector<std::string> check_mesh(const TriangleMesh& mesh) {
   if (is_sound) check_borders(mesh, lines);
   if (lines.empty()) check_overlaps(mesh, lines);
   return lines;
-}
-
-double smallest_angle(const TriangleMesh& mesh) {
-  if (mesh.triangles.rows() == 0) return 0;
-  double smallest = std::numbers::pi;
-  for (const auto& v : mesh.triangles.rowwise())
-    for (int k = 0; k < 3; ++k) {
-      const auto side_to = [&](int i) -> Eigen::Vector3d {
-        return mesh.vertices.row(v[i % 3]) - mesh.vertices.row(v[k]);
-      };
-      const Eigen::Vector3d a = side_to(k + 1), b = side_to(k + 2);
-      smallest = std::min(smallest, std::atan2(a.cross(b).norm(), a.dot(b)));
-    }
-  return smallest * 180 / std::numbers::pi;
 }
 
 }  // namespace drape

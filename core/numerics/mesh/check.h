@@ -20,7 +20,4 @@ std::vector<std::string> check_mesh(const TriangleMesh& mesh);
 /// far from the origin that round-off changes its shape.
 std::vector<std::string> check_coordinates(const Positions& x);
 
-/// The smallest angle of all triangles [degree]; 0 for a mesh without triangles.
-double smallest_angle(const TriangleMesh& mesh);
-
 }  // namespace drape

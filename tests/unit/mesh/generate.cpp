@@ -1,5 +1,7 @@
 #include "core/numerics/patterns/generate.h"
 
+#include <Eigen/Geometry>
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <numbers>
@@ -11,6 +13,20 @@
 using namespace drape;
 
 namespace {
+
+/// The smallest angle of all triangles [degree].
+double smallest_angle(const TriangleMesh& mesh) {
+  double smallest = std::numbers::pi;
+  for (const auto& v : mesh.triangles.rowwise())
+    for (int k = 0; k < 3; ++k) {
+      const auto side_to = [&](int i) -> Eigen::Vector3d {
+        return mesh.vertices.row(v[i % 3]) - mesh.vertices.row(v[k]);
+      };
+      const Eigen::Vector3d a = side_to(k + 1), b = side_to(k + 2);
+      smallest = std::min(smallest, std::atan2(a.cross(b).norm(), a.dot(b)));
+    }
+  return smallest * 180 / std::numbers::pi;
+}
 
 /// Signed area of a flat mesh.
 double signed_area(const TriangleMesh& mesh) {

@@ -1,5 +1,4 @@
 #include <catch2/catch.hpp>
-#include <cmath>
 #include <limits>
 
 #include "core/numerics/mesh/check.h"
@@ -196,14 +195,4 @@ TEST_CASE("a vertex within an edge of the triangle beside it is a T-junction", "
   mesh.triangles.row(2) << 5, 6, 3;
   append(mesh, {{0, 0, 0}, {cos(angle), 1, sin(angle)}}, {});
   CHECK(check_mesh(mesh).empty());
-}
-
-TEST_CASE("the smallest angle is in degrees", "[check]") {
-  TriangleMesh mesh = strip();
-  CHECK(smallest_angle(mesh) == Approx(45));
-  mesh.vertices.row(3) << 1, std::sqrt(3.0), 1;
-  mesh.triangles.conservativeResize(1, 3);
-  mesh.triangles << 0, 1, 3;
-  CHECK(smallest_angle(mesh) == Approx(30));
-  CHECK(smallest_angle({}) == 0);
 }
