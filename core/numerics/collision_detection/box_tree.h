@@ -49,13 +49,9 @@ class BoxTree {
   /// neighbouring leaves move apart.
   double surface_area_cost() const;
 
-  // Both leave out pairs of primitives that share a vertex.
-
-  /// Calls found(i, j) once for each overlapping pair with one box in the run and the other in that run or a
-  /// later one.
-  template <class Found>
-  void overlaps(int run, const Found& found) const;
-  /// Calls found(i, j) for each box i of the run that overlaps box j of the other tree.
+  /// Calls found(i, j) for each box i of the run that overlaps box j of the other tree; of this tree, once
+  /// for each pair with one box in the run and the other in that run or a later one. Leaves out pairs of
+  /// primitives that share a vertex.
   template <class Found>
   void overlaps(const BoxTree& other, int run, const Found& found) const;
 
@@ -130,13 +126,11 @@ inline unsigned BoxTree::sharing(int group, int k, const BoxTree& other, int oth
 }
 
 template <class Found>
-void BoxTree::overlaps(int run, const Found& found) const {
-  search<true>(*this, run, found);
-}
-
-template <class Found>
 void BoxTree::overlaps(const BoxTree& other, int run, const Found& found) const {
-  search<false>(other, run, found);
+  if (&other == this)
+    search<true>(other, run, found);
+  else
+    search<false>(other, run, found);
 }
 
 /// Descends from the other's root to groups of the run's level.

@@ -52,20 +52,9 @@ class BvhBroadPhase final : public BroadPhase {
     cost_when_built_ = tree_.surface_area_cost();
   }
 
-  bool overlaps(long limit, AdjacencyList& pairs) const override {
-    return collect(tree_.size(), limit, pairs, [this](int run, auto found) {
-      tree_.overlaps(run, [&](int i, int j) { found(std::min(i, j), std::max(i, j)); });
-    });
-  }
-
   bool overlaps(const BroadPhase& other, long limit, AdjacencyList& pairs) const override {
     const BoxTree& tree = same_kind<BvhBroadPhase>(other).tree_;
-    return collect(tree.size(), limit, pairs, [&](int run, auto found) { tree_.overlaps(tree, run, found); });
-  }
-
- private:
-  template <class Search>
-  bool collect(int columns, long limit, AdjacencyList& pairs, const Search& search) const {
+    const bool self = &other == this;
     const int runs = tree_.runs();
     std::vector<IndexPairs> lists((runs + runs_per_task - 1) / runs_per_task);
     std::atomic<long> count = 0;
@@ -73,16 +62,19 @@ class BvhBroadPhase final : public BroadPhase {
       IndexPairs& list = lists[begin / runs_per_task];
       std::size_t counted = 0;
       for (int run = begin; run < end && count.load(std::memory_order_relaxed) <= limit; ++run) {
-        search(run, [&](int i, int j) { list.emplace_back(i, j); });
+        tree_.overlaps(tree, run, [&](int i, int j) {
+          list.emplace_back(self ? std::min(i, j) : i, self ? std::max(i, j) : j);
+        });
         count += static_cast<long>(list.size() - counted);
         counted = list.size();
       }
     });
     if (count > limit) return false;
-    pairs = rows_of(lists, tree_.size(), columns);
+    pairs = rows_of(lists, tree_.size(), tree.size());
     return true;
   }
 
+ private:
   Stencils vertices_;
   BoxTree tree_;
   double cost_when_built_ = 0;
@@ -118,19 +110,15 @@ class FclBroadPhase final : public BroadPhase {
     model_->endModel();
   }
 
-  bool overlaps(long limit, AdjacencyList& pairs) const override { return collect(*this, limit, pairs); }
-  bool overlaps(const BroadPhase& other, long limit, AdjacencyList& pairs) const override {
-    return collect(same_kind<FclBroadPhase>(other), limit, pairs);
-  }
-
- private:
-  bool collect(const FclBroadPhase& other, long limit, AdjacencyList& pairs) const {
+  bool overlaps(const BroadPhase& phase, long limit, AdjacencyList& pairs) const override {
+    const auto& other = same_kind<FclBroadPhase>(phase);
     std::vector<IndexPairs> lists(1);
     if (size_ > 0 && other.size_ > 0 && !search(other, limit, lists[0])) return false;
     pairs = rows_of(lists, static_cast<int>(size_), static_cast<int>(other.size_));
     return true;
   }
 
+ private:
   /// Traverses both trees top-down. A node against itself becomes its children against themselves and each
   /// other.
   bool search(const FclBroadPhase& other, long limit, IndexPairs& list) const {

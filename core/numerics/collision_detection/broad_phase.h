@@ -24,12 +24,9 @@ class BroadPhase {
   /// their neighbours are the same.
   virtual void update(const std::vector<Box>& boxes) = 0;
 
-  /// Sets row i of `pairs` to the boxes j > i that overlap box i, ascending. Returns false, without rows, if
-  /// there are more than `limit` pairs.
-  virtual bool overlaps(long limit, AdjacencyList& pairs) const = 0;
-
-  /// Sets row i of `pairs` to the other's boxes that overlap box i, ascending. Returns false, without rows,
-  /// if there are more than `limit` pairs. Throws std::runtime_error if `other` is of another kind.
+  /// Sets row i of `pairs` to the other's boxes that overlap box i, ascending; of itself, to the boxes j > i.
+  /// Returns false, without rows, if there are more than `limit` pairs. Throws std::runtime_error if `other`
+  /// is of another kind.
   virtual bool overlaps(const BroadPhase& other, long limit, AdjacencyList& pairs) const = 0;
 };
 

@@ -160,7 +160,8 @@ Eigen::Vector3d from_vertices(const TriangleMesh& from, const TriangleMesh& to, 
 
 std::vector<TrianglePair> self_intersections(const TriangleMesh& mesh) {
   AdjacencyList candidates;
-  broad_phase_of(mesh)->overlaps(unlimited, candidates);
+  const auto phase = broad_phase_of(mesh);
+  phase->overlaps(*phase, unlimited, candidates);
   return meeting(mesh, mesh, true, candidates);
 }
 

@@ -93,9 +93,7 @@ void SelfPairSearch::collect(const LinearMotion& motion, long limit, std::vector
 template <PairKind kind>
 bool SelfPairSearch::find_kind(const BroadPhase& first, const BroadPhase& second, const LinearMotion& motion,
                                const PairCounts& limits, PairCounts& counts, std::vector<Pair>& pairs) {
-  const long limit = limits.boxes - counts.boxes;
-  if (!(&first == &second ? first.overlaps(limit, rows_) : first.overlaps(second, limit, rows_)))
-    return false;
+  if (!first.overlaps(second, limits.boxes - counts.boxes, rows_)) return false;
   counts.boxes += static_cast<long>(rows_.items.size());
   collect<kind>(motion, limits.primitives - counts.primitives, pairs);
   return counts.primitives + static_cast<long>(pairs.size()) <= limits.primitives;

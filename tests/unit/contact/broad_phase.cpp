@@ -44,7 +44,7 @@ void check_same(const AdjacencyList& found, const AdjacencyList& expected) {
 
 AdjacencyList pairs_of(const BroadPhase& phase) {
   AdjacencyList pairs;
-  REQUIRE(phase.overlaps(unlimited, pairs));
+  REQUIRE(phase.overlaps(phase, unlimited, pairs));
   return pairs;
 }
 
@@ -182,9 +182,9 @@ TEST_CASE("broad phase: the limit on pairs, and kinds that differ") {
     const auto phase = make_broad_phase(kind);
     phase->update(boxes);
     AdjacencyList pairs;
-    CHECK(phase->overlaps(count, pairs));
+    CHECK(phase->overlaps(*phase, count, pairs));
     CHECK(static_cast<long>(pairs.items.size()) == count);
-    CHECK(!phase->overlaps(count - 1, pairs));
+    CHECK(!phase->overlaps(*phase, count - 1, pairs));
     const auto other =
         make_broad_phase(kind == BroadPhaseKind::fcl ? BroadPhaseKind::bvh : BroadPhaseKind::fcl);
     CHECK_THROWS_WITH(phase->overlaps(*other, count, pairs), Catch::Contains("two kinds"));
