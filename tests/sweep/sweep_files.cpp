@@ -76,7 +76,7 @@ TEST_CASE("the shape of an ablation") {
         "error: s.yaml:3:18: repeated key \"levels\" in set; it is first set at s.yaml:3:7\n");
   std::string ten = "[1", grid;
   for (int k = 2; k <= 10; ++k) ten += ", " + std::to_string(k);
-  for (const char* key : {"newton.max_steps", "newton.hessian_update_interval", "newton.iterations_per_step",
+  for (const char* key : {"newton.max_steps", "newton.step_size", "newton.iterations_per_step",
                           "levels", "newton.step_growth"})
     grid += std::string(grid.empty() ? "" : ", ") + key + ": " + ten + "]";
   CHECK(said_of("ablation: {grid: {" + grid + "}}\n") ==
@@ -119,7 +119,7 @@ TEST_CASE("two equal variations") {
   CHECK(said_of("repeats: 2\nset: {start.perturbation: 1e-3}\nablation: [{name: a}, {name: b}]\n") ==
         "error: s.yaml:5:30: variations \"a\" and \"b\" come to the same experiment; take one of them out\n");
   CHECK(said_of("methods: [pcs]\nablation: [{name: a}, {name: b, set: "
-                "{methods.newton.newton.hessian_update_interval: 2}}]\n") ==
+                "{methods.newton.newton.iterations_per_step: 2}}]\n") ==
         "error: s.yaml:4:30: variations \"a\" and \"b\" come to the same experiment; take one of them out\n");
   CHECK(said_of("ablation: {grid: {levels: [1, 1]}}\n") ==
         "error: s.yaml:3:18: variation \"levels=1\" is given twice; rename one of them\n");

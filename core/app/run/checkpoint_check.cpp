@@ -95,8 +95,8 @@ class Check {
     // The load under way may pin more vertices than the first: DirichletEnforcer checks against its number.
     for (const int k : s.dirichlet.unsatisfied) require(k >= 0 && k < n, "a Dirichlet vertex out of range");
     const int blend = s.step.factor.blend;
-    require(s.step.controller.step_size > 0 && s.step.max_iterations > 0 && s.step.factor.age >= 0 &&
-                s.step.factor.fallback_updates >= 0 && blend >= 0 && blend < HessianModification::blend_count,
+    require(s.step.controller.step_size > 0 && s.step.max_iterations > 0 &&
+                s.step.factor.fallback_solves >= 0 && blend >= 0 && blend < HessianModification::blend_count,
             "the settings of the step");
     for (const Positions* x : {&s.load_stepper.response.from, &s.load_stepper.response.predicted})
       if (x->rows() > 0) positions(*x, level, "the response to an increment");
@@ -127,8 +127,7 @@ class Check {
     const BlockCholesky::Analysis& a = s.analysis;
     require(a.count >= 0, "the factor's ordering");
     if (a.count == 0) return;
-    const bool has_factor = !s.values.empty() && s.solver != LinearSolver::multigrid;
-    if (!has_factor && a.fixed.empty() && a.ordering.empty() && a.reused_ordering.empty()) return;
+    if (a.fixed.empty() && a.ordering.empty() && a.reused_ordering.empty()) return;
     require(static_cast<int>(a.fixed.size()) == n, "the factor's ordering");
     for (const std::vector<int>* ordering : {&a.reused_ordering, &a.ordering}) {
       if (ordering->empty()) continue;
@@ -138,7 +137,6 @@ class Check {
         if (!a.fixed[v]) free.push_back(v);
       require(sorted == free, "the factor's ordering");
     }
-    require(s.values.empty() || !s.pattern.invalidated, "the factor");
   }
 
   void recorder(const Recorder::State& s) const {

@@ -30,7 +30,6 @@ Multigrid::Multigrid(std::span<const ProlongationMatrix> prolongations) {
 
 bool Multigrid::set(const BlockMatrix& matrix, const Eigen::VectorXd& shift, const std::vector<char>& fixed) {
   matrix_ = &matrix, shift_ = shift, fixed_ = fixed;
-  is_set_ = false;
   meshes_.front()->fill(matrix, shift, fixed);
   for (std::size_t k = 0; k + 1 < meshes_.size(); ++k) {
     if (!meshes_[k]->matrix.finish()) return false;
@@ -41,7 +40,7 @@ bool Multigrid::set(const BlockMatrix& matrix, const Eigen::VectorXd& shift, con
   if (coarsest.copy_to(coarsest_matrix_)) coarsest_.forget();
   coarsest_.analyse(coarsest_matrix_.pattern, std::vector<char>(coarsest.order.size(), 0));
   flops_ += coarsest_.flops();
-  return is_set_ = coarsest_.factorise(coarsest_matrix_, Eigen::VectorXd::Zero(coarsest.size()));
+  return coarsest_.factorise(coarsest_matrix_, Eigen::VectorXd::Zero(coarsest.size()));
 }
 
 void Multigrid::cycle(int mesh) {

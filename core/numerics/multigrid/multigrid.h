@@ -30,8 +30,6 @@ class Multigrid {
   /// until the next call. Returns false if a block of a vertex or the coarsest matrix is not positive
   /// definite.
   bool set(const BlockMatrix& matrix, const Eigen::VectorXd& shift, const std::vector<char>& fixed);
-  /// Whether the last call of set() has returned true.
-  bool is_set() const { return is_set_; }
 
   /// Solves to a relative residual of 0.1, with which Newton takes about as many iterations as with exact
   /// directions, or of 0.4 where cycles would take longer than a factorisation; not converged if that is not
@@ -52,7 +50,6 @@ class Multigrid {
   Eigen::VectorXd shift_;
   std::vector<char> fixed_;
   ConjugateGradients gradients_;
-  bool is_set_ = false;
   double flops_ = 0;
 };
 

@@ -50,7 +50,6 @@ void DirichletPredictor::increase_penalty() {
 /// fraction.
 double DirichletPredictor::predict(bool whole, bool with_inertia) {
   const double fraction = step_.factorise(iterate_.model().fixed(), with_inertia) ? move(whole) : 0;
-  step_.factor().invalidate();  // it leaves out all Dirichlet vertices
   update_constraints();
   return fraction;
 }

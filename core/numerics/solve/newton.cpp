@@ -164,7 +164,6 @@ class Newton {
   void follow_contact_forces() {
     if (!(iterate_.force_residual() < balanced)) return;
     if (!f_.contacts().raise_stiffness(iterate_.x(), f_.model().material().mean_membrane_modulus())) return;
-    step_.factor().invalidate();
     start_over();
   }
 
@@ -219,7 +218,6 @@ class Newton {
     step_.controller().end_limit();
     load_.advance(at_equilibrium);
     check_.restart();
-    step_.factor().invalidate();
     predictor_.enforce();
     check_.restart_drift();
   }

@@ -41,7 +41,7 @@ class EquilibriumCheck {
   /// Looks for a new cycle, after the solver has done something about the last one.
   void restart_cycle() { s_.cycle = {}; }
   /// Whether all forces are within their round-off bounds. Lags friction at the iterate first, and restarts
-  /// the count of idle steps. Call it only once progress has stopped: it invalidates the factor.
+  /// the count of idle steps. Call it only once progress has stopped: it assembles the Hessian.
   bool is_at_rounding_floor(FactorCache& factor);
   /// Bound on the force residual by round-off at the last such check [1].
   double rounding_residual() const { return rounding_residual_; }

@@ -1,13 +1,11 @@
 #include "core/numerics/step/factor_cache.h"
 
-#include <stdexcept>
-
 namespace drape {
 
 namespace {
 
-/// Updates of the Hessian for which another solver stays in use after the preferred one has failed.
-constexpr int fallback_updates = 10;
+/// Solves for which another solver stays in use after the preferred one has failed.
+constexpr int fallback_solves = 10;
 /// Vertices from which on multigrid takes less time than a factorisation.
 constexpr int multigrid_from = 20'000;
 
@@ -35,7 +33,6 @@ LinearSolver factorising_solver(const NewtonParameters& p) {
 
 FactorCache::FactorCache(Iterate& iterate, const NewtonParameters& parameters, const Hierarchy* hierarchy)
     : iterate_(iterate),
-      interval_(parameters.hessian_update_interval),
       direct_(direct_solver(parameters)),
       multigrid_(multigrid_for(iterate.model().level(), parameters, hierarchy)),
       preferred_(multigrid_ ? LinearSolver::multigrid : factorising_solver(parameters)),
@@ -54,10 +51,8 @@ void FactorCache::use(LinearSolver solver) {
 
 bool FactorCache::solve(const std::vector<char>& fixed, double mass_shift, double step_length,
                         const Positions& right_hand_side, Positions& solution) {
-  if (has_fresh_factor() && solve_with_factor(right_hand_side, solution)) return true;
-  age_ = 0;
-  use(fallback_updates_ > 0 ? fallback_ : preferred_);
-  if (fallback_updates_ > 0) --fallback_updates_;
+  use(fallback_solves_ > 0 ? fallback_ : preferred_);
+  if (fallback_solves_ > 0) --fallback_solves_;
   bool has_whole_projection = false;
   fault_ = modification_.factorise(
       [&](Projection projection) -> const BlockMatrix& {
@@ -70,7 +65,7 @@ bool FactorCache::solve(const std::vector<char>& fixed, double mass_shift, doubl
           const bool may_be_definite = has_whole_projection || too_slow_;
           if (solver_ == direct_ || !may_be_definite) return false;
           fallback_ = solver_ == LinearSolver::multigrid ? LinearSolver::mixed : direct_;
-          fallback_updates_ = fallback_updates;
+          fallback_solves_ = fallback_solves;
           use(fallback_);
         }
         return true;
@@ -90,8 +85,6 @@ bool FactorCache::solve_with_factor(const Positions& right_hand_side, Positions&
 }
 
 bool FactorCache::update(const std::vector<char>& fixed, double mass_shift, double step_length) {
-  if (has_fresh_factor() && solver_ == direct_) return true;
-  age_ = 0;
   use(direct_);
   fault_ = modification_.factorise(
       [&](Projection projection) -> const BlockMatrix& { return iterate_.hessian(projection); },
@@ -113,7 +106,6 @@ bool FactorCache::factorise(const BlockMatrix& matrix, const std::vector<char>& 
 
 bool FactorCache::set_matrix(const BlockMatrix& matrix, const std::vector<char>& fixed, double shift) {
   factored_ = &matrix;
-  shift_ = shift;
   const Eigen::VectorXd shifts = shift * iterate_.model().masses();
   return solver_ == LinearSolver::multigrid ? multigrid_->set(matrix, shifts, fixed)
                                             : cholesky_.factorise(matrix, shifts);
@@ -130,47 +122,20 @@ const BlockMatrix& FactorCache::plain_hessian() {
   // checkpoint stores the pattern of the last matrix, and a resumed run takes that for the one that was
   // analysed.
   if (cholesky_.is_analysed()) analyse(matrix, iterate_.fixed());
-  invalidate();
   return matrix;
 }
 
-void FactorCache::end_iteration(double step_length) {
-  const bool stale = age_ > 0 && step_length < 1;
-  age_ = stale ? interval_ : age_ + 1;
-}
-
 FactorCache::State FactorCache::state() const {
-  State s;
-  s.blend = modification_.blend();
-  s.pattern = iterate_.objective().pattern_state();
-  s.analysis = cholesky_.analysis();
-  s.age = age_;
-  s.fallback = fallback_;
-  s.fallback_updates = fallback_updates_;
-  if (has_fresh_factor()) {
-    s.solver = solver_;
-    s.shift = shift_;
-    s.values = factored_->values;
-  }
-  return s;
+  return {modification_.blend(), iterate_.objective().pattern_state(), cholesky_.analysis(), fallback_,
+          fallback_solves_};
 }
 
 void FactorCache::restore(const State& s) {
   modification_.set_blend(s.blend);
-  age_ = s.age;
   fallback_ = s.fallback;
-  fallback_updates_ = s.fallback_updates;
+  fallback_solves_ = s.fallback_solves;
   const std::shared_ptr<const BlockPattern> pattern = iterate_.objective().restore(s.pattern, iterate_.x());
   if (s.analysis.count > 0) cholesky_.restore(pattern, s.analysis);
-  if (s.values.empty()) return;
-  BlockMatrix matrix(pattern);
-  if (s.values.size() != matrix.values.size())
-    throw std::runtime_error("the checkpoint's factor belongs to another matrix; run the experiment again");
-  matrix.values = s.values;
-  restored_ = std::move(matrix);
-  use(s.solver);
-  set_matrix(restored_, iterate_.fixed(), s.shift);
-  if (multigrid_) multigrid_->take_flops();  // they were counted when the factor was made
 }
 
 }  // namespace drape

@@ -12,8 +12,7 @@
 
 namespace drape {
 
-/// The factorised Newton matrix of a minimisation. One factor serves `hessian_update_interval` iterations,
-/// unless a shortened step shows that it is stale.
+/// The factorised Newton matrix of an iteration. The analysis of its pattern is kept until that changes.
 ///
 /// A matrix that LinearSolver::multigrid or mixed, in single precision, finds not to be positive definite has
 /// more of the projection blended in. If the whole does not suffice, or cycles converge too slowly, the next
@@ -25,26 +24,21 @@ class FactorCache {
     int blend = HessianModification::blend_count - 1;  ///< HessianModification::blend
     Objective::PatternState pattern;
     BlockCholesky::Analysis analysis;
-    int age = 0;                                  ///< iterations since the Hessian was updated
     LinearSolver fallback = LinearSolver::mixed;  ///< used instead of the preferred one …
-    int fallback_updates = 0;                     ///< … for so many further updates of the Hessian
-    // A factor that later iterations reuse; without values there is none.
-    LinearSolver solver = LinearSolver::mixed;  ///< by which it was made
-    double shift = 0;            ///< multiple of the masses that was added to the matrix [1/s²]
-    std::vector<double> values;  ///< blocks of the factorised matrix
+    int fallback_solves = 0;                      ///< … for so many further solves
   };
   State state() const;
-  /// The iterate must have been evaluated. Throws std::runtime_error if the state is of another matrix.
+  /// The iterate must have been evaluated.
   void restore(const State& state);
 
   /// Refers to the iterate. Its result counts the factorisations, their operations and seconds. Without a
   /// hierarchy of its level there is no multigrid.
   FactorCache(Iterate& iterate, const NewtonParameters& parameters, const Hierarchy* hierarchy = nullptr);
 
-  /// Solves with the Newton matrix; n×3 right-hand side [N] and solution [m], whose fixed rows are zero. If
-  /// the present factor is stale, first factorises the Hessian at the iterate plus `mass_shift` [1/s²] times
-  /// the masses, without the rows and columns of fixed vertices (one flag a vertex). `step_length` is the
-  /// last α. Returns false if that fails; fault() then says why.
+  /// Factorises the Hessian at the iterate plus `mass_shift` [1/s²] times the masses, without the rows and
+  /// columns of fixed vertices (one flag a vertex), and solves with it; n×3 right-hand side [N] and solution
+  /// [m], whose fixed rows are zero. `step_length` is the last α. Returns false if that fails; fault() then
+  /// says why.
   bool solve(const std::vector<char>& fixed, double mass_shift, double step_length,
              const Positions& right_hand_side, Positions& solution);
   /// Factorises in double precision, as solve() would, a matrix that any number of right-hand sides follow.
@@ -59,27 +53,16 @@ class FactorCache {
   /// The factorised matrix without the shift.
   const BlockMatrix& matrix() const { return *factored_; }
 
-  /// The Hessian at the iterate without projection [N/m], valid until the next update. It takes the place of
-  /// the factorised matrix, so the next update factorises.
+  /// The Hessian at the iterate without projection [N/m], valid until the next factorisation. It takes the
+  /// place of the factorised matrix.
   const BlockMatrix& plain_hessian();
 
-  /// Iterations since the Hessian was updated.
-  int age() const { return age_; }
-  /// Ends an iteration. A shortened step along the direction of a reused factor makes the factor
-  /// stale.
-  void end_iteration(double step_length);
-  /// Makes the next update factorise.
-  void invalidate() { age_ = interval_; }
-
+  /// By which the last factorisation was made.
+  LinearSolver solver() const { return solver_; }
   /// Number of symbolic analyses.
   int analyses() const { return cholesky_.analyses(); }
 
  private:
-  bool has_fresh_factor() const {
-    const bool has_factor =
-        solver_ == LinearSolver::multigrid ? multigrid_->is_set() : cholesky_.has_factor();
-    return has_factor && age_ < interval_;
-  }
   void use(LinearSolver solver);
   /// Makes the factor, or the meshes' matrices, of the analysed matrix plus the shift.
   bool set_matrix(const BlockMatrix& matrix, const std::vector<char>& fixed, double shift);
@@ -88,20 +71,16 @@ class FactorCache {
   bool solve_with_factor(const Positions& right_hand_side, Positions& solution);
 
   Iterate& iterate_;
-  const int interval_;
   const LinearSolver direct_;             // for matrices of which nothing is known
   std::unique_ptr<Multigrid> multigrid_;  // null where it is not to be used
   const LinearSolver preferred_;
   HessianModification modification_;
   BlockCholesky cholesky_;
-  const BlockMatrix* factored_ = nullptr;  // the objective's matrix, or restored_
-  BlockMatrix restored_;
-  double shift_ = 0;
-  int age_ = 0;
+  const BlockMatrix* factored_ = nullptr;  // the objective's matrix
   LinearSolver solver_;    // in use
   bool too_slow_ = false;  // the last solve did not converge
   LinearSolver fallback_ = LinearSolver::mixed;
-  int fallback_updates_ = 0;
+  int fallback_solves_ = 0;
   std::string fault_;
 };
 

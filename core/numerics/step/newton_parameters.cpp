@@ -50,10 +50,6 @@ void NewtonParameters::declare(Declaration<NewtonParameters>& d) {
        "after full steps and raises it until the matrix is positive definite, and so approaches the exact "
        "Hessian near an equilibrium")
       .source("departure from the paper");
-  d.add("hessian_update_interval", &NewtonParameters::hessian_update_interval,
-        "iterations that share one Hessian and its factor")
-      .between(1, 1e6)
-      .source("departure from the paper");
   d.add_choice(
        "linear_solver", &NewtonParameters::linear_solver,
        {{"automatic", LinearSolver::automatic},

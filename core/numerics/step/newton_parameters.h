@@ -26,7 +26,6 @@ struct NewtonParameters {
   double decrement_tolerance = 0;
   Projection::Kind projection = Projection::clamp;
   PsdBlend psd_blend = PsdBlend::adaptive;
-  int hessian_update_interval = 1;
   LinearSolver linear_solver = LinearSolver::automatic;
 
   static void declare(Declaration<NewtonParameters>& d);

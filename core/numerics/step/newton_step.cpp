@@ -38,17 +38,11 @@ void NewtonStep::restore(const State& s) {
   factor_.restore(s.factor);
 }
 
-void NewtonStep::restart() {
-  controller_.restart();
-  factor_.invalidate();
-}
-
 double NewtonStep::step_size() const {
   return controller_.is_static() ? controller_.state().cycle_limit : controller_.step_size();
 }
 
 bool NewtonStep::factorise(const std::vector<char>& fixed, bool with_inertia) {
-  factor_.invalidate();
   const double longest = 1 / (StepController::max_step_size * StepController::max_step_size);
   const double mass_shift = controller_.mass_shift();
   return factor_.update(fixed, with_inertia ? mass_shift : std::min(longest, mass_shift),
@@ -111,11 +105,8 @@ bool NewtonStep::iterate() {
       line_search_.set_step_length(1);  // a step that round-off keeps from moving counts as a full one
       break;
     }
-    // A stale factor may give no descent: update the Hessian first. If that does not help, the step is too
-    // long for its quadratic model: damp it more.
-    const bool was_updated = factor_.age() == 0;
-    factor_.invalidate();
-    if (was_updated && !controller_.damp())
+    // The step is too long for its quadratic model: damp it more.
+    if (!controller_.damp())
       return fail("the line search found no descent " +
                   (controller_.is_static()
                        ? "(the direction's slope is " + three_digits(line_search_.slope()) + ")"
@@ -128,8 +119,7 @@ bool NewtonStep::iterate() {
   result.decrement = decrement;
   ++result.iterations;
   iterate_.update_residual();
-  controller_.end_iteration(line_search_.step_length(), factor_.age() == 0);
-  factor_.end_iteration(line_search_.step_length());
+  controller_.end_iteration(line_search_.step_length());
   return true;
 }
 

@@ -45,9 +45,9 @@ class NewtonStep {
   bool interrupted() const { return interrupted_; }
   StepController& controller() { return controller_; }
   /// Starts over, for another objective.
-  void restart();
+  void restart() { controller_.restart(); }
 
-  /// Factorises the matrix at the iterate anew, without the rows and columns of fixed vertices,
+  /// Factorises the matrix at the iterate, without the rows and columns of fixed vertices,
   /// `with_inertia` of a step or with that of the longest. Returns false if that fails; factor().fault() then
   /// says why.
   bool factorise(const std::vector<char>& fixed, bool with_inertia);

@@ -10,8 +10,6 @@ namespace {
 
 /// A step length below this shows that h was too long.
 constexpr double short_step = 0.25;
-/// Marks a step without a step length along the direction of an updated Hessian.
-constexpr double no_updated_direction = 2;
 /// Steps that leave a force residual above this count as stalled.
 constexpr double stall_residual = 1e3;
 /// After so many of them in a row …
@@ -36,7 +34,7 @@ double StepController::inverse_h2() const {
 
 void StepController::begin_step() {
   begun_with_ = s_.step_size;
-  updated_step_length_ = no_updated_direction;
+  shortest_step_length_ = 1;
 }
 
 bool StepController::damp() {
@@ -50,9 +48,9 @@ bool StepController::damp() {
   return !(s_.step_size < min_step_size);
 }
 
-void StepController::end_iteration(double step_length, bool updated) {
+void StepController::end_iteration(double step_length) {
   added_mass_ = 0;
-  if (updated) updated_step_length_ = std::min(updated_step_length_, step_length);
+  shortest_step_length_ = std::min(shortest_step_length_, step_length);
 }
 
 void StepController::end_step(double force_residual) {
@@ -71,9 +69,9 @@ void StepController::end_step(double force_residual) {
   }
   if (force_residual < recovered_residual || stalls == -max_stall_count) s_.backed_off = false;
   if (s_.backed_off) return;
-  if (updated_step_length_ == 1)
+  if (shortest_step_length_ == 1)
     h = std::max(h, std::min({h * p_.step_growth, max_step_size, s_.cycle_limit}));
-  if (updated_step_length_ < short_step) h /= p_.step_growth;
+  if (shortest_step_length_ < short_step) h /= p_.step_growth;
 }
 
 void StepController::limit_step_size() {

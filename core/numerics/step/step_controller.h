@@ -45,9 +45,8 @@ class StepController {
   /// Damps the step more, after a line search without descent. Returns false once h is too small, or the
   /// added mass too large, to try again.
   bool damp();
-  /// Ends an iteration. `updated` says that its direction came from an updated Hessian. The length of another
-  /// step may come from a stale factor, so it does not change h.
-  void end_iteration(double step_length, bool updated);
+  /// Ends an iteration.
+  void end_iteration(double step_length);
   /// Ends a step: adapts h to the step lengths and to stalls.
   void end_step(double force_residual);
   /// Limits h to a quarter of what it is, since steps repeat each other.
@@ -60,9 +59,9 @@ class StepController {
  private:
   const NewtonParameters& p_;
   State s_;
-  double begun_with_ = 0;           // h at the beginning of the step [s]
-  double updated_step_length_ = 0;  // the least α of this step's updated directions
-  double added_mass_ = 0;           // of the static form, as 1/h² [1/s²]
+  double begun_with_ = 0;            // h at the beginning of the step [s]
+  double shortest_step_length_ = 1;  // α of this step's iterations
+  double added_mass_ = 0;            // of the static form, as 1/h² [1/s²]
 };
 
 }  // namespace drape

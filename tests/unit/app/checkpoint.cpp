@@ -59,11 +59,8 @@ Checkpoint full() {
   factor.pattern.extra = {{{0, 4}, {2, 7}}, {0, 3}};
   factor.pattern.smooth_only = false;
   factor.analysis = {{0, 1, 0}, {2, 0}, {0, 2}, 123, 4};
-  factor.age = 1;
-  factor.fallback_updates = 7;
-  factor.solver = LinearSolver::supernodal;
-  factor.shift = 16;
-  factor.values = {1, 2, 3};
+  factor.fallback = LinearSolver::supernodal;
+  factor.fallback_solves = 7;
   c.first_level = 1;
   c.start = Positions::Random(4, 3);
   c.recorder.results = "{}";
@@ -120,8 +117,7 @@ TEST_CASE("A checkpoint is read as it was written") {
   CHECK(s.step.step_length == 0.125);
   CHECK(s.step.factor.blend == 3);
   CHECK(s.step.factor.pattern.extra.blocks.at(1) == std::pair(2, 7));
-  CHECK(s.step.factor.solver == LinearSolver::supernodal);
-  CHECK(s.step.factor.values == std::vector<double>{1, 2, 3});
+  CHECK(s.step.factor.fallback == LinearSolver::supernodal);
   CHECK(s.check.decrements == std::array<double, 3>{1, 2, 3});
   CHECK(s.check.initial_centroid == Eigen::RowVector3d(7, 8, 9));
   CHECK(s.dirichlet.blocked_by == "post");

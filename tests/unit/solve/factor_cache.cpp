@@ -11,22 +11,6 @@ namespace {
 
 constexpr double mass_shift = 100;
 
-/// The cache of a problem with one fixed vertex, and how often it has factorised.
-struct CacheCase {
-  NewtonProblem problem{{energy_of(Wells(NewtonProblem::rest().array() + 0.3, 10, 0.1))},
-                        {{0, NewtonProblem::rest().row(0), 0}}};
-  FactorCache cache;
-
-  explicit CacheCase(int interval) : cache(problem.iterate, {.hessian_update_interval = interval}) {}
-  /// The factorisations of one iteration that ends with this step length.
-  int iterate(double step_length = 1) {
-    const int before = problem.result.factorisations;
-    CHECK(cache.update(problem.model.fixed(), mass_shift, step_length));
-    cache.end_iteration(step_length);
-    return problem.result.factorisations - before;
-  }
-};
-
 /// Vertices 2i and 2i + 1 are joined by springs of length zero, so stiff that in single precision their
 /// masses make no difference: the matrix is positive definite, but not to a float. No test asks for forces.
 struct StiffPairs : NoEnergy {
@@ -57,7 +41,6 @@ struct CacheSolve {
   int factorisations(double step_length = 0.5) {
     const int before = problem.result.factorisations;
     REQUIRE(cache.solve(problem.model.fixed(), mass_shift, step_length, right, solution));
-    cache.end_iteration(step_length);
     return problem.result.factorisations - before;
   }
   /// ‖(A + shift M) x − b‖ / ‖b‖.
@@ -76,7 +59,7 @@ TEST_CASE("A factor in single precision solves as well as one in double precisio
   CacheSolve c(wells, {});
   CHECK(c.factorisations() == 1);
   CHECK(c.residual() < 1e-5);
-  CHECK(c.cache.state().fallback_updates == 0);
+  CHECK(c.cache.state().fallback_solves == 0);
   CacheSolve in_double(wells, {.linear_solver = LinearSolver::supernodal});
   CHECK(in_double.factorisations() == 1);
   CHECK(in_double.residual() < 1e-14);
@@ -86,10 +69,10 @@ TEST_CASE("Where single precision does not suffice, factors are in double precis
   CacheSolve c(energy_of(StiffPairs()), {});
   for (int round = 0; round < 2; ++round) {
     CHECK(c.factorisations() == 2);
-    CHECK(c.cache.state().fallback_updates == 10);
+    CHECK(c.cache.state().fallback_solves == 10);
     for (int k = 9; k >= 0; --k) {
       CHECK(c.factorisations() == 1);
-      CHECK(c.cache.state().fallback_updates == k);
+      CHECK(c.cache.state().fallback_solves == k);
     }
     Positions sums(8, 3), expected(8, 3);  // of a pair, which moves as one
     for (int i = 0; i < 8; ++i) {
@@ -120,29 +103,4 @@ TEST_CASE("The static form has factors in double precision, and so have matrices
   CHECK(moved.cache.update(moved.problem.model.fixed(), mass_shift, 1));
   moved.cache.solve(moved.right, moved.solution);
   CHECK(moved.residual() < 1e-14);
-}
-
-TEST_CASE("A factor serves as many iterations as the interval says") {
-  CacheCase c(3);
-  for (int round = 0; round < 2; ++round) {
-    CHECK(c.iterate() == 1);
-    CHECK(c.cache.age() == 1);
-    CHECK(c.iterate() == 0);
-    CHECK(c.iterate() == 0);
-    CHECK(c.cache.age() == 3);
-  }
-  CHECK(c.cache.analyses() == 1);
-  CHECK(c.problem.result.flops > 0);
-  CacheCase single(1);
-  for (int k = 0; k < 3; ++k) CHECK(single.iterate() == 1);
-}
-
-TEST_CASE("A shortened step makes an old factor stale, but not a new one") {
-  CacheCase c(5);
-  CHECK(c.iterate(0.5) == 1);
-  CHECK(c.iterate(0.5) == 0);
-  CHECK(c.iterate(1) == 1);
-  CHECK(c.iterate(1) == 0);
-  c.cache.invalidate();
-  CHECK(c.iterate(1) == 1);
 }

@@ -1,7 +1,6 @@
 #include "core/numerics/step/step_controller.h"
 
 #include <catch2/catch.hpp>
-#include <vector>
 
 using namespace drape;
 
@@ -10,20 +9,11 @@ namespace {
 const NewtonParameters doubling{.step_size = 1, .step_growth = 2},
     doubling_static{.form = NewtonForm::statics, .step_size = 1, .step_growth = 2};
 
-/// An iteration's step length, along the direction of an updated Hessian or an old one.
-struct Iteration {
-  double step_length;
-  bool updated = true;
-};
-
-void step(StepController& c, const std::vector<Iteration>& iterations, double force_residual = 1) {
-  c.begin_step();
-  for (const Iteration& i : iterations) c.end_iteration(i.step_length, i.updated);
-  c.end_step(force_residual);
-}
-/// One of one iteration.
+/// A step of one iteration.
 void step(StepController& c, double step_length, double force_residual = 1) {
-  step(c, {Iteration{step_length}}, force_residual);
+  c.begin_step();
+  c.end_iteration(step_length);
+  c.end_step(force_residual);
 }
 
 }  // namespace
@@ -50,15 +40,13 @@ TEST_CASE("The static form keeps the step size, which scales its decrement") {
   CHECK(c.step_size() == 1);
 }
 
-TEST_CASE("Only directions of an updated Hessian adapt the step size, the shortest of a step") {
+TEST_CASE("The shortest of a step's iterations adapts the step size") {
   StepController c(doubling);
-  step(c, {{1, false}});
-  step(c, {{0.1, false}});
-  CHECK(c.step_size() == 1);
-  step(c, {{1}, {0.1, false}});
-  CHECK(c.step_size() == 2);
-  step(c, {{0.2}, {1}});
-  CHECK(c.step_size() == 1);
+  c.begin_step();
+  c.end_iteration(0.2);
+  c.end_iteration(1);
+  c.end_step(1);
+  CHECK(c.step_size() == 0.5);
 }
 
 TEST_CASE("Without descent the step size is quartered down to 1e-8 s; an abandoned step resets it") {
@@ -82,7 +70,7 @@ TEST_CASE("The static form adds ten times more mass each time, until an iteratio
   CHECK(c.mass_shift() == Approx(1e-3));
   CHECK(c.damp());
   CHECK(c.mass_shift() == Approx(1e-2));
-  c.end_iteration(1, true);
+  c.end_iteration(1);
   CHECK(c.mass_shift() == 0);
   int times = 0;
   while (c.damp()) REQUIRE(++times < 30);
