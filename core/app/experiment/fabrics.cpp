@@ -115,8 +115,8 @@ const Table& own_table() {
 }
 
 /// The row's numbers by keys of `material`. Mass per area, tensile stiffness and bending rigidity are those
-/// of the row at any other thickness. Appends an error for a cell that is not a number, and for a row without
-/// mass or bending.
+/// of the row at any other thickness. Appends an error for a cell that is not a number, for a mass of 0 or
+/// less, and for a row without mass or bending.
 ConfigNode material_of(const Table& table, std::size_t row, const std::string& name, const Location& where,
                        std::optional<double> thickness, ConfigErrors& errors) {
   const auto refuse = [&](const std::string& what) {
@@ -128,13 +128,17 @@ ConfigNode material_of(const Table& table, std::size_t row, const std::string& n
   const double ratio = measured ? own / in_force : 1;
   ConfigNode material;
   std::optional<double> mass;
+  bool has_mass = false;
   for (const Column& column : columns) {
     const std::string text = table.cell(row, column.name);
     if (text.empty()) continue;
     const std::optional<double> value = number_of(text);
-    if (!value)
-      refuse("has \"" + excerpt(text) + "\" in column \"" + column.name + "\", which is not a number");
-    else if (column.key == std::string("mass"))
+    const bool is_mass = column.key == std::string("mass");
+    has_mass = has_mass || is_mass;
+    if (!value || (is_mass && !(*value > 0)))
+      refuse("has \"" + excerpt(text) + "\" in column \"" + column.name + "\", which is not a number" +
+             (is_mass ? " above 0" : ""));
+    else if (is_mass)
       mass = *value;
     else
       material.add(column.key,
@@ -142,11 +146,8 @@ ConfigNode material_of(const Table& table, std::size_t row, const std::string& n
   }
   if (in_force != own && !material.find("membrane_modulus") && !material.find("warp_stiffness"))
     material.add("membrane_modulus", ConfigNode::of(Material().membrane_modulus * (own / in_force)));
-  if (mass) {
-    material.add("density", ConfigNode::of(*mass / in_force));
-  } else if (!material.find("density")) {
-    refuse("lacks column \"mass\" [kg/m²]");
-  }
+  if (mass) material.add("density", ConfigNode::of(*mass / in_force));
+  if (!has_mass && !material.find("density")) refuse("lacks column \"mass\" [kg/m²]");
   if (!material.find("warp_bending") && !material.find("bending_modulus"))
     refuse("lacks column \"warp_bending\" [N m]");
   if (const std::string source = table.cell(row, "source"); !source.empty())

@@ -172,7 +172,7 @@ TEST_CASE("fabrics: a row of a file, whose faults are named") {
   const OwnFabrics own(
       "name, mass, thickness, warp_bending, weft_bending\n"
       "twill, 0.3, 5e-4, 2e-5, 9e-6\nlight, , , 1e-6,\nworse, 0.1, 5e-4, stiff, 1e-6\nbare, 0.2, "
-      "5e-4, , 1e-6\n");
+      "5e-4, , 1e-6\nbuoyant, -0.2, 5e-4, 1e-6, 1e-6\n");
   const Material m = material_of(own.row("twill"));
   CHECK(m.density == Approx(600));
   CHECK(m.warp_bending == 2e-5);
@@ -186,15 +186,17 @@ TEST_CASE("fabrics: a row of a file, whose faults are named") {
   for (const std::string& text : {by_semicolons, saved}) {
     own.write("own.csv", text);
     CHECK(material_of(own.row("twill")) == m);
-    CHECK(drape_ends("fabric --file own.csv", own).out == "twill\nlight\nworse\nbare\n");
+    CHECK(drape_ends("fabric --file own.csv", own).out == "twill\nlight\nworse\nbare\nbuoyant\n");
   }
   const Experiment e = experiment_from(experiment(own.row("twill")));
   CHECK(e.parameters.material.from_fabric == "{file: " + own.file() + ", row: twill}");
   CHECK(to_yaml(experiment_from(to_yaml(e.resolved)).resolved) == to_yaml(e.resolved));
-  check_refused(own.row("twil"), "own.csv has 4 rows and none named \"twil\"; did you mean \"twill\"?");
+  check_refused(own.row("twil"), "own.csv has 5 rows and none named \"twil\"; did you mean \"twill\"?");
   check_refused(own.row("light"), "row \"light\" lacks column \"mass\" [kg/m²]");
   check_refused(own.row("worse"),
                 "row \"worse\" has \"stiff\" in column \"warp_bending\", which is not a number");
+  check_refused(own.row("buoyant"),
+                "row \"buoyant\" has \"-0.2\" in column \"mass\", which is not a number above 0");
   check_refused(own.row("bare"), "row \"bare\" lacks column \"warp_bending\" [N m]");
   check_refused("fabric: {file: " + (own / "none.csv").string() + ", row: 1}", "is not a file");
 }
