@@ -152,7 +152,8 @@ class Newton {
       }
       if (check_.is_cycling()) damp_cycle();
       if (load_.steps() == p_.max_steps)
-        return End{Outcome::max_steps_reached, max_steps_text(p_.max_steps, iterate_.force_residual())};
+        return End{Outcome::max_steps_reached,
+                   max_steps_text(p_.max_steps, iterate_.force_residual(), check_)};
       follow_contact_forces();
       step_.begin();
       return std::nullopt;

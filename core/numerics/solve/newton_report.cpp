@@ -10,6 +10,8 @@ constexpr double weak_gap_fraction = 1e-3;
 /// Stiffness over the load's pressure: a barrier with a ratio of 1 leaves a gap of d̂ / 2, with 10 of 5 d̂ / 6
 /// (core/numerics/contact_forces/contact_stiffness.h).
 constexpr double suitable_ratio = 10;
+/// A residual that was lowest within this fraction of max_steps still falls.
+constexpr double falling_fraction = 0.1;
 
 }  // namespace
 
@@ -53,9 +55,14 @@ std::string blocked_text(const LoadStepper& load) {
          load.limit_text();
 }
 
-std::string max_steps_text(int max_steps, double residual) {
+std::string max_steps_text(int max_steps, double residual, const EquilibriumCheck& check) {
+  const int steps = check.steps_since_lowest();
+  const bool falls = steps < falling_fraction * max_steps;
   return "no equilibrium within max_steps = " + std::to_string(max_steps) + "; force residual " +
-         three_digits(residual);
+         three_digits(residual) +
+         (falls ? ", which still falls: raise max_steps"
+                : ", which was " + three_digits(check.lowest_residual()) + " " + std::to_string(steps) +
+                      " steps before and has not been lower since: more steps are unlikely to help");
 }
 
 std::string drift_text(double drift, double most, const LevelModel& model) {

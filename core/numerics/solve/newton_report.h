@@ -21,7 +21,8 @@ std::string drift_text(double drift, double most, const LevelModel& model);
 /// Why the increment under way ends the level.
 std::string blocked_text(const LoadStepper& load);
 
-std::string max_steps_text(int max_steps, double residual);
+/// Tells whether the force residual still falls.
+std::string max_steps_text(int max_steps, double residual, const EquilibriumCheck& check);
 
 /// Why a force residual above the tolerance, of which round-off explains `rounding`, counts as converged.
 std::string rounding_text(double residual, double tolerance, double rounding);

@@ -27,6 +27,11 @@ bool EquilibriumCheck::is_at_rounding_floor(FactorCache& factor) {
 void EquilibriumCheck::note_step(double inertia) {
   s_.idle.note(iterate_.energy(), iterate_.force_residual(), iterate_.energy_noise(inertia));
   s_.cycle.note(iterate_.energy_without_friction(), iterate_.force_residual());
+  ++s_.steps_since_lowest;
+  if (iterate_.force_residual() < s_.lowest_residual) {
+    s_.lowest_residual = iterate_.force_residual();
+    s_.steps_since_lowest = 0;
+  }
 }
 
 }  // namespace drape

@@ -22,6 +22,8 @@ class EquilibriumCheck {
     Eigen::RowVector3d initial_centroid = Eigen::RowVector3d::Zero();
     IdleSteps idle = {};
     CycleDetector cycle = {};
+    double lowest_residual = std::numeric_limits<double>::infinity();  ///< at the end of a step [1]
+    int steps_since_lowest = 0;
   };
   State state() const { return s_; }
   void restore(const State& state) { s_ = state; }
@@ -45,6 +47,9 @@ class EquilibriumCheck {
   bool is_at_rounding_floor(FactorCache& factor);
   /// Bound on the force residual by round-off at the last such check [1].
   double rounding_residual() const { return rounding_residual_; }
+  /// The lowest force residual at the end of a step, and how many steps ago that was.
+  double lowest_residual() const { return s_.lowest_residual; }
+  int steps_since_lowest() const { return s_.steps_since_lowest; }
   /// Distance of the free vertices' centroid from where the drift begins, in diagonals of the rest shape.
   double drift() const {
     return (iterate_.free_centroid() - s_.initial_centroid).norm() / iterate_.rest_diagonal();
@@ -54,7 +59,7 @@ class EquilibriumCheck {
   void note_decrement(double decrement) { s_.decrements[iterate_.result().iterations % 3] = decrement; }
   /// Notes the end of a step with this `inertia` [J].
   void note_step(double inertia);
-  /// For another objective: restarts the count of idle steps, and forgets cycles and decrements.
+  /// For another objective: restarts the count of idle steps, and forgets cycles, residuals and decrements.
   void restart() { s_ = {.initial_centroid = s_.initial_centroid}; }
   /// Measures the drift from here on.
   void restart_drift() { s_.initial_centroid = iterate_.free_centroid(); }

@@ -77,8 +77,8 @@ class FactorCache {
   HessianModification modification_;
   BlockCholesky cholesky_;
   const BlockMatrix* factored_ = nullptr;  // the objective's matrix
-  LinearSolver solver_;    // in use
-  bool too_slow_ = false;  // the last solve did not converge
+  LinearSolver solver_;                    // in use
+  bool too_slow_ = false;                  // the last solve did not converge
   LinearSolver fallback_ = LinearSolver::mixed;
   int fallback_solves_ = 0;
   std::string fault_;

@@ -38,7 +38,7 @@ Checkpoint full() {
   NewtonState& s = c.state.under_way.emplace();
   s.so_far.x = Positions::Random(9, 3);
   s.so_far.force_residual = std::nan("");
-  s.check = {{1, 2, 3}, {7, 8, 9}, {3, -0.5, 1e-6}, {6, {1, 2, 3, 4, 5}, {6, 7, 8, 9, 10}, {1, 0, 2}}};
+  s.check = {{1, 2, 3}, {7, 8, 9}, {3, -0.5, 1e-6}, {6, {1, 2, 3, 4, 5}, {6, 7, 8, 9, 10}, {1, 0, 2}}, 0.02, 4};
   s.iterate = {2, "ball"};
   s.step.max_iterations = 30;
   s.step.controller = {0.25, -4, 3e3, true, 0.5};
@@ -120,6 +120,7 @@ TEST_CASE("A checkpoint is read as it was written") {
   CHECK(s.step.factor.fallback == LinearSolver::supernodal);
   CHECK(s.check.decrements == std::array<double, 3>{1, 2, 3});
   CHECK(s.check.initial_centroid == Eigen::RowVector3d(7, 8, 9));
+  CHECK(s.check.steps_since_lowest == 4);
   CHECK(s.dirichlet.blocked_by == "post");
   CHECK(s.load_stepper.blocked_increments == 2);
   CHECK(s.contacts.tangential_displacements.at(0).at(0).contact == ContactKey{1, 2, 3, 4, 0});

@@ -165,8 +165,8 @@ TEST_CASE("A level whose friction was damped is resumed bit for bit") {
   CHECK(damped > 3);
 }
 
-TEST_CASE("A message's force residual is that of the last iteration's row") {
-  int checked = 0;
+TEST_CASE("A level that ends at max_steps tells its force residual and whether that still falls") {
+  int checked = 0, rose = 0;
   for (int max_steps = 10; max_steps < 40; ++max_steps) {
     Solved s = scene_from(dragged_strip("max_steps: " + std::to_string(max_steps)));
     KeepingObserver kept;
@@ -176,6 +176,22 @@ TEST_CASE("A message's force residual is that of the last iteration's row") {
     if (r.outcome != Outcome::max_steps_reached) continue;
     ++checked;
     CHECK_THAT(r.message, Catch::Contains("force residual " + three_digits(kept.rows.back().force_residual)));
+    const IterationRow* lowest = nullptr;
+    for (std::size_t i = 0; i < kept.rows.size(); ++i) {
+      const bool ends_step = i + 1 == kept.rows.size() || kept.rows[i + 1].step != kept.rows[i].step;
+      if (ends_step && (!lowest || kept.rows[i].force_residual < lowest->force_residual))
+        lowest = &kept.rows[i];
+    }
+    const int steps_since = kept.rows.back().step - lowest->step;
+    const bool falls = steps_since < 0.1 * max_steps;
+    rose += !falls;
+    CHECK_THAT(r.message,
+               Catch::EndsWith(falls ? ", which still falls: raise max_steps"
+                                     : ", which was " + three_digits(lowest->force_residual) + " " +
+                                           std::to_string(steps_since) +
+                                           " steps before and has not been lower since: more steps are "
+                                           "unlikely to help"));
   }
   CHECK(checked > 10);
+  CHECK(rose > 0);
 }
