@@ -27,7 +27,8 @@ inline drape::Positions warp_at(const drape::TriangleMesh& mesh, double angle) {
 /// ∂f/∂x by central differences of fourth order with step h [m]; f is a number or an Eigen vector or matrix,
 /// and column (or entry) 3 i + c of the result is its derivative by coordinate c of vertex i.
 template <class Function, class State>
-Eigen::MatrixXd differences(const Function& f, State x, double h) {
+Eigen::MatrixXd differences(const Function& f, const State& at_x, double h) {
+  typename State::PlainObject x = at_x;
   Eigen::MatrixXd result;
   for (Eigen::Index i = 0; i < x.size(); ++i) {
     const double old = x.data()[i];

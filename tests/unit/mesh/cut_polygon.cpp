@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <functional>
 #include <random>
 #include <set>
 
@@ -39,9 +40,11 @@ void check_cut(const CornerList& outline, int without_area = 0) {
   for (int k = 0; k < n; ++k) CHECK(sides.count({k, (k + 1) % n}) == 1);
 }
 
-/// The outline from each of its corners, in a tilted plane far from the origin.
-template <class Visit>
-void from_every_corner(CornerList outline, const Visit& visit) {
+/// Calls `visit` for the outline from each of its corners, in a tilted plane far from the origin.
+void from_every_corner(
+    CornerList outline, const std::function<void(const CornerList&)>& visit = [](const CornerList& turned) {
+      check_cut(turned);
+    }) {
   const Eigen::Matrix3d tilt = Eigen::AngleAxisd(0.7, CornerPoint(1, 2, 3).normalized()).toRotationMatrix();
   for (CornerPoint& p : outline) p = tilt * p + CornerPoint(30, -20, 10);
   for (std::size_t k = 0; k < outline.size(); ++k) {
@@ -65,12 +68,12 @@ TEST_CASE("a convex polygon is cut as a fan around its first corner") {
 }
 
 TEST_CASE("concave polygons are cut into what they cover") {
-  from_every_corner({{0, 0, 0}, {1, 0, 0}, {1, 0.4, 0}, {0.4, 0.4, 0}, {0.4, 1, 0}, {0, 1, 0}}, check_cut);
-  from_every_corner({{0, 0, 0}, {1, 0.8, 0}, {2, 0, 0}, {1, 2, 0}}, check_cut);  // an arrow head
-  from_every_corner({{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {2, 2, 0}, {1, 2, 0}, {0, 2, 0}, {0, 1, 0}}, check_cut);
+  from_every_corner({{0, 0, 0}, {1, 0, 0}, {1, 0.4, 0}, {0.4, 0.4, 0}, {0.4, 1, 0}, {0, 1, 0}});
+  from_every_corner({{0, 0, 0}, {1, 0.8, 0}, {2, 0, 0}, {1, 2, 0}});  // an arrow head
+  from_every_corner({{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {2, 2, 0}, {1, 2, 0}, {0, 2, 0}, {0, 1, 0}});
   CornerList comb{{0, -1, 0}, {20, -1, 0}};  // with corners on one line
   for (int k = 20; k >= 0; --k) comb.emplace_back(k, k % 2, 0);
-  from_every_corner(comb, check_cut);
+  from_every_corner(comb);
   CornerList spiral;
   for (int k = 0; k <= 40; ++k)
     spiral.emplace_back((1 + 0.1 * k) * std::cos(0.3 * k), (1 + 0.1 * k) * std::sin(0.3 * k), 0);
