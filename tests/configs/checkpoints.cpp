@@ -646,6 +646,17 @@ TEST_CASE("A run warm-starts from a saved state under changed parameters, in ano
   drape_ends(flow + "--out soft --level 0 --set material.bending_modulus=1e3", folder, 1);
   CHECK(rows("soft").starts_with("pcs,0,0,0,"));
 
+  // It begins where the other run left the level: inertia holds the cloth there.
+  const std::string hold = " --set newton.step_size=1e-7 --set newton.step_growth=1";
+  drape_ends(flow + "--out held --level 0" + hold, folder, 1);
+  drape_ends(replaced(sheets_run, "--out out", "--out start") + hold + " --set newton.max_steps=1", folder,
+             1);
+  const auto state = [&](const std::string& out) {
+    return read_mesh(folder / (out + "/levels/pcs_l0.ply")).vertices;
+  };
+  CHECK((state("held") - state("out")).norm() < 1e-6);
+  CHECK((state("start") - state("out")).norm() > 1e-3);
+
   // Interrupted and resumed, it has the bits of one that is not.
   DrapeAtWork command(flow + "--out part --checkpoint 0", folder);
   wait_for_steps(command, folder / "part", 5);

@@ -11,14 +11,30 @@ namespace drape {
 
 namespace {
 
+/// A solver's `newton`, if it is of the experiment's type, else null.
+const Parameter* newton_of(const Schema& solver) {
+  const Parameter* newton = parameter_named(solver, "newton");
+  const Schema* section = newton ? newton->section.get() : nullptr;
+  return section && section->type && *section->type == typeid(NewtonParameters) ? newton : nullptr;
+}
+
 /// Gives a solver's `newton` what the experiment's own sets, as defaults for the solver's.
 void take_newton(const ConfigNode& written, const NewtonParameters& common, const Schema& schema,
                  void* solver) {
-  const Parameter* newton = parameter_named(schema, "newton");
-  const Schema* section = newton ? newton->section.get() : nullptr;
-  if (!section || !section->type || *section->type != typeid(NewtonParameters)) return;
-  for (const Parameter& p : section->parameters)
+  const Parameter* newton = newton_of(schema);
+  if (!newton) return;
+  for (const Parameter& p : newton->section->parameters)
     if (written.find(p.name)) p.assign(&common, newton->section_in(solver, 0));
+}
+
+/// Leaves out of a resolved solver's `newton` what it shares with the experiment's, so that who changes that
+/// in a saved experiment changes the solver.
+void leave_out_shared(const ConfigNode& common, ConfigNode& solver) {
+  ConfigNode own = *solver.find("newton");
+  for (const auto& [key, value] : common.entries)
+    if (const ConfigNode* same = own.find(key); same && same->one_line() == value.one_line()) own.remove(key);
+  solver.remove("newton");
+  if (!own.entries.empty()) solver.add("newton", own);
 }
 
 /// The name that a plugin gives itself, else its type.
@@ -94,6 +110,7 @@ void make_methods(Experiment& e, ConfigErrors& errors) {
         *e.registry, "solver", node, errors, &resolved, [&](const Schema& schema, void* solver) {
           if (common) take_newton(*common, e.parameters.newton, schema, solver);
         });
+    if (own.values && newton_of(own.entry->schema)) leave_out_shared(*e.resolved.find("newton"), resolved);
     if (auto solver = make_plugin(own, locate_in(node), errors))
       e.methods.emplace_back(name, std::static_pointer_cast<Solver>(solver));
     resolved_map.add(name, resolved);

@@ -2,6 +2,8 @@
 
 #include <catch2/catch.hpp>
 
+#include "core/app/files/yaml_file.h"
+#include "tests/support/command.h"
 #include "tests/support/refusal.h"
 #include "tests/support/solve.h"
 
@@ -17,8 +19,11 @@ methods:
   own: {type: newton, newton: {step_size: 0.2, psd_blend: full}}
 )";
 
+/// A method's value, which its resolved section has only where it differs from the experiment's.
 std::string value(const Experiment& e, const std::string& method, const std::string& key) {
-  return e.resolved.find("methods")->find(method)->find("newton")->find(key)->scalar;
+  const ConfigNode* own = e.resolved.find("methods")->find(method)->find("newton");
+  const ConfigNode* value = own ? own->find(key) : nullptr;
+  return (value ? value : e.resolved.find("newton")->find(key))->scalar;
 }
 
 }  // namespace
@@ -34,6 +39,18 @@ TEST_CASE("Every method has the experiment's newton, but for what it sets itself
   CHECK(value(e, "own", "step_size") == "0.2");
   CHECK(value(e, "own", "max_steps") == "70");
   CHECK(value(e, "own", "psd_blend") == "full");
+}
+
+TEST_CASE("What a saved experiment's newton is changed to is every method's that shares it") {
+  const Experiment e = experiment_from(methods + "newton: {step_size: 0.5}\n");
+  CHECK(e.resolved.find("methods")->one_line() ==
+        "{plain: {type: newton}, empty: {type: newton}, own: {type: newton, newton: {step_size: 0.2, "
+        "psd_blend: full}}}");
+  const std::string saved = to_yaml(e.resolved);
+  const Experiment again = experiment_from(replaced(saved, "step_size: 0.5", "step_size: 0.25"));
+  for (const char* method : {"plain", "empty"}) CHECK(value(again, method, "step_size") == "0.25");
+  CHECK(value(again, "own", "step_size") == "0.2");
+  CHECK(to_yaml(experiment_from(saved).resolved) == saved);
 }
 
 TEST_CASE("A fault of the experiment's newton is told once, not by every method") {
