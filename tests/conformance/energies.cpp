@@ -73,8 +73,8 @@ std::unique_ptr<BoundEnergy> bind(const Candidate& candidate, const Level& level
   } catch (const std::runtime_error& error) {
     INFO(candidate.name);
     REQUIRE_FALSE(level.rest.vertices.col(2).isZero(0));
-    REQUIRE_THAT(error.what(), Catch::Contains("the rest shape of level " + std::to_string(level.index) +
-                                               " is not flat"));
+    REQUIRE_THAT(error.what(),
+                 Catch::Contains("the rest shape of level " + std::to_string(level.index) + " is not flat"));
     return nullptr;
   }
 }

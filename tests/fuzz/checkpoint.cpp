@@ -33,7 +33,6 @@ Checkpoint small() {
   s.contacts.tangential_displacements = {{{{1, 2, 3, 4, 0}, {1e-5, 0, 2e-5}}}, {}};
   s.step.factor.pattern.extra = {{{0, 4}, {2, 7}}, {0, 3}};
   s.step.factor.analysis = {{0, 1, 0}, {2, 0}, {0, 2}, 123, 4};
-  s.step.factor.values = {1, 2, 3};
   c.start = Positions::Ones(4, 3);
   c.recorder.results = "{}";
   return c;

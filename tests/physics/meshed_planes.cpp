@@ -58,14 +58,14 @@ std::vector<Floor> floors(const Scratch& folder) {
 void check_friction(const Floor& floor, double mu, double margin, const std::string& step_size) {
   constexpr double epsilon = 1e-4;  // the default friction smoothing distance
   INFO(floor.name << ", mu " << mu);
-  const Solved stuck = converged(solve_yaml(on_a_slope(std::atan((1 - margin) * mu), mu, floor.contact,
-                                                       "force_tolerance: 1e-4, max_steps: 500")));
+  const Solved stuck = converged(solve_yaml(
+      on_a_slope(std::atan((1 - margin) * mu), mu, floor.contact, "force_tolerance: 1e-4, max_steps: 500")));
   const Eigen::VectorXd crept = (stuck.x() - stuck.scene->starts.back()).col(0);
   CHECK(crept.maxCoeff() < 2 * epsilon);
   if (floor.on_one_face) CHECK(crept.minCoeff() > 0);
-  const Solved slid = solve_yaml(
-      on_a_slope(std::atan((1 + margin) * mu), mu, floor.contact,
-                 "force_tolerance: 1e-4, max_steps: 60, step_growth: 1, step_size: " + step_size));
+  const Solved slid =
+      solve_yaml(on_a_slope(std::atan((1 + margin) * mu), mu, floor.contact,
+                            "force_tolerance: 1e-4, max_steps: 60, step_growth: 1, step_size: " + step_size));
   CHECK(slid.levels.back().outcome == Outcome::max_steps_reached);
   CHECK((slid.x() - slid.scene->starts.back()).col(0).minCoeff() > 10 * epsilon);
 }

@@ -102,9 +102,8 @@ TEST_CASE("The overhang at 41.5° is twice the bending length", "[physics]") {
   const double gamma = 8;
   const Elastica overhang = cantilever_under_weight(gamma);
   double along = 0;  // ∫ cos θ ds, where cos θ is the sine of the angle from the vertical
-  angle_at_clamp(
-      [&](double s, double from_vertical) { return -gamma * (1 - s) * std::sin(from_vertical); },
-      M_PI / 2 - overhang.tip, along);
+  angle_at_clamp([&](double s, double from_vertical) { return -gamma * (1 - s) * std::sin(from_vertical); },
+                 M_PI / 2 - overhang.tip, along);
   const double chord = std::atan2(overhang.deflection, along) * 180 / M_PI;
   row("\nAngle of the line from the clamp to the tip of an overhang of twice the bending length: %.3f°",
       chord);

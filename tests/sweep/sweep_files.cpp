@@ -76,8 +76,8 @@ TEST_CASE("the shape of an ablation") {
         "error: s.yaml:3:18: repeated key \"levels\" in set; it is first set at s.yaml:3:7\n");
   std::string ten = "[1", grid;
   for (int k = 2; k <= 10; ++k) ten += ", " + std::to_string(k);
-  for (const char* key : {"newton.max_steps", "newton.step_size", "newton.iterations_per_step",
-                          "levels", "newton.step_growth"})
+  for (const char* key :
+       {"newton.max_steps", "newton.step_size", "newton.iterations_per_step", "levels", "newton.step_growth"})
     grid += std::string(grid.empty() ? "" : ", ") + key + ": " + ten + "]";
   CHECK(said_of("ablation: {grid: {" + grid + "}}\n") ==
         "error: s.yaml:3:18: the grid has more than 10000 variations; take some values out\n");

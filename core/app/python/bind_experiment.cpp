@@ -81,8 +81,7 @@ void bind_experiment(py::module_& m) {
       .def_property_readonly(
           "resolved", [](const ExperimentHandle& e) { return value_of(e.read()->resolved); },
           "A copy of the experiment as a dict with every parameter of every plugin; `set` changes one.")
-      .def_property_readonly("methods",
-                             [](const ExperimentHandle& e) { return e.read()->method_names(); })
+      .def_property_readonly("methods", [](const ExperimentHandle& e) { return e.read()->method_names(); })
       .def("scene", &ExperimentHandle::scene, py::arg("allow_memory") = false,
            "The levels, models and initial states. Raises ConfigError.");
 }

@@ -39,9 +39,9 @@ class Recorder : public Observer {
     bool method_intersection_free = true;  ///< of the current method
     std::vector<RecordedState> states;     ///< all levels so far, in order
     SnapshotRecorder snapshots;            ///< of this level
-    Cost spent, last;            ///< of the method's levels before this one; of this level so far
-    double overhead = 0;         ///< time of the method that recording took [s]
-    double overhead_before = 0;  ///< the same before this level
+    Cost spent, last;                      ///< of the method's levels before this one; of this level so far
+    double overhead = 0;                   ///< time of the method that recording took [s]
+    double overhead_before = 0;            ///< the same before this level
     std::uint64_t iterations_bytes = 0, log_bytes = 0;  ///< sizes of its files
     /// The furthest that a level has come to, that of the obstacles' files; without values at the start.
     LoadSteppingState last_load;
@@ -138,7 +138,7 @@ class Recorder : public Observer {
   Json results_;
   std::map<std::string, std::string> not_measured_;
   std::vector<std::string> written_, restored_;  // names of files that were missing or different
-  State s_;  // without results
+  State s_;                                      // without results
   std::optional<LevelResult> solved_reference_;
 };
 

@@ -132,14 +132,14 @@ LiveServer::LiveServer(int port, const LiveAnswers& answers, double patience)
       refuse(response, 404, "This state has been replaced by a newer one.");
   });
   const auto post = [&](const std::string& name, const std::function<std::string()>& action) {
-    server.Post(base + name, [action](const Request& request, Response& response,
-                                      const httplib::ContentReader& read) {
-      // Without a length the library would wait for a body until the peer closes the connection.
-      const auto skip = [](const char*, std::size_t) { return true; };
-      if (request.has_header("Content-Length") && !read(skip)) return;
-      response.status = 204;
-      if (const std::string why_not = action(); !why_not.empty()) refuse(response, 409, why_not);
-    });
+    server.Post(base + name,
+                [action](const Request& request, Response& response, const httplib::ContentReader& read) {
+                  // Without a length the library would wait for a body until the peer closes the connection.
+                  const auto skip = [](const char*, std::size_t) { return true; };
+                  if (request.has_header("Content-Length") && !read(skip)) return;
+                  response.status = 204;
+                  if (const std::string why_not = action(); !why_not.empty()) refuse(response, 409, why_not);
+                });
   };
   post("stop", [answers] {
     answers.stop();

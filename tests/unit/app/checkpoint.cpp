@@ -38,7 +38,8 @@ Checkpoint full() {
   NewtonState& s = c.state.under_way.emplace();
   s.so_far.x = Positions::Random(9, 3);
   s.so_far.force_residual = std::nan("");
-  s.check = {{1, 2, 3}, {7, 8, 9}, {3, -0.5, 1e-6}, {6, {1, 2, 3, 4, 5}, {6, 7, 8, 9, 10}, {1, 0, 2}}, 0.02, 4};
+  s.check = {{1, 2, 3}, {7, 8, 9}, {3, -0.5, 1e-6}, {6, {1, 2, 3, 4, 5}, {6, 7, 8, 9, 10}, {1, 0, 2}},
+             0.02,      4};
   s.iterate = {2, "ball"};
   s.step.max_iterations = 30;
   s.step.controller = {0.25, -4, 3e3, true, 0.5};

@@ -259,5 +259,5 @@ TEST_CASE("A minimisation resumed at any step continues bit for bit", "[newton]"
           REQUIRE(a.force_residual == b.force_residual);
         }
       }
-      }
+    }
 }
