@@ -346,7 +346,7 @@ void interrupt_sheets(const Scratch& folder) {
 
 }  // namespace
 
-TEST_CASE("A run that is killed at twenty random moments resumes every time, with equal results") {
+TEST_CASE("A run that is killed at random moments resumes every time, with equal results") {
   const Scratch folder;
   write_sheets(folder);
   DrapeAtWork check("check e.yaml", folder);
@@ -356,14 +356,15 @@ TEST_CASE("A run that is killed at twenty random moments resumes every time, wit
   const long all_steps = rows_in(folder / "whole/iterations.csv");
 
   std::mt19937 random(5);
-  int cut = 0, resumed = 0;
-  for (int kill = 0; kill < 20; ++kill) {
+  int kills = 0, cut = 0;
+  for (int resumed = 0; resumed < 15; ++kills) {
+    REQUIRE(kills < 60);  // on a busy machine more of them come before the first state
     const bool begun = fs::exists(folder / "out/checkpoint/state.bin");
     resumed += begun;
     DrapeAtWork command((begun ? go_on : sheets_run + " --overwrite"), folder);
     // Half of them while it begins, half after some steps more than it had, at most a twentieth of all.
     const double part = static_cast<double>(random() % 1000) / 1000;
-    if (kill % 2)
+    if (kills % 2)
       command.wait_until("a part of its beginning",
                          [&] { return command.processor_time() > part * to_begin; });
     else
@@ -372,8 +373,7 @@ TEST_CASE("A run that is killed at twenty random moments resumes every time, wit
     command.send(SIGKILL);
     cut += command.wait().exit_code == 128 + SIGKILL;
   }
-  CHECK(cut == 20);
-  CHECK(resumed >= 15);
+  CHECK(cut == kills);
   CHECK_FALSE(is_complete(folder / "out"));
   CHECK(drape_ends(go_on, folder, 1).err == "");  // out of steps, as the run that was not killed
   check_equal(folder / "out", folder / "whole");
