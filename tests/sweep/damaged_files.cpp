@@ -6,7 +6,7 @@
 #include "tests/support/sweep_runs.h"
 
 using Json = nlohmann::json;
-using Catch::Matchers::Contains;
+using Catch::Contains;
 
 TEST_CASE("a value of the wrong kind in a sweep's files is named with its file and its key") {
   const Scratch folder(small_experiment());
