@@ -78,8 +78,9 @@ TEST_CASE("24 runs give the same results with one worker and with two, and are n
   CHECK(rows[47]["seed"].is_number_integer());
   CHECK(rows[47]["seed"] == 3);
   CHECK(rows[47]["run"] == runs[23]["name"]);
-  CHECK_THAT(drape_with("table one --format csv", folder.path).out,
-             StartsWith("sweep,run,refiner,levels,newton.step_growth,seed,method,pass,status,vertices,"));
+  CHECK_THAT(
+      drape_with("table one --format csv", folder.path).out,
+      Catch::StartsWith("sweep,run,refiner,levels,newton.step_growth,seed,method,pass,status,vertices,"));
 
   const std::string page = drape_with("table one", folder.path).out;
   CHECK(page.substr(0, page.find('\n')).find("error_rms") ==
