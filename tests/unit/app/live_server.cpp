@@ -90,7 +90,8 @@ TEST_CASE("lengths that are none, bodies of any size and long lines are refused"
   };
   for (const std::string length : {"-1", "1025", "99999999999999999999", "18446744073709551615"}) {
     CAPTURE(length);
-    CHECK(post("Content-Length: " + length + "\r\n", std::string(2000, 'x')) == 413);
+    const int status = post("Content-Length: " + length + "\r\n", std::string(2000, 'x'));
+    CHECK((status == 413 || status == 400));  // by the version of cpp-httplib, where it is no length
   }
   CHECK(served.stops == 0);
   CHECK(post("Content-Length: 5\r\n", "hello") == 204);
