@@ -55,7 +55,9 @@ TEST_CASE("invalid configs are reported with the location") {
         "f:2:3: not valid YAML: illegal map value; tabs cannot indent, use spaces");
   CHECK(parse_fault("a: &a {b: 1}\nc:\n  <<: *a\n") ==
         "f:3:3: merging maps by << is not supported; write the keys out");
-  CHECK(parse_fault("a: *none\n") == "f:1:4: not valid YAML: the referenced anchor is not defined");
+  // Newer versions of yaml-cpp name it.
+  CHECK_THAT(parse_fault("a: *none\n"),
+             Catch::StartsWith("f:1:4: not valid YAML: the referenced anchor is not defined"));
   CHECK(parse_fault("# only a comment\n") == "f: is empty; a config is a map of keys and values");
   CHECK(parse_fault("word") == "f:1:1: a config must begin with a map of keys and values");
   CHECK(parse_fault("a: 1\n---\nb: 2\n") == "f:3:1: a second document begins here; a config is one");
