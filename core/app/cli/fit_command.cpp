@@ -41,7 +41,7 @@ void choose_metric(const Experiment& experiment, std::string& metric, ConfigErro
        columns_of(declared_metrics(experiment.metrics), MetricScope::state, Shown::stored))
     names.push_back(column.name);
   if (metric.empty() && !names.empty()) metric = names.front();
-  if (std::find(names.begin(), names.end(), metric) != names.end()) return;
+  if (is_one_of(metric, names)) return;
   errors.push_back({{"--metric", 0, 0},
                     "the experiment's metrics have no \"" + excerpt(metric) + "\"; " +
                         did_you_mean(metric, names,

@@ -1,6 +1,5 @@
 // The commands that show what can be written: list, describe, schema and reference.
 
-#include <algorithm>
 #include <iostream>
 #include <nlohmann/json.hpp>
 
@@ -20,7 +19,7 @@ namespace {
 
 int list(const std::string& asked, const Registry& registry) {
   const std::vector<std::string>& kinds = plugin_kinds();
-  if (!asked.empty() && std::find(kinds.begin(), kinds.end(), asked) == kinds.end())
+  if (!asked.empty() && !is_one_of(asked, kinds))
     throw std::runtime_error("there is no kind \"" + excerpt(asked) + "\"; the kinds are " + joined(kinds));
   for (const std::string& kind : kinds) {
     if (!asked.empty() && kind != asked) continue;

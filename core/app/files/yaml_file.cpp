@@ -276,7 +276,7 @@ void set_places(ConfigNode& node, const Location& where) {
 bool set_path(ConfigNode& root, const std::string& path, ConfigNode value, const Location& where,
               ConfigErrors& errors) {
   const std::vector<std::string> words = split(path, '.');
-  if (std::find(words.begin(), words.end(), "") != words.end()) {
+  if (is_one_of("", words)) {
     errors.push_back({where, "the path has an empty name"});
     return false;
   }

@@ -7,6 +7,7 @@
 
 #include "core/app/files/json_file.h"
 #include "core/app/view/page.h"
+#include "core/kernel/files/string_utils.h"
 
 namespace drape {
 
@@ -30,7 +31,7 @@ LiveView::LiveView(const Experiment& experiment, const Scene& scene, const std::
                   blocks_[name] = std::make_shared<const std::string>(std::move(bytes));
                 }) {
   for (const auto& [name, solver] : experiment.methods)
-    if (methods.empty() || std::find(methods.begin(), methods.end(), name) != methods.end())
+    if (methods.empty() || is_one_of(name, methods))
       methods_.push_back(name), styles_.push_back(solver_style(experiment.solver_type(name)));
   server_ = std::make_unique<LiveServer>(
       port, LiveAnswers{page(title_ + ", live", {{"kind", "live"}, {"title", title_}}),
