@@ -39,7 +39,8 @@ int show_plan(const Sweep& sweep, const SweepFolder& folder, int threads) {
   for (const SweepRun& run : sweep.runs) {
     const RunFiles files = folder.files(run.folder);
     RunStatus status = read_status(files);
-    if (status.has_results()) status = resolve_status(files, status);  // which may be damaged or gone since
+    // Its results may have been damaged or removed since.
+    if (status.has_results()) status = resolve_status(files, status);
     std::printf("%-10s %s  levels %d, about %.0f vertices, %.1f GB  %s\n", to_string(status.state),
                 run.folder.c_str(), run.levels, run.vertices, memory.bytes(run) / 1e9,
                 json_text(run.settings).c_str());

@@ -27,8 +27,8 @@ void take_newton(const ConfigNode& written, const NewtonParameters& common, cons
     if (written.find(p.name)) p.assign(&common, newton->section_in(solver, 0));
 }
 
-/// Leaves out of a resolved solver's `newton` what it shares with the experiment's, so that who changes that
-/// in a saved experiment changes the solver.
+/// Leaves out of a resolved solver's `newton` what it shares with the experiment's, so that a change of the
+/// latter in a saved experiment reaches the solver.
 void leave_out_shared(const ConfigNode& common, ConfigNode& solver) {
   ConfigNode own = *solver.find("newton");
   for (const auto& [key, value] : common.entries)

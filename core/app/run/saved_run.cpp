@@ -167,7 +167,7 @@ SavedState saved_state(const fs::path& folder, const std::string& method, std::o
   const nlohmann::ordered_json results = read_results(folder);
   SavedState state{method, 0, {}};
   std::optional<Checkpoint> checkpoint;
-  if (!(member_of(results, "complete") == true)) {
+  if (member_of(results, "complete") != true) {
     std::vector<std::string> warnings;
     checkpoint = load_checkpoint(folder, warnings);
     if (state.method.empty()) state.method = checkpoint->methods.at(checkpoint->method);

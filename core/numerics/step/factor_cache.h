@@ -57,7 +57,7 @@ class FactorCache {
   /// place of the factorised matrix.
   const BlockMatrix& plain_hessian();
 
-  /// By which the last factorisation was made.
+  /// The solver of the last factorisation.
   LinearSolver solver() const { return solver_; }
   /// Number of symbolic analyses.
   int analyses() const { return cholesky_.analyses(); }

@@ -45,7 +45,7 @@ class StepController {
   /// Damps the step more, after a line search without descent. Returns false once h is too small, or the
   /// added mass too large, to try again.
   bool damp();
-  /// Ends an iteration.
+  /// Ends an iteration, whose line search found the step length α.
   void end_iteration(double step_length);
   /// Ends a step: adapts h to the step lengths and to stalls.
   void end_step(double force_residual);
