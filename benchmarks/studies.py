@@ -1,12 +1,13 @@
 """The studies of `make results`, in the order in which they run.
 
-A study: `what` it is; the `minutes` that it may take, over all calls, on two cores (at most eight hours in sum); whether its
+A study: `what` it is; the `minutes` that it may take, over all calls, on two cores (at most eight hours in sum, of those that are not `named`); whether its
 times are compared (`timed`: one process at a time, all cores, on an idle machine) or only its iterations and flops (one thread a
 run, a run a core); the `threads` of a timed one that does not take all cores; `starts`; the commands that `run` it in {out}, which
 go on where they were cut; those that `gather` its records, a first word ">FILE" storing what the rest prints; its `records` in
 benchmarks/results; `meshes` of data/ that it needs; what else it `needs` in {build}, and how to get it; a command that is to `check`
-what others have built, and says what is missing; whether a run that is refused, or exceeds its sweep's time limit, is one of the
-`failures` that it records; whether its record may be `partial`, of the scenes that have run; whether what `gather` prints is a table of `scenes`.
+what others have built, and says what is missing; whether it takes so long that it runs only when it is `named`; whether a run that
+is refused, or exceeds its sweep's time limit, is one of the `failures` that it records; whether its record may be `partial`, of the
+scenes that have run; whether what `gather` prints is a table of `scenes`.
 """
 
 MESHES = ["bunny.ply", "armadillo.ply"]
@@ -60,6 +61,8 @@ STUDIES = {
         "what": "an iteration by the number of vertices, 16K to a million", "minutes": 20, "timed": True, "starts": 1,
         "run": [sweep("scale") + ["--allow-memory"]],
         "gather": [["benchmarks/scale", "{out}", "{results}/scale.json"]], "records": ["scale.json"]},
+    "dragon_decrements": previews("dragon_decrements", "the dragon to 371K vertices under the paper's rule for ending levels", 30, starts=1,
+                                  timed=True, meshes=["dragon.ply"]),
     "previews": previews("previews", "six scenes to 5.9K vertices", 35, meshes=MESHES),
     "four_levels": previews("four_levels", "six scenes with a fourth level", 50, meshes=MESHES),
     "ablations": previews("ablations", "one choice changed at a time", 20),
@@ -73,12 +76,10 @@ STUDIES = {
         "gather": [[">{results}/cusick.csv", "{drape}", "table", "{out}", "--format", "csv", "--columns",
                     "run,seed,status,drape_coefficient,folds,intersections"]], "records": ["cusick.csv"]},
     "table1": {
-        "what": "two scenes of the supplement's Table 1", "minutes": 35, "timed": False, "starts": 1, "partial": True, "run": [sweep("table1")],
+        "what": "two scenes of the supplement's Table 1", "minutes": 60, "timed": False, "starts": 1, "partial": True, "run": [sweep("table1")],
         "gather": [["benchmarks/table1", "{out}", "{results}/table1"]], "records": ["table1.json", "table1.md"]},
     "scenes": {
-        "what": "scenes of the supplement's Table 2, to their finest levels", "minutes": 65, "timed": False, "starts": 1, "meshes": ALL_MESHES, "run": [sweep("scenes")],
-        "scenes": True, "partial": True, "gather": [[">{results}/scenes.md", "{drape}", "table", "{out}", "--columns", RUN_COLUMNS]],
+        "what": "scenes of the supplement's Table 2, to their finest levels", "minutes": 240, "timed": False, "starts": 1, "meshes": ALL_MESHES,
+        "named": True, "run": [sweep("scenes")], "scenes": True, "partial": True, "gather": [[">{results}/scenes.md", "{drape}", "table", "{out}", "--columns", RUN_COLUMNS]],
         "records": ["scenes.md"]},
-    "dragon_decrements": previews("dragon_decrements", "the dragon to 371K vertices under the paper's rule for ending levels", 30, starts=1,
-                                  timed=True, meshes=["dragon.ply"]),
 }
