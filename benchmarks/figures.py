@@ -76,18 +76,6 @@ def scenes(study, columns):
     return table(["scene"] + columns, rows, [f"{study}.md"], right)
 
 
-def chosen_scenes():
-    """Some of the scenes of the supplement's Table 2, small to large."""
-    lines = [line for line in (RESULTS / "scenes.md").read_text().splitlines() if line.startswith("|")]
-    head, *rows = [[c.strip() for c in line.strip("|").split("|")] for line in (lines[0], *lines[2:])]
-    energy = next(name for name in head if name.startswith("energy"))
-    heads = {"run": "scene", "vertices": "vertices", "steps": "steps", energy: "energy released [J]", "smallest_gap": "smallest gap [m]",
-             "largest_stretch": "largest stretch", "intersections": "intersections"}
-    by_name = {row[0]: [row[head.index(c)] for c in heads] for row in rows}
-    names = ["ribbon", "sphere", "cube", "tablecloth", "armadillo", "bunny", "sphere_fine", "dragon"]
-    return table(list(heads.values()), [by_name[n] for n in names if n in by_name], ["scenes.md"], "lrrrrrr")
-
-
 def best_in_table1():
     """For each scene, of the rows of curvature, of distance and of energy: how many, and on how many each method is best."""
     text = (RESULTS / "table1.md").read_text()
@@ -334,7 +322,6 @@ BLOCKS = {
     "six scenes in full": lambda: scenes("previews", TOP),
     "four levels": lambda: scenes("four_levels", [
         TOP[0], "overlap", "finest level, iterations: pcs / cascadic", "total flops, relative to cascadic", TOP[-1]]),
-    "chosen scenes": chosen_scenes,
     "table 1": table1,
     "remedies": remedies,
     "ablations": ablations,

@@ -91,17 +91,18 @@ struct MethodState;
 class Observer {
  public:
   virtual ~Observer() = default;
-  virtual void level_started(int level) { (void)level; }
-  virtual void iteration(const IterationRow& row, const Positions& x) { (void)row, (void)x; }
+  virtual void level_started([[maybe_unused]] int level) {}
+  virtual void iteration([[maybe_unused]] const IterationRow& row, [[maybe_unused]] const Positions& x) {}
   /// An increment of load stepping has ended at x.
-  virtual void increment_finished(const IncrementRow& row, const Positions& x) { (void)row, (void)x; }
-  virtual void level_finished(const LevelResult& result) { (void)result; }
+  virtual void increment_finished([[maybe_unused]] const IncrementRow& row,
+                                  [[maybe_unused]] const Positions& x) {}
+  virtual void level_finished([[maybe_unused]] const LevelResult& result) {}
   virtual bool stop_requested() { return false; }
   /// Whether to end the level now and begin the next one. Not asked on the finest level.
   virtual bool refine_requested() { return false; }
   /// Asked at the beginning of every step: whether to call checkpoint() with the state there.
   virtual bool checkpoint_due() { return false; }
-  virtual void checkpoint(const NewtonState& state) { (void)state; }
+  virtual void checkpoint([[maybe_unused]] const NewtonState& state) {}
 };
 
 /// A method: a schedule of Newton solves over the levels of a problem, each reported to the observer. A run
