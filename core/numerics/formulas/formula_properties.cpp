@@ -13,19 +13,27 @@ Eigen::Vector3d green_strains(double s1, double s2, double angle) {
   return {c * c * e1 + s * s * e2, s * s * e1 + c * c * e2, c * s * (e1 - e2)};
 }
 
-bool is_isotropic(const std::function<double(const Eigen::Vector3d&)>& density) {
+bool is_isotropic(const std::vector<MaterialTriangle>& triangles, bool size_or_place,
+                  const std::function<double(const Eigen::Vector3d&, const double*)>& energy) {
   constexpr double stretches[][2] = {{1.02, 1.01}, {1.07, 0.94}, {1.21, 0.63}, {0.97, 0.91}, {1.5, 1.3}};
   constexpr double angles[] = {0.35, 0.8, 1.3, 2.1, 2.9};
-  for (const auto& s : stretches) {
-    const double along = density(green_strains(s[0], s[1], 0));
-    for (const double angle : angles) {
-      const double turned = density(green_strains(s[0], s[1], angle));
-      const bool equal =
-          std::isfinite(along) ? std::abs(turned - along) <= 1e-10 * std::abs(along) : !std::isfinite(turned);
-      if (!equal) return false;
+  const auto isotropic = [&](const MaterialTriangle& triangle) {
+    for (const auto& s : stretches) {
+      const auto turned_by = [&](double angle) {
+        return energy(green_strains(s[0], s[1], angle), triangle.data() + 4);
+      };
+      const double along = turned_by(0);
+      for (const double angle : angles) {
+        const double turned = turned_by(angle);
+        const bool equal = std::isfinite(along) ? std::abs(turned - along) <= 1e-10 * std::abs(along)
+                                                : !std::isfinite(turned);
+        if (!equal) return false;
+      }
     }
-  }
-  return true;
+    return true;
+  };
+  const auto end = size_or_place || triangles.empty() ? triangles.end() : triangles.begin() + 1;
+  return std::all_of(triangles.begin(), end, isotropic);
 }
 
 std::optional<double> sampled_midpoint_factor(const BindEnergy& bind) {

@@ -4,14 +4,19 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <vector>
 
 #include "core/kernel/interfaces/energy.h"
+#include "core/numerics/elements/green_strain.h"
 
 namespace drape {
 
-/// Whether a density of Green strains g11, g22, g12 depends on principal stretches alone, not on their
-/// directions.
-bool is_isotropic(const std::function<double(const Eigen::Vector3d& strains)>& density);
+/// Whether a membrane's energy, of Green strains g11, g22, g12 and the last four numbers of a
+/// MaterialTriangle, depends on principal stretches alone, not on their directions: on the first of these
+/// triangles, which says it for all if the law does not depend on an element's `size_or_place`, or else on
+/// each.
+bool is_isotropic(const std::vector<MaterialTriangle>& triangles, bool size_or_place,
+                  const std::function<double(const Eigen::Vector3d& strains, const double* place)>& energy);
 
 /// Green strains of a triangle with these principal stretches, at an angle in the material's frame.
 Eigen::Vector3d green_strains(double s1, double s2, double angle);

@@ -110,8 +110,7 @@ class MembraneFormula final : public Energy {
 
   // The four triangles have the strains of the whole, and a quarter of its area each.
   std::optional<double> midpoint_factor() const override {
-    const bool fixed = (reads(Law(p_, Material())) & (Trace::place | Trace::size)) != 0;
-    return fixed ? std::nullopt : std::optional(1.0);
+    return is_fixed(Law(p_, Material())) ? std::nullopt : std::optional(1.0);
   }
 
   std::unique_ptr<BoundEnergy> bind(const Level& level, const Material& material) const override {
@@ -124,14 +123,14 @@ class MembraneFormula final : public Energy {
   std::unique_ptr<BoundEnergy> bind_buckling(const Level& level, const Material& material,
                                              double s) const override {
     const Law law(p_, material);
-    const double at_origin[] = {1, 0, 0, 0};
-    const bool isotropic = (reads(law) & Trace::stretches) || is_isotropic([&](const Eigen::Vector3d& g) {
-                             return energy<double>(law, g, at_origin).value;
-                           });
-    if (!isotropic)
+    const std::vector<MaterialTriangle> triangles = material_triangles(level);
+    const auto value = [&](const Eigen::Vector3d& g, const double* place) {
+      return energy<double>(law, g, place).value;
+    };
+    if (!(reads(law) & Trace::stretches) && !is_isotropic(triangles, is_fixed(law), value))
       return bind_buckling_strains(
           [law](const auto& g, const auto* place) { return energy<Pack<native_pack_width>>(law, g, place); },
-          material_triangles(level), level, s);
+          triangles, level, s);
     return bind_buckling_membrane(PrincipalFormula<Law>{law}, level, numbers(level), s);
   }
 
@@ -143,6 +142,9 @@ class MembraneFormula final : public Energy {
                place)
         .reads;
   }
+
+  /// Whether the density depends on where a triangle is at rest, or how large.
+  static bool is_fixed(const Law& law) { return (reads(law) & (Trace::place | Trace::size)) != 0; }
 
   template <int numbers>
   std::unique_ptr<BoundEnergy> bind_with(const Law& law, const Level& level) const {

@@ -92,10 +92,8 @@ class Compiler {
     std::vector<Term> all = {energy.value};
     all.insert(all.end(), std::begin(energy.first), std::end(energy.first));
     all.insert(all.end(), std::begin(energy.second), std::end(energy.second));
-    Programs programs{Program({energy.value}), Program({all.begin(), all.begin() + 1 + N}),
-                      Program({all.begin() + 1, all.end()}), Program(all), true};
-    for (const Term& t : energy.second) programs.is_linear = programs.is_linear && t.is(0);
-    return programs;
+    return {Program({energy.value}), Program({all.begin(), all.begin() + 1 + N}),
+            Program({all.begin() + 1, all.end()}), Program(all)};
   }
 
  private:

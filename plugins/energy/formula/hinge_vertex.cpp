@@ -1,5 +1,8 @@
 #include <algorithm>
+#include <map>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include "core/numerics/elements/batched_energy.h"
 #include "core/numerics/elements/vertex_energy.h"
@@ -112,6 +115,37 @@ class VertexProgramKernel {
   Programs programs_;
 };
 
+/// A vertex's law on traces: its degree in x, y and z, whatever the values of its constants, which a schedule
+/// may change.
+Trace trace(const Law& law) {
+  std::map<std::string, Trace> names;
+  for (const char* variable : {"x", "y", "z"}) names[variable] = Trace(1, 0);
+  for (const Part& part : law.parts) {
+    std::vector<Trace> traces;
+    for (const Node& node : part.tree) {
+      const auto argument = [&](int i) { return traces[node.arguments[i]]; };
+      Trace result = names[node.word];  // a constant, but for names
+      if (node.kind == Node::Kind::call) {
+        result = argument(0);
+        if (node.arguments.size() == 1 && node.word != "-")
+          result = abs(result);  // as any other function
+        else if (node.word == "*")
+          result = result * argument(1);
+        else if (node.word == "/")
+          result = result / argument(1);
+        else if (node.word == "if")
+          result = select(result, argument(1), argument(2));
+        else
+          for (std::size_t i = 1; i < node.arguments.size(); ++i)
+            result = node.word == "+" || node.word == "-" ? result + argument(i) : max(result, argument(i));
+      }
+      traces.push_back(result);
+    }
+    names[part.name] = traces.back();
+  }
+  return names[law.parts.back().name];
+}
+
 }  // namespace
 
 std::unique_ptr<BoundEnergy> bind_hinges(const Law& law, const Level& level, const Material& material) {
@@ -121,11 +155,9 @@ std::unique_ptr<BoundEnergy> bind_hinges(const Law& law, const Level& level, con
 }
 
 std::unique_ptr<BoundEnergy> bind_vertices(const Law& law, const Level& level, const Material& material) {
-  Programs programs = compile_vertex(law, material);
-  const bool is_linear = programs.is_linear;
-  auto bound = std::make_unique<VertexEnergy<VertexProgramKernel>>(level, material,
-                                                                   VertexProgramKernel(std::move(programs)));
-  if (!is_linear) return bound;
+  auto bound = std::make_unique<VertexEnergy<VertexProgramKernel>>(
+      level, material, VertexProgramKernel(compile_vertex(law, material)));
+  if (trace(law).degree > 1) return bound;
   return as_linear(std::move(bound), level);
 }
 

@@ -220,8 +220,8 @@ std::unique_ptr<BoundEnergy> bind_buckling(const Law& law, const Level& level, c
     if (uses_stretches(law)) return bind_membrane(law, level, material);
     const Program program = compile_triangle(law, material, TriangleVariables::strains).all;
     const auto energy = [program](const auto& g, const auto* place) { return energy_at(program, g, place); };
-    const double at_origin[] = {1, 0, 0, 0};
-    if (!is_isotropic([&](const Eigen::Vector3d& g) { return energy(g, at_origin).value; }))
+    const auto value = [&](const Eigen::Vector3d& g, const double* place) { return energy(g, place).value; };
+    if (!is_isotropic(triangles, law.depends_on_place() || law.uses("area"), value))
       return bind_buckling_strains(energy, triangles, level, s);
   }
   std::vector<Eigen::Vector4d> numbers;

@@ -69,7 +69,6 @@ enum class TriangleVariables {
 /// the energy, then those.
 struct Programs {
   Program value, gradient, hessian, all;
-  bool is_linear = false;  ///< all second derivatives are 0
 };
 
 /// Compiles a triangle's formula. Throws std::length_error for one that is too large.

@@ -22,6 +22,8 @@ class LawReader {
   Law read() {
     if (!is_name(p_.name))
       refuse("name", "\"" + excerpt(p_.name) + "\" must be a letter, then letters, digits and underscores");
+    if (p_.name == "contact")
+      refuse("name", "\"contact\" is the energy of contact in results; choose another name");
     read_constants();
     read_where();
     read_energy();
@@ -33,7 +35,7 @@ class LawReader {
   static bool is_name(const std::string& text) {
     const auto letter = [](unsigned char c) { return std::isalnum(c) || c == '_'; };
     return !text.empty() && std::isalpha(static_cast<unsigned char>(text[0])) &&
-           std::all_of(text.begin(), text.end(), letter) && text != "contact";
+           std::all_of(text.begin(), text.end(), letter);
   }
 
   void refuse(const std::string& path, const std::string& message) { faults_.push_back({path, message}); }

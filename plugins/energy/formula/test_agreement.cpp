@@ -140,6 +140,17 @@ TEST_CASE("an isotropic formula buckles below the mesh as the compiled law does"
   }
 }
 
+TEST_CASE("a law that is isotropic in places alone keeps its directions below the mesh") {
+  const std::string law = "m*(g11^2 + g22^2 + 2*g12^2) + if(u > edge, 50*m*g11^2, 0)";
+  const auto banded = make_plugin_from<Energy>(
+      "{type: formula, constants: {m: {value: 30, unit: N/m}, edge: {value: 0.05, unit: m}}, density: \"" +
+      law + "\"}");
+  const Level level = Level::of(0, grid({0.1, 0.1}, 4, 4, Diagonals::one_way));
+  const Positions x = level.rest.vertices * Eigen::Vector3d(1.01, 1.1, 1).asDiagonal();  // taut
+  CHECK(banded->bind_buckling(level, Material(), 1e-5)->value(x) ==
+        Approx(banded->bind(level, Material())->value(x)).epsilon(1e-9));
+}
+
 TEST_CASE("warp is along the grain, wherever corners begin") {
   const auto energy = [&](double grain, const Eigen::Vector3d& stretch) {
     TriangleMesh mesh = grid({0.1, 0.1}, 5, 5, Diagonals::criss_cross);
@@ -176,6 +187,28 @@ TEST_CASE("gravity by a formula is linear, as the plugin is") {
   CHECK(bound->value(x) == Approx(gravity->value(x) - gravity->value(level.rest.vertices)));
   CHECK((gradient_of(*bound, x) - gradient_of(*gravity, x)).norm() <= 1e-15);
   CHECK(bound->value(level.rest.vertices) == Approx(0).margin(1e-15));
+}
+
+TEST_CASE("a vertex's law with a kink, or with a constant that is 0, has no constant forces") {
+  const Level level = Level::of(0, grid({0.1, 0.1}, 3, 3, Diagonals::one_way));
+  Positions x = level.rest.vertices;
+  x.col(2).setConstant(0.5);
+  const auto bound = [&](double p, const std::string& law) {
+    return make_plugin_from<Energy>(
+               "{type: formula, per: vertex, constants: {p: {value: " + std::to_string(p) +
+               ", unit: Pa}, h: {value: 0.2, unit: m}}, energy: \"" + law + "\"}")
+        ->bind(level, Material());
+  };
+  for (const std::string law : {"p*area*max(z, 0)", "p*area*abs(z)", "if(z > h, p*area*z, 0)"}) {
+    INFO(law);
+    const auto kinked = bound(2, law);
+    CHECK(kinked->stencils().rows() == level.vertex_count());
+    CHECK(kinked->value(x) == Approx(0.01));
+    CHECK(gradient_of(*kinked, x).col(2).sum() == Approx(0.02));
+  }
+  // A schedule may change the constant, and stencils stay.
+  CHECK(bound(0, "p*area*z*(z/h)")->stencils().rows() == level.vertex_count());
+  CHECK(bound(0, "p*area*z/h*h - p*area*x*if(p > p, 2, 3)")->stencils().rows() == 0);
 }
 
 TEST_CASE("an energy of -infinity counts as outside the domain") {

@@ -114,6 +114,7 @@ TEST_CASE("an error has the line and column inside the formula, also of a broken
        "unknown function \"sqr\""},
       {"unit: N/m", "unit: kN/m", "\"kN/m\" is not a unit that formulas know"},
       {"name: orthotropic", "name: 2x", "must be a letter"},
+      {"name: orthotropic", "name: contact", "\"contact\" is the energy of contact in results"},
       {"nu12: 0.2", "g11: 0.2, nu12: 0.2", "\"g11\" is a symbol already"},
       {"nu12: 0.2", "nu12: [0.2]", "\"nu12\" in constants must be a number, not a list"},
       {"nu12: 0.2", "nu12: {unit: 1}", "\"nu12\" in constants has no \"value\""},
