@@ -6,8 +6,8 @@ run, a run a core); the `threads` of a timed one that does not take all cores; `
 go on where they were cut; those that `gather` its records, a first word ">FILE" storing what the rest prints; its `records` in
 benchmarks/results; `meshes` of data/ that it needs; what else it `needs` in {build}, and how to get it; a command that is to `check`
 what others have built, and says what is missing; whether it takes so long that it runs only when it is `named`; whether a run that
-is refused, or exceeds its sweep's time limit, is one of the `failures` that it records; whether its record may be `partial`, of the
-scenes that have run; whether what `gather` prints is a table of `scenes`.
+is refused, or exceeds its sweep's time limit, is one of the `failures` that it records; whether what `gather` prints is a table of
+`scenes`, of which those are recorded that have run.
 """
 
 MESHES = ["bunny.ply", "armadillo.ply"]
@@ -76,10 +76,10 @@ STUDIES = {
         "gather": [[">{results}/cusick.csv", "{drape}", "table", "{out}", "--format", "csv", "--columns",
                     "run,seed,status,drape_coefficient,folds,intersections"]], "records": ["cusick.csv"]},
     "table1": {
-        "what": "two scenes of the supplement's Table 1", "minutes": 60, "timed": False, "starts": 1, "partial": True, "run": [sweep("table1")],
+        "what": "two scenes of the supplement's Table 1", "minutes": 60, "timed": False, "starts": 1, "run": [sweep("table1")],
         "gather": [["benchmarks/table1", "{out}", "{results}/table1"]], "records": ["table1.json", "table1.md"]},
     "scenes": {
         "what": "scenes of the supplement's Table 2, to their finest levels", "minutes": 240, "timed": False, "starts": 1, "meshes": ALL_MESHES,
-        "named": True, "run": [sweep("scenes")], "scenes": True, "partial": True, "gather": [[">{results}/scenes.md", "{drape}", "table", "{out}", "--columns", RUN_COLUMNS]],
-        "records": ["scenes.md"]},
+        "named": True, "run": [sweep("scenes")], "scenes": True,
+        "gather": [[">{results}/scenes.md", "{drape}", "table", "{out}", "--columns", RUN_COLUMNS]], "records": ["scenes.md"]},
 }
