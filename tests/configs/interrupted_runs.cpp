@@ -59,9 +59,12 @@ TEST_CASE("SIGHUP, as of a terminal that is closed, ends a run as SIGTERM does; 
     DrapeAtWork command(endless, folder);
     wait_for_lines(command, folder / "out/iterations.csv", 6);
     command.send(SIGHUP);
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+    command.send(SIGHUP);  // from the system, once the shell has ended
     CHECK(command.wait().exit_code == 129);
   }
   CHECK(fs::exists(folder / "out/checkpoint/state.bin"));
+  CHECK(fs::exists(folder / "out/report.html"));
   fs::remove_all(folder / "out");
   Command command("trap '' HUP; exec " + drape_command + " " + endless + " -q --no-report", folder.path);
   wait_for_lines(command, folder / "out/iterations.csv", 6);

@@ -68,6 +68,29 @@ TEST_CASE("a sweep removes no run that another process is resuming") {
   by_hand.wait();
 }
 
+TEST_CASE("a run that another process was resuming when its sweep began is one of the sweep's results") {
+  const CutSweep folder(SIGKILL);
+  DrapeAtWork by_hand("run --resume " + slow_run + " --no-report", folder);
+  by_hand.wait_until("it resumes", [&] { return folder.log().find("run_resumed") != std::string::npos; });
+  by_hand.send(SIGSTOP);
+  drape_with(sweep_slow, folder.path);
+  CHECK(folder.run()["status"] == "failed");
+  by_hand.send(SIGCONT);
+  by_hand.wait();
+  drape_with(sweep_slow, folder.path);
+  CHECK(folder.run()["status"] == "not_converged");
+}
+
+TEST_CASE("a sweep that was cut while its runs' files were written goes on") {
+  const Scratch folder(small_experiment());
+  folder.write("s.yaml", "name: s\nbase: e.yaml\nset: {levels: 1}\nmethods: [newton]\n");
+  fs::create_directories(folder / "out/runs/base/seed_1.yaml.part");  // no file can be written here
+  folder.write("out/sweep.lock", "");
+  CHECK(drape_with("sweep s.yaml --out out", folder.path).exit_code > 1);
+  fs::remove_all(folder / "out/runs/base/seed_1.yaml.part");
+  drape_ends("sweep s.yaml --out out", folder);
+}
+
 TEST_CASE("a run that was resumed without its sweep is one of the sweep's results, although it had failed") {
   const bool had_failed = GENERATE(false, true);
   CAPTURE(had_failed);

@@ -24,6 +24,9 @@ ablation:
   - name: unheld
     set: {pins: [{region: ball, point: [9, 9, 9], radius: 0.1}]}
     expect: {status: refused, message: widen its region}
+  - name: refused for another reason
+    set: {pins: [{region: ball, point: [9, 9, 8], radius: 0.1}]}
+    expect: {status: refused, message: snow}
   - name: short
     set: {newton.max_steps: 1}
     expect: {status: max_steps_reached, message: max_steps = 1}
@@ -58,28 +61,30 @@ TEST_CASE("a run passes when it ends as its sweep expects, for the reason expect
   const Scratch folder(small_experiment());
   folder.write("s.yaml", cases());
   CHECK_THAT(drape_ends("sweep s.yaml --out out", folder, 1).err,
-             Contains("unheld, seed 1: refused, as expected, after"));
+             Contains("unheld, seed 1: refused, as expected, after") &&
+                 Contains("refused for another reason, seed 1: failed"));
   folder.write("s.yaml", cases() + endless);
   const Ended swept = drape_ends("sweep s.yaml --out out", folder, 1);
   CHECK_THAT(swept.err, Contains("endless, seed 1: failed") && Contains("exceeded the sweep's time_limit"));
-  CHECK_THAT(swept.err, Contains("; 1 failed"));
+  CHECK_THAT(swept.err, Contains("; 2 failed"));
   CHECK_THAT(swept.out, Contains("unheld     ") && Contains("refused, as expected  ") &&
-                            !Contains("widen its region") && Contains("exceeded the sweep's time_limit"));
+                            Contains("widen its region") && Contains("exceeded the sweep's time_limit"));
 
   const OrderedJson rows = OrderedJson::parse(drape_ends("table out --format json", folder, 1).out);
-  REQUIRE(rows.size() == 5);
+  REQUIRE(rows.size() == 6);
   const auto outcome = [&](int k) {
     return rows[k]["run"].get<std::string>() + ": " + rows[k]["status"].get<std::string>() +
            (rows[k]["pass"] == true ? ", passes" : "");
   };
   CHECK(outcome(0) == "easy: converged, passes");
   CHECK(outcome(1) == "unheld: refused, passes");
-  CHECK(outcome(2) == "short: max_steps_reached, passes");
-  CHECK(outcome(3) == "for another reason: max_steps_reached");
-  CHECK(outcome(4) == "endless: timeout");
+  CHECK(outcome(2) == "refused for another reason: refused");
+  CHECK(outcome(3) == "short: max_steps_reached, passes");
+  CHECK(outcome(4) == "for another reason: max_steps_reached");
+  CHECK(outcome(5) == "endless: timeout");
   CHECK(rows[0]["method"] == "newton");
   CHECK(rows[0]["vertices"] > 10);
-  CHECK(rows[2]["iterations"] == 1);
+  CHECK(rows[3]["iterations"] == 1);
   CHECK(rows[0]["energy_released"].is_number());
   CHECK(rows[1]["vertices"].is_null());
   CHECK_THAT(rows[1]["message"].get<std::string>(), Contains("selects no vertex"));

@@ -152,6 +152,7 @@ TEST_CASE("conflicting options, and a foreign folder") {
   folder.write("mine/notes", "mine");
   CHECK(refused_by("sweep s.yaml --out mine", folder.path) ==
         "error: mine: holds notes, and no sweep; name another folder with --out\n");
+  CHECK(!fs::exists(folder / "mine/sweep.lock"));  // by which a run would take the folder for a sweep's
   CHECK(drape_with("sweep s.yaml --out s.yaml", folder.path).err ==
         "error: s.yaml: cannot make the sweep's folder (Not a directory); name another with --out\n");
   drape_ends("sweep s.yaml --out out", folder);

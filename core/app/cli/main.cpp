@@ -22,8 +22,9 @@ namespace {
 volatile std::sig_atomic_t received = 0;
 
 void on_signal(int number) {
-  if (received) std::_Exit(exit_by_signal + number);
-  received = number;
+  // A terminal that is closed may send SIGHUP twice: its shell does, and then the system.
+  if (received && number != SIGHUP) std::_Exit(exit_by_signal + number);
+  if (!received) received = number;
 }
 
 int run(int argc, char** argv) {

@@ -37,11 +37,11 @@ RunStatus with_sound_results(const RunFiles& files, RunStatus status) {
   return status;
 }
 
-std::string last_lines(const std::filesystem::path& file) {
+std::string last_lines(const std::filesystem::path& file, int most) {
   std::string text = text_of_file(file);
   while (!text.empty() && text.back() == '\n') text.pop_back();
   std::size_t from = text.size();
-  for (int line = 0; line < 5 && from != std::string::npos && from > 0; ++line)
+  for (int line = 0; line < most && from != std::string::npos && from > 0; ++line)
     from = text.rfind('\n', from - 1);
   return from == std::string::npos || from == 0 ? text : text.substr(from + 1);
 }
@@ -163,12 +163,14 @@ bool RunProcess::ended() {
   }
   status_ = resolve_status(files_, status_);
   status_.seconds = seconds;
-  status_.exit_code = exit->code;
-  const bool stopped =
-      stopped_ || exit->code == exit_by_signal + SIGINT || exit->code == exit_by_signal + SIGTERM;
+  // What is resumed had begun: that another process uses it is no fault of its input.
+  status_.exit_code = resumes_ && exit->code == exit_bad_input ? exit_aborted : exit->code;
+  const int signal = exit->code - exit_by_signal;
+  const bool stopped = stopped_ || signal == SIGINT || signal == SIGTERM || signal == SIGHUP;
   if (status_.state == RunState::cancelled && !stopped) {
     status_.state = RunState::failed;
-    const std::string said = last_lines(files_.log());
+    // A refusal lists every fault, of which one is expected, perhaps.
+    const std::string said = last_lines(files_.log(), status_.refused() ? 200 : 5);
     if (too_slow_) {
       status_.exit_code = exit_too_slow;
       status_.error = "exceeded the sweep's time_limit";

@@ -26,7 +26,8 @@ std::string title(const std::string& name, int seed) {
 bool is_refused_as_expected(const Json& run) {
   const Json expect = run.value("expect", Json::object());
   return run["status"] == to_string(RunState::failed) && run["exit_code"] == exit_bad_input &&
-         expect.value("status", "") == "refused";
+         expect.value("status", "") == "refused" &&
+         run.value("error", "").find(expect.value("message", "")) != std::string::npos;
 }
 
 }  // namespace
@@ -58,12 +59,7 @@ std::vector<RunStatus> SweepFolder::checked_statuses(const Sweep& sweep, int thr
                            files.folder.string() + "*");
   };
   const Json before = read();
-  if (before.is_null()) {
-    for (const auto& entry : fs::directory_iterator(path_))
-      if (const std::string name = entry.path().filename(); name != "sweep.lock")
-        refuse_path(path_, "holds " + name + ", and no sweep; name another folder with --out");
-    return std::vector<RunStatus>(sweep.runs.size());
-  }
+  if (before.is_null()) return std::vector<RunStatus>(sweep.runs.size());
   if (const std::string other = before["sweep"]; other != sweep.parameters.name)
     refuse_path(path_, "holds the sweep \"" + other + "\"; name another folder with --out");
   std::set<std::string> folders;
@@ -112,12 +108,15 @@ std::vector<std::size_t> SweepFolder::prepare(const Sweep& sweep, int threads, b
                {"threads", threads},
                {"time_limit", sweep.parameters.time_limit.value_or(0)},
                {"runs", Json::array()}};
-  for (std::size_t k = 0; k < sweep.runs.size(); ++k) {
-    const SweepRun& run = sweep.runs[k];
+  for (const SweepRun& run : sweep.runs) {
     json["runs"].push_back(
         {{"name", run.name}, {"settings", run.settings}, {"seed", run.seed}, {"folder", run.folder}});
     if (run.expect.status != "converged")
       json["runs"].back()["expect"] = {{"status", run.expect.status}, {"message", run.expect.message}};
+  }
+  write(json);  // first: without it what follows would be a folder of runs and no sweep
+  for (std::size_t k = 0; k < sweep.runs.size(); ++k) {
+    const SweepRun& run = sweep.runs[k];
     const RunFiles files = this->files(run.folder);
     make_folder(files.folder.parent_path());
     RunStatus& status = statuses[k];
@@ -164,6 +163,10 @@ std::unique_ptr<FileLock> SweepFolder::lock() const {
   if (!fs::is_directory(path_))
     refuse_path(path_, "cannot make the sweep's folder" + (error ? " (" + error.message() + ")" : "") +
                            "; name another with --out");
+  if (!fs::exists(path_ / "sweep.lock") && !fs::exists(path_ / "sweep.json"))
+    for (const auto& entry : fs::directory_iterator(path_))
+      if (const std::string name = entry.path().filename(); name != "sweep.lock")
+        refuse_path(path_, "holds " + name + ", and no sweep; name another folder with --out");
   auto lock = std::make_unique<FileLock>(path_ / "sweep.lock");
   // Wait a moment for the runs of a sweep that has just been killed.
   if (!lock->acquire(1))

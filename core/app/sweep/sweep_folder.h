@@ -45,9 +45,10 @@ class SweepFolder {
   std::filesystem::path path_;
 };
 
-/// Whether a run was refused before any computation, as its sweep expects.
+/// Whether a run was refused before any computation, for the reason that its sweep expects.
 inline bool refused_as_expected(const SweepRun& run, const RunStatus& status) {
-  return status.refused() && run.expect.status == "refused";
+  return status.refused() && run.expect.status == "refused" &&
+         status.error.find(run.expect.message) != std::string::npos;
 }
 
 /// Estimates the peak memory of runs: that of the largest finished run with as many vertices and levels, or
