@@ -156,6 +156,7 @@ std::optional<int> Recorder::intersections(int level, const Positions& x) {
 }
 
 void Recorder::iteration(const IterationRow& r, const Positions& x) {
+  const Stopwatch watch;
   IterationRow row = r;
   row.seconds -= s_.overhead;
   s_.last = {std::max(row.seconds - s_.spent.seconds, 0.0), s_.last.iterations + 1, r.flops};
@@ -168,6 +169,7 @@ void Recorder::iteration(const IterationRow& r, const Positions& x) {
   for (const auto& [name, cell] : cells_of(row, crossing)) iterations_ << ',' << cell;
   iterations_ << std::endl;
   require_written(iterations_, "iterations.csv");
+  exclude(watch.seconds());
 }
 
 Recorder::Json Recorder::state_entry(const LevelResult& r, const Cost& cost) {

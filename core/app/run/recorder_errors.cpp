@@ -27,7 +27,9 @@ LevelResult solve_to_tolerance(const Experiment& experiment, const Scene& scene,
   const Stopwatch clock;
   PlainObjective objective(scene.finest_model());
   observer.level_started(scene.finest());
-  LevelResult result = minimise(objective, x, newton, {clock, observer});
+  LevelRun run{clock, observer};
+  run.hierarchy = &scene.hierarchy;
+  LevelResult result = minimise(objective, x, newton, run);
   observer.level_finished(result);
   return result;
 }

@@ -14,6 +14,7 @@
 #include "core/kernel/files/message_text.h"
 #include "core/kernel/threads/stopwatch.h"
 #include "core/numerics/mesh_files/io.h"
+#include "core/numerics/solve/newton_state.h"
 
 namespace drape {
 
@@ -108,10 +109,12 @@ bool run(const Experiment& experiment, const Scene& scene, const RunOptions& opt
     progress.method_started(name);
     if (options.view) options.view->method_started(name);
     if (options.method_started) options.method_started(name);
-    if (interrupted)
+    if (interrupted) {
+      restore_load_stepping(scene, begun.state);  // that of the levels that are shown
       catch_up(begun.state, progress, options.view);
-    else
+    } else {
       recorder.method_started(name);
+    }
     observer.method_started(m, solver.can_resume(), interrupted);
     const MethodState state = observer.now().state;
     std::optional<MethodFailure> failure;

@@ -91,7 +91,7 @@ OperatorCoefficients OperatorCoefficients::of(const Surface& surface, const Dihe
   const Eigen::Index n = dihedrals.vertex_angle.size(), count = surface.edges.rows();
   OperatorCoefficients c;
   c.edge.setZero(count);
-  c.vertex.setZero(n);
+  c.vertex.setConstant(n, -1);                       // at a vertex of single triangles no edge reduces it
   std::vector<int> further(count, -1), euler(n, 1);  // triangles of an edge beyond one
   for (int t = 0; t < surface.triangle_count(); ++t)
     for (int k = 0; k < 3; ++k) {
@@ -109,7 +109,8 @@ OperatorCoefficients OperatorCoefficients::of(const Surface& surface, const Dihe
       c.vertex[v] = std::max(c.vertex[v], part);
     }
   }
-  for (Eigen::Index v = 0; v < n; ++v) c.vertex[v] *= euler[v];
+  for (Eigen::Index v = 0; v < n; ++v)
+    c.vertex[v] = c.vertex[v] < 0 ? std::min(euler[v], 0) : c.vertex[v] * euler[v];
   return c;
 }
 

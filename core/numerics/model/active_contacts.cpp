@@ -82,23 +82,28 @@ void ActiveContacts::reset() {
   damping_ = {};
 }
 
-ObstacleMotion ActiveContacts::motion_since(const BoundContacts& before, std::size_t model) const {
+ObstacleMotion ActiveContacts::motion_since(const BoundContacts& before, std::size_t model,
+                                            bool& moved) const {
   if (models_[model] == before[model]) return [](const ObstaclePoint&) { return Eigen::Vector3d(0, 0, 0); };
-  return [now = models_[model].get(), &from = *before[model]](const ObstaclePoint& point) {
-    return now->displacement(from, point);
+  return [now = models_[model].get(), &from = *before[model], &moved](const ObstaclePoint& point) {
+    const Eigen::Vector3d displacement = now->displacement(from, point);
+    moved = moved || !displacement.isZero(1e-12);  // [m]: beyond round-off
+    return displacement;
   };
 }
 
-void ActiveContacts::store_tangential_displacements(const Positions& x, const BoundContacts* before) {
+bool ActiveContacts::store_tangential_displacements(const Positions& x, const BoundContacts* before) {
+  bool moved = false;
   tangential_displacements_.resize(models_.size());
   for (TangentialDisplacements& displacements : tangential_displacements_) displacements.clear();
   for (std::size_t k = 0; k < friction_.size(); ++k) {
     if (!friction_[k]) continue;
     tangential_displacements_[k] =
-        before ? friction_[k]->advected_tangential_displacements(x, motion_since(*before, k))
+        before ? friction_[k]->advected_tangential_displacements(x, motion_since(*before, k, moved))
                : friction_[k]->tangential_displacements(x);
   }
   reference_ = x;
+  return moved;
 }
 
 bool ActiveContacts::has_friction() const {
@@ -117,9 +122,11 @@ void ActiveContacts::update_obstacles(const BoundContacts& models, const Positio
   // displacement() needs the old models, and the old candidates and collisions may refer to them until
   // reset() destroys these.
   const BoundContacts before = std::exchange(models_, std::move(next));
-  store_tangential_displacements(x, &before);
+  // Models change with the material and with their stiffness, too; and what has moved may stand still in the
+  // rest of an increment.
+  const bool moved = store_tangential_displacements(x, &before) || advected_;
   reset();
-  advected_ = true;
+  advected_ = moved;
   build_collisions(x);
   lag_friction(false);
 }

@@ -102,9 +102,10 @@ class ActiveContacts {
   /// Sets the next model's friction_ from its lag.
   void set_friction(std::size_t model, FrictionContacts lag);
   /// Stores the tangential displacements at x and makes x their reference. With the models `before` obstacles
-  /// moved, they are advected and not limited.
-  void store_tangential_displacements(const Positions& x, const BoundContacts* before = nullptr);
-  ObstacleMotion motion_since(const BoundContacts& before, std::size_t model) const;
+  /// moved, they are advected and not limited. Returns whether an obstacle that the cloth touches has moved.
+  bool store_tangential_displacements(const Positions& x, const BoundContacts* before = nullptr);
+  /// `moved` becomes true with the first point that has.
+  ObstacleMotion motion_since(const BoundContacts& before, std::size_t model, bool& moved) const;
 
   /// Takes models of another barrier stiffness, with the candidates found again.
   void replace(BoundContacts models);

@@ -32,6 +32,7 @@ constexpr int max_idle_moves = 4;
 void DirichletEnforcer::begin(const Positions& x) {
   fixed_ = model_->fixed();
   s_.unsatisfied.clear();
+  s_.blocked_by.clear();
   penalty_.reset();
   s_.infeasible = false;
   s_.idle = 0;

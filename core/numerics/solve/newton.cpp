@@ -50,6 +50,8 @@ class Newton {
     result_.x = std::move(x);
     result_.level = f_.model().level().index;
     result_.message = run.remark;
+    result_.factorisations = run.factorisations;
+    result_.flops = run.flops;
     result_.seconds_by_phase = run.spent;
     for (const auto& [phase, seconds] : run.spent) result_.seconds += seconds;
     predictor_.update_constraints();

@@ -45,10 +45,14 @@ std::vector<LevelResult> Progression::resume(const Problem& problem, const Metho
       result.x = std::move(start.x);
       result.outcome = Outcome::cancelled;
       result.message = "stopped on request";
+      result.factorisations = start.factorisations;
+      result.flops = start.flops;
       result.seconds = start.seconds;
       result.seconds_by_phase = spent;
     } else {
       LevelRun run{clock, observer, l < problem.finest(), spent, state, problem.load_stepping.get(), remark};
+      run.factorisations = start.factorisations;
+      run.flops = start.flops;
       run.hierarchy = &problem.hierarchy;
       if (!anew) run.stiffness = results.back().contact_stiffness;
       result = minimise(*objective(problem, l), std::move(start.x), newton, run);

@@ -199,6 +199,8 @@ Refined refine_safely(const Problem& problem, int level, const Positions& x,
       LevelResult result = minimise(objective, std::move(refined.x), newton, {clock, descent});
       refined.x = std::move(result.x);
       refined.iterations += result.iterations;
+      refined.factorisations += result.factorisations;
+      refined.flops += result.flops;
       const int violating = objective.partition_by_strain_limit(refined.x);
       refined.cancelled = descent.cancelled();
       idle = violating < fewest || has_converged(result.outcome) ? 0 : idle + 1;

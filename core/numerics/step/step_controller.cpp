@@ -71,7 +71,7 @@ void StepController::end_step(double force_residual) {
   if (s_.backed_off) return;
   if (shortest_step_length_ == 1)
     h = std::max(h, std::min({h * p_.step_growth, max_step_size, s_.cycle_limit}));
-  if (shortest_step_length_ < short_step) h /= p_.step_growth;
+  if (shortest_step_length_ < short_step) h = std::max(h / p_.step_growth, min_step_size);
 }
 
 void StepController::limit_step_size() {

@@ -42,11 +42,10 @@ class Residuals : public Metric {
   /// ‖p‖ / (h √n) of the first Newton direction of an implicit step from x, with the clamped matrix.
   double decrement(const LevelModel& model, const Positions& x) const {
     Positions g, p;
-    model.gradient(x, g);
-    BlockMatrix matrix(model.pattern());
-    model.hessian(x, Projection::clamp, matrix);
+    model.energy_gradient(x, g);
+    const BlockMatrix matrix = model.energy_hessian(x, Projection::clamp);
     BlockCholesky cholesky;
-    cholesky.analyse(model.pattern(), model.fixed());
+    cholesky.analyse(matrix.pattern, model.fixed());
     const double h = step_size;
     if (!cholesky.factorise(matrix, model.masses() / (h * h))) return std::nan("");
     cholesky.solve(g, p);

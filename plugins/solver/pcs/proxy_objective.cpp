@@ -49,8 +49,6 @@ ProxyObjective::ProxyObjective(const Problem& problem, int level, const std::vec
     finer.prolonged.resize(part.above);
     finer.forces.resize(part.above);
   }
-  if (options_.effective)  // which vertices are pinned does not change over time
-    lone_pins_ = lone_pins(model(), [&] { return problem_.model(problem_.finest()); });
   ProxyObjective::model_changed();
   for (FinerPart& finer : finer_) {
     if (options_.matrix == ProxyMatrix::coarse) continue;
@@ -72,9 +70,9 @@ ProxyObjective::ProxyObjective(const Problem& problem, int level, const std::vec
 }
 
 void ProxyObjective::model_changed() {
-  if (options_.effective)
-    effective_ = std::make_shared<const LevelModel>(
-        model().with_effective_membranes(problem_.finest() - level_, lone_pins_));
+  if (options_.effective)  // a schedule may change which vertices a pin selects
+    effective_ = std::make_shared<const LevelModel>(model().with_effective_membranes(
+        problem_.finest() - level_, lone_pins(model(), [&] { return problem_.model(problem_.finest()); })));
   for (FinerPart& finer : finer_) {
     finer.model = problem_.model(level_ + finer.part.above);
     finer.matrix_model =

@@ -71,7 +71,6 @@ class ProxyObjective : public Objective {
   int level_;
   ProxyOptions options_;
   bool is_plain_ = false;
-  std::vector<int> lone_pins_;
   std::shared_ptr<const LevelModel> effective_;  // the level's model with effective membranes, or null
   std::vector<ProxyPart> own_;                   // parts of the level's own model
   std::vector<FinerPart> finer_;

@@ -196,10 +196,16 @@ TEST_CASE("Tangential displacements are advected by obstacle motion") {
     CHECK(contacts.advected());
     CHECK(contacts.friction(x1) == Approx(force * potential(0.3 * epsilon - moved)));
   }
+  contacts.update_obstacles(bound(level, {a_plate(-0.4 * epsilon)}), x1, x1);  // the same again
+  CHECK(contacts.advected());
   contacts.begin_step(x1);  // the cloth has not moved yet
   CHECK_FALSE(contacts.advected());
   CHECK(contacts.friction(x1) == Approx(force * potential(0.7 * epsilon)));
   contacts.begin_step(x1);
+  CHECK(contacts.friction(x1) == Approx(force * potential(0.7 * epsilon)));
+  contacts.update_obstacles(bound(level, {a_plate(-0.4 * epsilon)}), x1,
+                            x1);  // another model, as of another material
+  CHECK_FALSE(contacts.advected());
   CHECK(contacts.friction(x1) == Approx(force * potential(0.7 * epsilon)));
 }
 

@@ -297,6 +297,22 @@ TEST_CASE("If refinement fails, the level starts from the scene's start, and its
   CHECK(cloth.violations(1, results[1].x) == 0);
 }
 
+TEST_CASE("What refinement factorises counts as its level's") {
+  struct Stopped : Observer {
+    void level_started(int level) override { stop = level == 1; }
+    bool stop_requested() override { return stop; }
+    bool stop = false;
+  } stopped;
+  const TornApart cloth;
+  Progression cascade;
+  cascade.newton.max_steps = 50;
+  const std::vector<LevelResult> results = cascade.solve(cloth, stopped);
+  REQUIRE(results.size() == 2);
+  CHECK(results[1].iterations == 0);
+  CHECK(results[1].factorisations > 0);
+  CHECK(results[1].flops > 1000);
+}
+
 TEST_CASE("The cloth follows a vertex that is pinned on the finer level alone, within its strain limit") {
   const TriangleMesh sheet = grid({1, 1}, 9, 9, Diagonals::one_way);
   for (const double degrees : {10.0, 40.0, 70.0}) {

@@ -49,6 +49,17 @@ TEST_CASE("The shortest of a step's iterations adapts the step size") {
   CHECK(c.step_size() == 0.5);
 }
 
+TEST_CASE("Short steps reduce the step size to 1e-8 s and no further") {
+  const NewtonParameters p{.step_size = 1e-7, .step_growth = 1000};
+  StepController c(p);
+  for (int k = 0; k < 2; ++k) {
+    c.begin_step();
+    c.end_iteration(0.1);
+    c.end_step(1);
+  }
+  CHECK(c.step_size() == StepController::min_step_size);
+}
+
 TEST_CASE("Without descent the step size is quartered down to 1e-8 s; an abandoned step resets it") {
   StepController c(doubling);
   c.begin_step();

@@ -1,0 +1,20 @@
+#include <catch2/catch.hpp>
+
+#include "tests/support/command.h"
+
+TEST_CASE("cloth at rest on a plate has neither forces nor a decrement", "[residuals]") {
+  const Scratch folder(R"(name: resting
+cloth: {shape: square, side: 0.2, columns: 4, rows: 4}
+levels: 1
+start: {translate: [-0.1, -0.1, 0.0009]}
+energies: [neo_hookean, hinge, gravity]
+contact: {type: shapes, dhat: 1e-3}
+obstacles: [{shape: half_space}]
+newton: {force_tolerance: 1e-6}
+methods: {newton: {}}
+)");
+  drape_ends("run e.yaml --out out --quiet --no-report", folder);
+  const auto level = json_in(folder / "out/results.json")["methods"]["newton"]["levels"][0];
+  CHECK(level["force_residual_plain"] < 1e-5);
+  CHECK(level["decrement_plain"] < 1e-4);  // without the plate it would fall, by g h
+}
