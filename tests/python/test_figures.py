@@ -58,6 +58,22 @@ def test_figures_of_a_sweep(written, command, small_file, tmp_path):
     assert r"1.5 & pcs & 2 of 2 & " in files["table.tex"].read_text()
 
 
+def test_plots_of_keys_with_one_last_part_are_apart(written, command, small_file, tmp_path):
+    grid = "grid: {newton.step_size: [0.1, 0.2], methods.newton.newton.step_size: [0.1, 0.2]}"
+    sweep = SWEEP.replace("grid:\n    newton.step_growth: [1.5, 3]", grid).format(base=pathlib.Path(small_file).resolve())
+    (tmp_path / "two.yaml").write_text(sweep)
+    subprocess.run([command, "sweep", tmp_path / "two.yaml", "-o", tmp_path / "sweep"], check=True, stdout=subprocess.DEVNULL)
+    assert {"seconds_by_newton_step_size.svg", "seconds_by_methods_newton_newton_step_size.svg"} <= set(written(tmp_path / "sweep"))
+
+
+def test_a_sweep_without_results_has_no_figures(command, small_file, tmp_path):
+    sweep = SWEEP.format(base=pathlib.Path(small_file).resolve())
+    (tmp_path / "two.yaml").write_text(sweep + "set: {pins: [{region: ball, point: [9, 9, 9], radius: 0.1}]}\n")
+    subprocess.run([command, "sweep", tmp_path / "two.yaml", "-o", tmp_path / "sweep"], stdout=subprocess.DEVNULL)
+    ended = subprocess.run([command, "figures", tmp_path / "sweep", "-o", tmp_path / "out"], capture_output=True, text=True)
+    assert ended.returncode == 2 and "no run has written results yet" in ended.stderr
+
+
 def test_a_folder_without_results_has_no_figures(command, tmp_path):
     ended = subprocess.run([command, "figures", tmp_path, "-o", tmp_path / "figures"], capture_output=True, text=True)
     assert ended.returncode == 2 and "neither results.json nor sweep.json here" in ended.stderr

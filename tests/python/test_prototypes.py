@@ -1,6 +1,8 @@
 """Energies, metrics, refiners and solvers in Python."""
 
 import gc
+import subprocess
+import sys
 
 import numpy
 import pytest
@@ -410,6 +412,49 @@ def test_what_python_handles_is_not_raised(small):
             model.energy(numpy.nan * start)
 
     assert experiment.run(on_iteration=ask, progress=False).complete
+
+
+def test_a_run_in_a_callback_raises_what_its_prototypes_raise(small):
+    class Late(prototypes.Springs):  # not while its scene is built
+        failing = False
+
+        def gradient(self, x, rest):
+            if Late.failing:
+                raise ArithmeticError("too late")
+            return super().gradient(x, rest)
+
+    drape.register("late", Late)
+    inner, seen = drape.Experiment({**small, "energies": ["late", *small["energies"][1:]]}), []
+    inner.scene()
+
+    def ask(level):
+        Late.failing = True
+        with pytest.raises(ArithmeticError, match="too late"):
+            inner.run(progress=False)
+        seen.append(level)
+
+    drape.Experiment(small).run(on_level=ask, progress=False)
+    assert seen
+
+
+def test_a_run_with_a_method_that_failed_is_read_and_drawn(small, tmp_path):
+    pytest.importorskip("matplotlib")
+
+    class Failing(prototypes.ProjectedNewton):
+        def solve(self, problem):
+            raise ArithmeticError("at once")
+
+    drape.register("failing", Failing)
+    experiment = drape.Experiment({**small, "methods": {"failing": {}, "newton": {}}, "reference": {}})
+    with pytest.raises(ArithmeticError, match="at once"):
+        experiment.run(methods=["failing", "newton"], out=tmp_path / "out", progress=False)
+    result = drape.read_run(tmp_path / "out")
+    assert result["newton"].levels[-1].x.shape[1] == 3
+    with pytest.raises(RuntimeError, match="stored no state"):
+        result["failing"].levels[-1].x
+    result.plot_errors()
+    ended = subprocess.run([sys.executable, "-m", "drape.figures", tmp_path / "out", "-o", tmp_path / "figures"])
+    assert ended.returncode == 0 and (tmp_path / "figures/newton_end.png").exists()
 
 
 def test_an_exception_keeps_its_type_through_solver_and_energy(small):

@@ -98,6 +98,7 @@ void observed(Callbacks& callbacks, RunOptions options, const Action& action) {
   forget_failure();
   std::exception_ptr error;
   without_gil([&] {
+    const OwnCalls calls;
     try {
       action(options);
     } catch (...) {

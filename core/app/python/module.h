@@ -33,6 +33,18 @@ class PythonCall {
   py::gil_scoped_acquire gil_;
 };
 
+/// For the life of a run, whose calls nest from here: none of the Python that is under way sees them fail.
+class OwnCalls {
+ public:
+  OwnCalls();
+  ~OwnCalls();
+  OwnCalls(const OwnCalls&) = delete;
+  OwnCalls& operator=(const OwnCalls&) = delete;
+
+ private:
+  int outer_;
+};
+
 /// Whether an exception is stored in this thread.
 bool has_failed();
 void forget_failure();

@@ -49,6 +49,9 @@ void raise_failure() {
   if (thrown) std::rethrow_exception(std::exchange(thrown, nullptr));
 }
 
+OwnCalls::OwnCalls() : outer_(std::exchange(depth, 0)) {}
+OwnCalls::~OwnCalls() { depth = outer_; }
+
 PythonCall::PythonCall() { ++depth; }
 PythonCall::~PythonCall() { --depth; }
 

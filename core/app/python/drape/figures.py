@@ -85,7 +85,7 @@ def _run_figures(folder: pathlib.Path, out: pathlib.Path) -> list[pathlib.Path]:
         (out / "errors.csv").write_bytes((folder / "errors.csv").read_bytes())
         files.append(out / "errors.csv")
     for method in result.methods:
-        levels = [entry.level for entry in result[method].levels]
+        levels = [entry.level for entry in result[method].levels if vars(entry).get("mesh")]
         pictures: dict[str, dict] = {"end": {}}
         if len(levels) > 1:
             pictures |= {"preview": {"level": levels[0]}, "outline": {"outline": True}}
@@ -100,6 +100,8 @@ def _sweep_figures(rows: pandas.DataFrame, out: pathlib.Path) -> list[pathlib.Pa
     import matplotlib.pyplot
 
     files, keys = [], _varied(rows)
+    last = [key.rsplit(".", 1)[-1] for key in keys]
+    short = {key: word if last.count(word) == 1 else key.replace(".", "_") for key, word in zip(keys, last)}
     good = _converged(rows)
     for name, title in COLUMNS.items():
         for key in keys if name in rows and rows[name].notna().any() else ():
@@ -114,7 +116,7 @@ def _sweep_figures(rows: pandas.DataFrame, out: pathlib.Path) -> list[pathlib.Pa
                 axes.set_xscale("log")
             axes.set(xlabel=key, ylabel=title)
             axes.legend(fontsize="small")
-            files += _save(axes, out / f"{name}_by_{key.rsplit('.', 1)[-1]}")
+            files += _save(axes, out / f"{name}_by_{short[key]}")
             matplotlib.pyplot.close(axes.figure)
     return files
 
@@ -128,7 +130,7 @@ def figures(results, out) -> list[pathlib.Path]:
     matplotlib.rcParams.update({"svg.fonttype": "none", "svg.hashsalt": "drape"})  # texts stay texts; equal runs give equal files
     folder, out = pathlib.Path(results), pathlib.Path(out)
     rows = read_sweep(folder)
-    rows = rows[rows["method"].notna()] if len(rows) else rows
+    rows = rows[rows["method"].fillna("") != ""] if "method" in rows else rows.iloc[:0]  # a run without results has no method
     if rows.empty:
         raise RuntimeError(f"{folder}: no run has written results yet")
     out.mkdir(parents=True, exist_ok=True)

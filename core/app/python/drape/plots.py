@@ -46,7 +46,7 @@ def plot_errors(result, measure: str = "", target: str = "reference", cost: str 
     if measure not in measures or cost not in COSTS:
         raise ValueError(f"choose a measure of {measures} and a cost of {list(COSTS)}")
     axes, column = _axes(axes), f"{target}_{measure}"
-    levels = result.levels[result.levels["from_initial_state"]]
+    levels = result.levels[result.levels["from_initial_state"].fillna(False).astype(bool)]  # a failed level has none
     first = levels.groupby("method")["level"].max()  # the coarsest that the last state builds on
     for method in result.methods:
         rows = table[(table["method"] == method) & (table["level"] >= first.get(method, 0))]

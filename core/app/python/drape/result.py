@@ -63,13 +63,13 @@ class LevelRecord(_Record):
 
     @property
     def x(self) -> numpy.ndarray:
-        """n×3 positions [m], read-only."""
-        return self._run._mesh(self.mesh)[0]
+        """n×3 positions [m], read-only. Raises RuntimeError where the level has failed."""
+        return self._run._mesh(vars(self).get("mesh"))[0]
 
     @property
     def triangles(self) -> numpy.ndarray:
         """m×3 vertex indices, read-only."""
-        return self._run._mesh(self.mesh)[1]
+        return self._run._mesh(vars(self).get("mesh"))[1]
 
 
 class MethodRecord(_Record):
