@@ -17,8 +17,12 @@ function content(column, cell) {
 export function matcher(filter, names) {
   const operators = {'<': (a, b) => a < b, '<=': (a, b) => a <= b, '>': (a, b) => a > b, '>=': (a, b) => a >= b, '=': (a, b) => a === b, '!=': (a, b) => a !== b};
   const tests = filter.split(/\s+/).filter(word => word).map(word => {
-    const [, key, operator, text] = /^([\w.]+)(<=|>=|!=|<|>|=)(.+)$/.exec(word) || [], name = names.find(each => each === key || each.split('.').at(-1) === key);
-    if (name) return row => operators[operator](row[name] ?? '', typeof row[name] === 'number' ? Number(text) : text);
+    const [, key, operator, text] = /^([\w.]+)(<=|>=|!=|<|>|=)(.+)$/.exec(word) || [], name = names.find(each => each === key) ?? names.find(each => each.split('.').at(-1) === key);
+    if (name) return row => {
+      const cell = row[name] ?? null;
+      if (cell === null) return operator === '!=';
+      return typeof cell === 'number' ? operators[operator](cell, Number(text)) : operators[operator](String(cell), text);
+    };
     let pattern;
     try { pattern = new RegExp(word, 'i'); } catch { pattern = {test: cell => cell.includes(word)}; }  // not finished yet
     return row => names.some(each => pattern.test(String(row[each] ?? '')));

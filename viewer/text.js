@@ -61,7 +61,10 @@ export const about = ({version, commit, machine}) =>
 export const rowsOf = ({names, rows}) => rows.map(row => Object.fromEntries(names.map((name, k) => [name, row[k]])));
 
 const quoted = cell => cell === null || cell === undefined ? '' : /[",\n]/.test(cell) ? '"' + String(cell).replace(/"/g, '""') + '"' : String(cell);
-const toCsv = rows => [Object.keys(rows[0] || {}), ...rows.map(row => Object.values(row))].map(row => row.map(quoted).join(',') + '\n').join('');
+function toCsv(rows) {  // the names of all rows: where a spread is missing, so are two of its three values
+  const names = unique(rows.flatMap(row => Object.keys(row)));
+  return [names, ...rows.map(row => names.map(name => row[name]))].map(row => row.map(quoted).join(',') + '\n').join('');
+}
 
 export function save(name, content) {
   const link = h('a', {href: URL.createObjectURL(content), download: name});

@@ -76,6 +76,8 @@ test('distance against time is the median over starts at equal cost, between the
 test('the table sorts and filters, by medians or by run, and compares within one physics only', async () => {
   const {page} = await open('sweep/report.html');
   assert.equal(await page.locator('#table tbody tr').count(), 16);
+  const lines = (await downloaded(page, '#table button:text-is("CSV")')).bytes.toString().trim().split('\n');
+  assert.equal(new Set(lines.map(line => line.replace(/"[^"]*"/g, '').split(',').length)).size, 1);
   await page.locator('#medians').uncheck();
   assert.equal(await page.locator('#table tbody tr').count(), 48);
   const shown = async () => [await page.locator('.tile').count(), await page.locator('#table tbody tr').count(), await page.locator('#matching').textContent()];
@@ -84,6 +86,8 @@ test('the table sorts and filters, by medians or by run, and compares within one
   assert.match(await page.locator('#parameter svg').getAttribute('aria-label'), /: pcs, levels 2, step_growth 1.5, pcs, levels 2, step_growth 3$/);
   await page.locator('#filter').fill('^lo+p$ step_growth=3 levels=1');
   assert.deepEqual(await shown(), [3, 6, '3 of 24 runs']);
+  await page.locator('#filter').fill('preview_seconds<100 levels=1');  // which have no preview
+  assert.deepEqual(await shown(), [0, 0, '0 of 24 runs']);
   await page.locator('#filter').fill('(unfinished');
   assert.deepEqual(await shown(), [0, 0, '0 of 24 runs']);
   await page.locator('#filter').fill('midpoint newton');

@@ -148,6 +148,12 @@ TEST_CASE("report of a sweep is one page with every row, state and failure") {
   shown_by("report .", sweep());
   CHECK(page_data(text_of(sweep() / "report.html"))["runs"][4]["report"] ==
         "runs/matrix=coarse/seed_2/report.html");
+  const Scratch above;
+  fs::create_symlink(sweep(), above / "sweep");
+  fs::create_directory(above / "below");
+  shown_by("report ../sweep --out ../page.html", above / "below");
+  CHECK(page_data(text_of(above / "page.html"))["runs"][4]["report"] ==
+        "sweep/runs/matrix=coarse/seed_2/report.html");
 }
 
 TEST_CASE("report of several folders takes a page's name, and groups runs by all but their seed") {
@@ -230,6 +236,10 @@ TEST_CASE("report replaces drape's own pages and no other file") {
                              ": is there already, and no report of drape; name another page with --out\n");
     CHECK(text_of(folder / "notes.html") == "<title>mine</title>");
   }
+  for (const std::string own : {"runs/matrix=galerkin/seed_2", "./runs/matrix=galerkin/seed_1"})
+    CHECK(sweep_refusal("report " + two + " --out " + own + "/report.html") ==
+          "error: " + own +
+              "/report.html: is the place of a run's own report; name another page with --out\n");
   CHECK(written(two, "page.html").exit_code == 0);
   CHECK(written(".", "page.html").exit_code == 0);  // its own page is replaced
   CHECK(page_data(text_of(folder / "page.html"))["runs"].size() == 7);
@@ -265,6 +275,17 @@ TEST_CASE("compare finds nothing between a run and itself") {
     CHECK_THAT(ended.out, Contains(" the same. Times within 10 % or 0.05 s of each other"));
     CHECK((ended.out.find("All bounds hold.\n") == std::string::npos) == std::string(bounds).empty());
   }
+}
+
+TEST_CASE("what a run of one level has is compared, and its h is the experiment's or its method's own") {
+  const Scratch folder(small_experiment());
+  const std::string run =
+      "run e.yaml --levels 1 --method newton --quiet --no-report --set newton.step_size=0.2 ";
+  drape_ends(run + "--out a", folder);
+  drape_ends(run + "--out b --set methods.newton.newton.step_size=0.3", folder);
+  CHECK(read_run(folder / "a").methods[0].step_size == 0.2);
+  CHECK(read_run(folder / "b").methods[0].step_size == 0.3);
+  drape_ends("compare a b --bound largest_stretch=2", folder);
 }
 
 TEST_CASE("compare lists changes, and exits with 1 if a bound is broken") {

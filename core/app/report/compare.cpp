@@ -67,8 +67,8 @@ void add_method(Side& side, const std::string& name, const RunData& run, const M
     const std::string where = several ? name + ", level " + std::to_string(level.level) : name;
     for (const std::string& key : several ? level_keys : Names{"intersections", "smallest_gap"})
       add(where, key, level.values.of(key));
-    for (const MetricColumn& column : columns_of(run.metrics, MetricScope::state, Shown::summary))
-      if (several) add(where, column.name, level.values.of(column.name), column.better);
+    for (const MetricColumn& column : columns_of(run.metrics, MetricScope::state, Shown::tables))
+      add(where, column.name, level.values.of(column.name), column.better);
   }
   for (const ConsistencyRecord& pair : method.consistency)
     for (const MetricColumn& column : columns_of(run.metrics, MetricScope::pair, Shown::tables))

@@ -101,9 +101,13 @@ Json thumbnails(const RunData& run) {
   return all;
 }
 
+fs::path own_report(const RunRecord& run) {
+  return fs::absolute(run.folder / "report.html").lexically_normal();
+}
+
 Json run_json(const RunRecord& run, std::size_t rows, std::map<std::string, int>& physics,
               const fs::path& from) {
-  const fs::path report = fs::absolute(run.folder / "report.html");
+  const fs::path report = own_report(run);
   Json entry = {
       {"variation", run.variation},
       {"seed", run.seed ? Json(*run.seed) : Json()},
@@ -172,14 +176,16 @@ std::vector<std::string> write_report(const fs::path& folder, const std::functio
 void write_runs_report(const std::vector<fs::path>& folders, const fs::path& file) {
   refuse_other_file(file);
   const RunCollection collection = read_runs(folders);
-  const fs::path parent = file.parent_path();
-  refuse_unwritable(parent.empty() ? "." : parent, "name a page elsewhere with drape report --out");
+  const fs::path place = fs::absolute(file).lexically_normal(), parent = place.parent_path();
+  refuse_unwritable(parent, "name a page elsewhere with drape report --out");
+  for (const RunRecord& run : collection.runs)
+    if (std::error_code error; own_report(run) == place || fs::equivalent(own_report(run), place, error))
+      refuse_path(file, "is the place of a run's own report; name another page with --out");
   std::map<std::string, int> physics;
   const RunTable table = table_of(collection);
   Json runs = Json::array();
   for (const RunRecord& run : collection.runs)
-    runs.push_back(
-        run_json(run, run.data ? run.data->methods.size() : 1, physics, fs::absolute(file).parent_path()));
+    runs.push_back(run_json(run, run.data ? run.data->methods.size() : 1, physics, parent));
   write_file(file, page(collection.name.empty() ? "Several runs" : collection.name,
                         {{"kind", "runs"},
                          {"name", collection.name},

@@ -58,7 +58,8 @@ void add_declared(const RunData& run, const MethodRecord& method, int level, Sta
     }
 }
 
-States read_states(const RunData& run, const std::vector<Level>& levels, const ViewDocument& document) {
+States read_states(const RunData& run, const std::vector<Level>& levels, const ViewDocument& document,
+                   std::vector<std::string>& notes) {
   States states;
   for (const MethodRecord& method : run.methods)
     for (const LevelRecord& level : method.levels) {
@@ -69,7 +70,11 @@ States read_states(const RunData& run, const std::vector<Level>& levels, const V
         state.fields = document.fields(level.level, state.x);
         for (const VertexField& field : read_ply_fields(run.folder / level.mesh))
           if (field.name == "contact_pressure") add_contact_pressure(state.fields, field.values);
-        add_declared(run, method, level.level, state);
+        try {
+          add_declared(run, method, level.level, state);
+        } catch (const std::exception& damaged) {
+          notes.push_back("3D viewer: " + reason_of(damaged));
+        }
         states.emplace(&level, std::move(state));
       } catch (const std::exception&) {
         continue;  // the pictures name it
@@ -115,8 +120,8 @@ ReportView view_of(const RunData& run) {
       levels, obstacles, run.has_contact(),
       [&](const std::string& name, const std::string& bytes) { view.blocks += block_element(name, bytes); },
       declared_fields(run));
-  const States states = read_states(run, levels, document);
-  if (states.empty()) return {};
+  const States states = read_states(run, levels, document, view.notes);
+  if (states.empty()) return {nullptr, "", view.notes};
   std::vector<const SurfaceFields*> fields;
   for (const auto& [level, state] : states) fields.push_back(&state.fields);
   document.set_ranges(fields);

@@ -68,8 +68,10 @@ MethodRecord method_of(const std::string& name, const Json& json, const JsonFile
 }
 
 OptionalNumber step_size(const ConfigNode& config, const std::string& method) {
-  const ConfigNode* node = config.find("methods");
-  for (const char* key : {method.c_str(), "newton", "step_size"}) node = node ? node->find(key) : node;
+  const ConfigNode* own = config.find("methods");
+  for (const char* key : {method.c_str(), "newton", "step_size"}) own = own ? own->find(key) : own;
+  const ConfigNode* common = config.find("newton");  // a method has what differs from it alone
+  const ConfigNode* node = own ? own : common ? common->find("step_size") : nullptr;
   return node ? number_of(node->scalar) : std::nullopt;
 }
 
