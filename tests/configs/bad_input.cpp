@@ -197,6 +197,8 @@ TEST_CASE("each fault of a key, a value or a plugin is named where it stands") {
       {"hinge,", "springs,", "8:25: unknown energy \"springs\"; " + energies + own},
       {"levels: 2", "refiner: butterfly", "3:10: unknown refiner \"butterfly\"; known: loop, midpoint" + own},
       {"levels: 2", "contact: [ipc, glue]", "3:16: unknown contact \"glue\"; known: ipc, shapes" + own},
+      {"levels: 2", "metrics: [stretch, energy, stretch]",
+       "3:28: \"metrics\" lists stretch twice, whose values have one place in the results"},
       {"levels: 2", "metrics: [{type: shine}]",
        "3:18: unknown metric \"shine\"; known: curvature_consistency, distance, drape_coefficient, energy, "
        "energy_above_end, residuals, silhouette, stretch" +
@@ -369,6 +371,9 @@ TEST_CASE("keys that the shape or the region does not read, and empty items, are
        "to 0"},
       {"cloth: {triangulation: random, rows: 9}",
        "5:38: \"rows\" in cloth is not read with \"triangulation: random\"; \"vertices\" counts them"},
+      {"cloth: {shape: disc, seed: 2}",
+       "5:28: \"seed\" in cloth is not read by this cloth; it is that of \"triangulation: random\" or of a "
+       "polygon"},
       {"contact: shapes\nobstacles: [{shape: half_space, rotate: [10, 0, 0]}]",
        "6:41: \"rotate\" in obstacles needs \"shape: sphere or shape: box or shape: capsule or shape: "
        "cylinder\"; here \"shape\" is half_space"},

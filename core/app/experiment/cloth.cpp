@@ -36,10 +36,12 @@ TriangleMesh read_cloth(const ClothParameters& c) {
 /// Gives the cloth its warp; returns the faults of its grain.
 std::vector<std::string> cut(TriangleMesh& cloth, const ClothParameters& c) {
   if (cloth.warp.rows() > 0) cloth.warp = projected_warp(cloth.warp, cloth);
-  if (!c.grain && c.grain_regions.empty()) return {};
+  const bool along_file = c.grain_along != GrainAxis::x;  // was asked for, so that `grain` is 0 if it is null
+  if (!c.grain && !along_file && c.grain_regions.empty()) return {};
   std::vector<std::string> faults = grain_faults(cloth, c.grain_along);
   if (!faults.empty()) return faults;
-  Positions warp = c.grain ? cut_directions(cloth, c.grain_along, *c.grain) : warp_directions(cloth);
+  Positions warp = c.grain || along_file ? cut_directions(cloth, c.grain_along, c.grain.value_or(0))
+                                         : warp_directions(cloth);
   for (std::size_t i = 0; i < c.grain_regions.size(); ++i) {
     const GrainRegionParameters& region = c.grain_regions[i];
     const Positions own = cut_directions(cloth, c.grain_along, region.grain);

@@ -24,12 +24,17 @@ namespace {
 void check_vertex_counts(const Experiment& e, ConfigErrors& errors) {
   const ClothParameters& c = e.parameters.cloth;
   const ConfigNode* cloth = e.source.find("cloth");
-  if (!cloth || (c.shape != "square" && c.shape != "rectangle")) return;
+  if (!cloth) return;
   const auto refuse = [&](const std::string& key, const std::string& why) {
     if (const ConfigNode* written = cloth->find(key))
       errors.push_back({written->where, "\"" + key + "\" in cloth is not read " + why});
   };
-  if (c.triangulation == "random") {
+  const bool grid = c.shape == "square" || c.shape == "rectangle",
+             random = grid && c.triangulation == "random";
+  if (c.seed != ClothParameters().seed && c.shape != "polygon" && !random)
+    refuse("seed", "by this cloth; it is that of \"triangulation: random\" or of a polygon");
+  if (!grid) return;
+  if (random) {
     const std::string why = "with \"triangulation: random\"; \"vertices\" counts them";
     if (c.columns > 0) refuse("columns", why);
     if (c.rows > 0) refuse("rows", why);

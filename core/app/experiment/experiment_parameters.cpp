@@ -89,10 +89,12 @@ void ClothParameters::declare(Declaration<ClothParameters>& d) {
                 "number of vertices along the height of a grid; 0 derives it from `vertices`"),
           bounds::most_vertices)
       .only_with("shape", {"square", "rectangle"});
-  natural(d.add("seed", &ClothParameters::seed, "seed of a random triangulation"));
-  angle(d.add("grain", &ClothParameters::grain,
-              "direction of warp on the rest shape, from `grain_along` counter-clockwise seen from the "
-              "cloth's front; null: that of the file's faces, or along x, neither exported nor drawn"));
+  natural(d.add("seed", &ClothParameters::seed, "seed of a random triangulation or a polygon's"));
+  angle(d.add(
+      "grain", &ClothParameters::grain,
+      "direction of warp on the rest shape, from `grain_along` counter-clockwise seen from the "
+      "cloth's front; null: 0 if `grain_along` is u or file, otherwise that of the file's faces, or along x, "
+      "neither exported nor drawn"));
   d.add_choice(
        "grain_along", &ClothParameters::grain_along,
        {{"x", GrainAxis::x}, {"u", GrainAxis::u}, {"file", GrainAxis::file}},

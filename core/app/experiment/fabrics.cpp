@@ -66,6 +66,23 @@ constexpr Column columns[] = {
     {"linear diag[SI*1e9]", "bias_bending", 1e-9},
 };
 
+/// A line's cells. In double quotes separators are text, and two quotes are one (RFC 4180).
+std::vector<std::string> cells_of(const std::string& line, char separator) {
+  std::vector<std::string> cells(1);
+  bool in_quotes = false;
+  for (std::size_t i = 0; i < line.size(); ++i) {
+    const bool twice = in_quotes && line.compare(i, 2, "\"\"") == 0;
+    if (line[i] == '"' && !twice)
+      in_quotes = !in_quotes;
+    else if (line[i] == separator && !in_quotes)
+      cells.emplace_back();
+    else
+      cells.back() += line[i];
+    i += twice;
+  }
+  return cells;
+}
+
 struct Table {
   std::string file;  ///< for messages
   std::vector<std::string> header;
@@ -78,7 +95,7 @@ struct Table {
     for (std::string line; std::getline(lines, line);) {
       if (line.find_first_not_of(" \t\r") == std::string::npos) continue;
       if (header.empty() && line.find(',') == std::string::npos) separator = ';';
-      std::vector<std::string> cells = split(line, separator);
+      std::vector<std::string> cells = cells_of(line, separator);
       for (std::string& cell : cells) {
         const std::size_t first = cell.find_first_not_of(" \t\r"), last = cell.find_last_not_of(" \t\r");
         cell = first == std::string::npos ? "" : cell.substr(first, last - first + 1);
@@ -94,9 +111,13 @@ struct Table {
     const auto i = std::find(header.begin(), header.end(), column) - header.begin();
     return i < std::ssize(header) && i < std::ssize(rows[row]) ? rows[row][i] : "";
   }
+  /// Of each row, or its number.
   std::vector<std::string> names() const {
     std::vector<std::string> all;
-    for (std::size_t i = 0; i < rows.size(); ++i) all.push_back(cell(i, "name"));
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+      const std::string name = cell(i, "name");
+      all.push_back(name.empty() ? std::to_string(i + 1) : name);
+    }
     return all;
   }
   /// The row of this name or number, from 1.
@@ -134,6 +155,8 @@ ConfigNode material_of(const Table& table, std::size_t row, const std::string& n
     if (text.empty()) continue;
     const std::optional<double> value = number_of(text);
     const bool is_mass = column.key == std::string("mass");
+    if (column.key == std::string("density") && !table.cell(row, "mass").empty())
+      continue;  // what is weighed is the sheet
     has_mass = has_mass || is_mass;
     if (!value || (is_mass && !(*value > 0)))
       refuse("has \"" + excerpt(text) + "\" in column \"" + column.name + "\", which is not a number" +

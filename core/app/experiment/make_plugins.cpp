@@ -145,9 +145,14 @@ void make_plugins(Experiment& e, ConfigErrors& errors) {
   if (!e.source.find("metrics"))
     for (const std::string& name : default_metrics(*e.registry))
       e.parameters.metrics.push_back(ConfigNode::of(name));
-  for (const ConfigNode& node : e.parameters.metrics)
+  std::set<std::string> measured;
+  for (const ConfigNode& node : e.parameters.metrics) {
+    if (!measured.insert(node.plugin_name()).second)
+      errors.push_back({node.where, "\"metrics\" lists " + excerpt(node.plugin_name()) +
+                                        " twice, whose values have one place in the results"});
     if (auto metric = make_from<Metric>(*e.registry, node, errors, &metrics.items.emplace_back()))
       e.metrics.emplace_back(node.plugin_name(), metric);
+  }
   check_metrics(e, errors);
   set_path(e.resolved, "metrics", metrics);
   make_methods(e, errors);

@@ -254,7 +254,12 @@ double ScheduleParameters::time(int increment) const {
   double whole = duration;
   for (const ScheduleKey& key : keys)
     if (duration == 0 && !key.times.empty()) whole = std::max(whole, key.times.back());
-  return whole * increment / steps;
+  const double time = whole * increment / steps;
+  // Rounded, it may be just before a key's time, and a step there would come an increment late or never.
+  for (const ScheduleKey& key : keys)
+    for (const double own : key.times)
+      if (std::abs(time - own) <= 1e-12 * whole) return own;
+  return time;
 }
 
 std::vector<double> ScheduleParameters::values_at(double time) const {

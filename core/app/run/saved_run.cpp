@@ -86,6 +86,9 @@ ConfigNode saved_config(const Experiment& experiment) {
     cloth.up = as_written.up;
     cloth.scale = as_written.scale;
     cloth.rotate = as_written.rotate;
+    cloth.grain = as_written.grain;  // its faces have warp as it was cut
+    cloth.grain_along = as_written.grain_along;
+    cloth.grain_regions.clear();
     set_path(config, "cloth", schema_of<ClothParameters>().write(&cloth));
     set_path(config, "cloth.file", ConfigNode::of("rest/l0.ply"));
   }

@@ -155,6 +155,8 @@ std::vector<int> selected_vertices(const VertexSelection& selection, const Level
     // Children of coarse vertices keep their index on every level.
     for (int v : selection.vertices)
       if (v >= 0 && v < coarsest.vertex_count()) selected.push_back(v);
+    std::ranges::sort(selected);
+    selected.erase(std::unique(selected.begin(), selected.end()), selected.end());
     return selected;
   }
   constexpr double rounding = 1e-12;  // round-off must not exclude vertices on a region's boundary

@@ -1,12 +1,14 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <stdexcept>
 
 #include "core/app/scene/boundary_conditions.h"
 #include "core/kernel/files/message_text.h"
 #include "core/kernel/files/string_utils.h"
 #include "core/numerics/collision_detection/closest.h"
+#include "core/numerics/mesh_files/io.h"
 
 namespace drape {
 
@@ -84,13 +86,20 @@ std::string unknown_obstacle(const Experiment& e, const std::string& obstacle) {
                                     : "the names are " + joined(names));
 }
 
+/// The index of the obstacle that a pin follows; none if it follows none, or one that is unknown.
+std::optional<std::size_t> followed_by(const Experiment& e, std::size_t pin) {
+  const ConfigNode* obstacles = e.resolved.find("obstacles");
+  const std::string& named = e.parameters.pins[pin].follow.obstacle;
+  return obstacles && !named.empty() ? obstacles->index_of(named) : std::nullopt;
+}
+
 /// Another pin of a pin's vertices on a level that does not follow its obstacle; empty without one.
-std::string conflict(const std::vector<PinParameters>& pins, int pin, const Level& level,
-                     const Level& coarsest) {
+std::string conflict(const Experiment& e, int pin, const Level& level, const Level& coarsest) {
+  const std::vector<PinParameters>& pins = e.parameters.pins;
   std::vector<char> own(level.vertex_count(), 0);
   for (const int v : selected_vertices(pins[pin], level, coarsest)) own[v] = 1;
   for (std::size_t k = 0; k < pins.size(); ++k) {
-    if (pins[k].follow.obstacle == pins[pin].follow.obstacle) continue;
+    if (followed_by(e, k) == followed_by(e, pin)) continue;
     for (const int v : selected_vertices(pins[k], level, coarsest))
       if (own[v])
         return "pin " + std::to_string(k) + " does not follow, but both select vertex " + std::to_string(v) +
@@ -101,18 +110,24 @@ std::string conflict(const std::vector<PinParameters>& pins, int pin, const Leve
 
 /// Attaches a pin's vertices on one level to the mesh of the obstacle at this place; returns the first fault,
 /// empty without one.
-std::string attach(const std::vector<PinParameters>& pins, int pin, const Scene& scene,
-                   const LevelModel& model, const TriangleMesh& mesh, Eigen::Index place,
-                   FollowingVertices& attached) {
-  const FollowParameters& follow = pins[pin].follow;
+std::string attach(const Experiment& e, int pin, const Scene& scene, const LevelModel& model,
+                   const TriangleMesh& mesh, Eigen::Index place, FollowingVertices& attached) {
+  const FollowParameters& follow = e.parameters.pins[pin].follow;
   const std::vector<TriangleMesh> finest = obstacles_of(scene.models.back()->contacts());
   if (!follow.vertices.empty() && mesh.vertices.rows() != finest[place].vertices.rows())
     return "has cages, which replace it on coarse levels, so \"vertices\" name none of theirs; remove them";
+  const ConfigNode& obstacle = e.resolved.find("obstacles")->items[*followed_by(e, pin)];
+  const ConfigNode *file = obstacle.find("mesh"), *frames = obstacle.find("animation");
+  if (frames && !frames->items.empty()) file = &frames->items[0];
+  if (!follow.vertices.empty() && file && !file->scalar.empty() &&
+      read_mesh(file->scalar).vertices.rows() != mesh.vertices.rows())
+    return "loses vertices of its file that are in no triangle, so \"vertices\" would name others; remove "
+           "those from the file";
   for (const int v : follow.vertices)
     if (v >= mesh.vertices.rows())
       return "has no vertex " + std::to_string(v) + "; they go from 0 to " +
              std::to_string(mesh.vertices.rows() - 1);
-  if (std::string other = conflict(pins, pin, model.level(), scene.hierarchy.levels[0]); !other.empty())
+  if (std::string other = conflict(e, pin, model.level(), scene.hierarchy.levels[0]); !other.empty())
     return other;
   const FollowedSurface surface(mesh, follow.vertices);
   const double size = bounding_box_diagonal(model.level().rest.vertices);
@@ -132,7 +147,7 @@ std::string attach(const std::vector<PinParameters>& pins, int pin, const Scene&
 /// The same on every level.
 std::string attach(const Experiment& e, const Scene& scene, int pin, std::vector<FollowingVertices>& levels) {
   const std::string& obstacle = e.parameters.pins[pin].follow.obstacle;
-  const auto index = e.resolved.find("obstacles")->index_of(obstacle);
+  const std::optional<std::size_t> index = followed_by(e, pin);
   if (!index) return unknown_obstacle(e, obstacle);
   const std::vector<std::size_t> order = e.obstacle_order();
   const Eigen::Index place = std::find(order.begin(), order.end(), *index) - order.begin();
@@ -141,7 +156,7 @@ std::string attach(const Experiment& e, const Scene& scene, int pin, std::vector
     const std::vector<TriangleMesh> meshes = obstacles_of(model.contacts());
     if (meshes.size() != order.size() || meshes[place].triangles.rows() == 0)
       return "has no surface that a pin can follow: its contact model shows no mesh of it";
-    std::string fault = attach(e.parameters.pins, pin, scene, model, meshes[place], place, levels[l]);
+    std::string fault = attach(e, pin, scene, model, meshes[place], place, levels[l]);
     if (!fault.empty()) return fault;
   }
   return "";

@@ -29,8 +29,15 @@ void list_numbers(const ConfigNode& node, const std::string& path, std::vector<s
     list_numbers(node.items[k], before + std::to_string(k), paths);
 }
 
-/// The numbers of a group: of a section's path with a part of a key's name.
-std::vector<ScaledKey> group(const ConfigNode& resolved, const std::string& path) {
+/// Whether stiffnesses by direction replace a modulus, which a saved material has all the same.
+bool is_replaced(const ConfigNode& section, const std::string& key) {
+  return (key == "bending_modulus" && value_of(section.find("warp_bending"))) ||
+         (key == "membrane_modulus" && value_of(section.find("warp_stiffness")));
+}
+
+/// The numbers of a group: of a section's path with a part of a key's name. Those that are written, or else
+/// the defaults.
+std::vector<ScaledKey> group(const ConfigNode& source, const ConfigNode& resolved, const std::string& path) {
   static const ConfigNode plain = [] {
     const ExperimentParameters parameters;
     return experiment_schema().write(&parameters);
@@ -43,7 +50,8 @@ std::vector<ScaledKey> group(const ConfigNode& resolved, const std::string& path
     const std::optional<double> value = value_of(&node);
     if (!value || *value == 0 || key.find(path.substr(dot + 1)) == std::string::npos) continue;
     const std::string own = path.substr(0, dot + 1) + key;
-    const bool is_default = value_of(value_at(plain, own)) == value;
+    const bool is_written = value_at(source, own) && !is_replaced(*section, key),
+               is_default = !is_written && value_of(value_at(plain, own)) == value;
     (is_default ? defaults : changed).push_back({own, *value});
   }
   return changed.empty() ? defaults : changed;
@@ -116,7 +124,7 @@ std::vector<ScaledKey> scaled_keys(const Experiment& experiment, const std::vect
     const ConfigNode* node = value_at(experiment.resolved, path);
     const double value = value_of(node).value_or(0);
     std::vector<ScaledKey> named{{path, value}};
-    if (!node) named = group(experiment.resolved, path);
+    if (!node) named = group(experiment.source, experiment.resolved, path);
     if (named.empty() || (node && value == 0))
       errors.push_back({{option, 0, 0}, fault(experiment.resolved, path)});
     for (const ScaledKey& key : named)

@@ -18,8 +18,11 @@ struct Sides {
     const auto at = [&](int k) -> Vector { return mesh.vertices.row(mesh.triangles(t, k)); };
     e1 = at(1) - at(0), e2 = at(2) - at(0), normal = e1.cross(e2).normalized();
   }
-  /// The axis within the triangle's plane; 0 where it is the normal, but for rounding.
+  /// The axis within the triangle's plane; 0 where it is the normal, but for rounding. One that is there
+  /// keeps its bits.
   Vector projected(const Vector& axis) const {
+    constexpr double rounding = 1e-9;  // that of a projection of an axis near the normal
+    if (std::abs(axis.dot(normal)) <= rounding && std::abs(axis.squaredNorm() - 1) <= rounding) return axis;
     const Vector own = axis - axis.dot(normal) * normal;
     return own.norm() > 1e-6 * axis.norm() ? own.normalized() : Vector::Zero();
   }

@@ -9,6 +9,23 @@
 
 using namespace drape;
 
+TEST_CASE("A vertex that a handle lists twice is pulled once") {
+  const auto pulled = [](const std::string& vertices) {
+    const Solved s = scene_from(R"(name: held
+cloth: {shape: square, side: 0.4, columns: 5, rows: 5}
+levels: 1
+handles: [{region: vertices, vertices: )" +
+                                vertices +
+                                R"(, stiffness: 100}]
+energies: [neo_hookean, hinge, gravity]
+methods: {newton: {}}
+)");
+    return s.scene->model(0)->value(Positions(1.1 * s.scene->model(0)->level().rest.vertices));
+  };
+  CHECK(pulled("[24, 7, 24]") == pulled("[7, 24]"));
+  CHECK(pulled("[7, 24]") > pulled("[7]"));
+}
+
 TEST_CASE("A pin and a handle without a transform hold where the start has them, on every level") {
   const Scratch folder;
   TriangleMesh raised = grid({0.4, 0.4}, 5, 5, Diagonals::one_way);

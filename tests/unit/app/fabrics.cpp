@@ -188,6 +188,12 @@ TEST_CASE("fabrics: a row of a file, whose faults are named") {
     CHECK(material_of(own.row("twill")) == m);
     CHECK(drape_ends("fabric --file own.csv", own).out == "twill\nlight\nworse\nbare\nbuoyant\n");
   }
+  own.write("own.csv",
+            "\"name\",use,\"mass\",density,thickness,warp_bending,weft_bending\n"
+            "twill,\"shirt, \"\"fine\"\"\",0.3,\"700\",5e-4,2e-5,9e-6\n");
+  CHECK(material_of(own.row("twill")) ==
+        m);  // the mass is that of the sheet, and a density beside it is not read
+  own.write("own.csv", saved);
   const Experiment e = experiment_from(experiment(own.row("twill")));
   CHECK(e.parameters.material.from_fabric == "{file: " + own.file() + ", row: twill}");
   CHECK(to_yaml(experiment_from(to_yaml(e.resolved)).resolved) == to_yaml(e.resolved));
@@ -206,6 +212,7 @@ TEST_CASE("fabrics: rows of ClothDrapeTester's table are read by number") {
       "density[kg.m-2], linear warp[SI*1e9], linear weft[SI*1e9], linear diag[SI*1e9], nonlinear "
       "warp[SI*1e12]\n"
       "0.2, 9000, 7000, 4000, -44000\n");
+  CHECK(fabric_names(own / "own.csv") == std::vector<std::string>{"1"});
   const Material m = material_of(own.row("1"));
   CHECK(m.area_density() == Approx(0.2));
   CHECK(*m.warp_bending == Approx(9e-6));

@@ -160,6 +160,26 @@ TEST_CASE("vertices of the obstacle choose the triangles that a pin is attached 
   }
 }
 
+TEST_CASE("vertices of an obstacle that contact numbers anew are refused") {
+  const Scratch folder;
+  TriangleMesh sphere = unit_sphere(3), loose = sphere;
+  loose.vertices.conservativeResize(sphere.vertices.rows() + 1, 3);
+  loose.vertices.bottomRows(1) << 9, 9, 9;
+  write_mesh(folder / "sphere.obj", sphere);
+  write_mesh(folder / "loose.obj", loose);
+  const auto following = [&](const std::string& file) {
+    return sheet_on("{name: body, scale: 0.1, mesh: " + (folder / file).string() + "}", turn,
+                    "{obstacle: body, vertices: [5, 17]}");
+  };
+  CHECK(scene_from(following("sphere.obj")).scene->following[0].size() >= 4);
+  const std::string reason = "loses vertices of its file that are in no triangle";
+  CHECK_THAT(refusal(following("loose.obj")), Contains(reason));
+  const std::string loose_file = (folder / "loose.obj").string();
+  CHECK_THAT(refusal(sheet_on("{name: body, scale: 0.1, animation: [" + loose_file + ", " + loose_file + "]}",
+                              turn, "{obstacle: body, vertices: [5, 17]}")),
+             Contains(reason));
+}
+
 TEST_CASE("a pin that cannot follow is refused with the reason") {
   const std::string other = ball + ", {name: floor, meshed_shape: box, translate: [0, 0, -2]}";
   CHECK_THAT(refusal(sheet_on(other, turn, "bdy")),
@@ -182,6 +202,10 @@ TEST_CASE("a pin that cannot follow is refused with the reason") {
       refusal(two_pins),
       Contains("pin 0 follows obstacle \"body\", which pin 1 does not follow, but both select vertex 40 "
                "of level 0; let their regions share no vertex"));
+  std::string unnamed = sheet_on("{meshed_shape: sphere, radius: 0.1, subdivisions: 3}",
+                                 replaced(turn, "body", "0"), "{obstacle: 0}");
+  unnamed.insert(unnamed.find("]\nenergies"), ", {region: nearest, point: [0.1, 0.1, 0]}");
+  CHECK_THAT(refusal(unnamed), Contains("which pin 1 does not follow"));
   CHECK_THAT(refusal(R"(name: alone
 pins: [{region: nearest, follow: body}]
 energies: [neo_hookean]

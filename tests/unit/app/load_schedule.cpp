@@ -65,6 +65,19 @@ TEST_CASE("The keys' values follow the pseudo-time, one after another") {
   for (std::size_t c = 0; c < values.size(); ++c) CHECK(values[c] == Approx(expected[c]));
 }
 
+TEST_CASE("A step is made at its key's time, also where increments are not numbers that a double has") {
+  for (const auto& [duration, steps, at, increment] :
+       {std::tuple(0.9, 9, 0.9, 9), {0.7, 12, 0.7, 12}, {0.7, 7, 0.1, 1}}) {
+    ScheduleParameters p;
+    p.duration = duration, p.steps = steps;
+    ScheduleKey key;
+    key.times = {0, at}, key.values = {{1}, {2}}, key.interpolation = KeyInterpolation::step;
+    p.keys = {key};
+    CHECK(p.values_at(p.time(increment)) == std::vector<double>{2});
+    CHECK(p.values_at(p.time(increment - 1)) == std::vector<double>{1});
+  }
+}
+
 TEST_CASE("A load is a value: equal when asked for twice, from whatever load, and never changed") {
   const Solved s = scene_from(two_levels);
   const LoadSchedule schedule(s.experiment, *s.scene);

@@ -37,6 +37,9 @@ TEST_CASE("fit: a group is what the material sets, by a fabric too, or its defau
   CHECK(keys_of("bending_modulus: " + modulus + ", warp_bending: 3e-5, weft_bending: 2e-5",
                 {"material.bending"})
             .starts_with("material.warp_bending=3.0e-05, material.weft"));
+  // A default that is written is set.
+  CHECK(keys_of("bending_modulus: " + modulus + ", bending_hysteresis: 1e-3", {"material.bending"}) ==
+        "material.bending_modulus=" + modulus + ", material.bending_hysteresis=1.0e-03");
 }
 
 TEST_CASE("fit: a number is scaled once, whichever way it is named") {

@@ -2,6 +2,7 @@
 
 #include "core/numerics/mesh/grain.h"
 
+#include <Eigen/Geometry>
 #include <catch2/catch.hpp>
 #include <cmath>
 
@@ -97,6 +98,8 @@ TEST_CASE("grain: a mesh's pattern may be its texture coordinates") {
     return Eigen::RowVector3d(warp_directions(s.level().rest).row(0));
   };
   CHECK(warp_of("standing.obj, grain: 0, grain_along: u}").isApprox(Eigen::RowVector3d(0, 0, 1)));
+  CHECK(warp_of("standing.obj, grain_along: u}").isApprox(Eigen::RowVector3d(0, 0, 1)));
+  CHECK_THROWS_WITH(warp_of("standing.obj, grain_along: file}"), Catch::Contains("needs a PLY file"));
   CHECK(warp_of("standing.obj, grain: 0}").isApprox(Eigen::RowVector3d(1, 0, 0)));
   CHECK(warp_of("turned.obj}").isApprox(Eigen::RowVector3d(0, 1, 0)));  // normal to x, which nobody asked for
   CHECK_THROWS_WITH(warp_of("turned.obj, grain: 10}"),
@@ -108,6 +111,32 @@ TEST_CASE("grain: a mesh's pattern may be its texture coordinates") {
                     Catch::Contains("needs a mesh with texture coordinates"));
   CHECK_THROWS_WITH(scene_from(experiment("{shape: square, grain: 10, grain_along: u}")),
                     Catch::Contains("grain_along"));
+}
+
+TEST_CASE("grain: what is in the triangles' planes keeps its bits when it is projected again") {
+  TriangleMesh mesh = unit_sphere(3);
+  mesh.vertices *= Eigen::AngleAxisd(0.3, Eigen::Vector3d(1, 2, 3).normalized()).matrix();
+  for (const double angle : {0., 30.}) {
+    const Positions warp = cut_directions(mesh, GrainAxis::x, angle);
+    CHECK(projected_warp(warp, mesh) == warp);
+  }
+}
+
+TEST_CASE("grain: a run's own config.yaml does not turn it again") {
+  const Scratch folder;
+  TriangleMesh mesh = random_triangulation({1, 1}, 60, 3);
+  mesh.warp = warp_at(mesh, 17);
+  write_mesh(folder / "cut.ply", mesh);
+  for (const std::string cut :
+       {"", ", grain: 30, grain_along: file",
+        ", grain_along: file, grain_regions: [{lower: [0, 0, -1], upper: [0.5, 1, 1], grain: 40}]"}) {
+    INFO(cut);
+    folder.write("own.yaml", experiment("{shape: file, file: cut.ply" + cut + "}") +
+                                 "pins: [{point: [0, 0, 0]}]\nnewton: {max_steps: 1}\n");
+    drape_with("run own.yaml --out out --overwrite --quiet --no-report", folder.path);
+    drape_with("run out/config.yaml --out again --overwrite --quiet --no-report", folder.path);
+    CHECK(read_file(folder / "again/rest/l0.ply") == read_file(folder / "out/rest/l0.ply"));
+  }
 }
 
 TEST_CASE("grain: parts of a cloth may be cut at another angle, on every level") {

@@ -448,11 +448,12 @@ TEST_CASE("triangle strips of a PLY turn every second triangle over", "[io]") {
 
 TEST_CASE("STL as text and binary, welded at equal points", "[io]") {
   const MeshFolder scratch;
-  check_square(read_mesh(scratch.file(
-      "m.stl",
+  const std::string text =
       "solid square\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 1 1.5 0\nendloop\n"
       "endfacet\nfacet normal 0 0 1\nouter loop\nvertex -0 0 0\nvertex 1 1.5 0\nvertex 0 1 -0.25\nendloop\n"
-      "endfacet\nendsolid square\n")));
+      "endfacet\nendsolid square\n";
+  for (const std::string byte_order_mark : {"", "\xEF\xBB\xBF"})
+    check_square(read_mesh(scratch.file("m.stl", byte_order_mark + text)));
   const float points[2][9] = {{0, 0, 0, 1, 0, 0, 1, 1.5, 0}, {-0.0f, 0, 0, 1, 1.5, 0, 0, 1, -0.25}};
   std::string binary(80, 's');
   append(binary, std::uint32_t{2});
