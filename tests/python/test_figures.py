@@ -60,7 +60,7 @@ def test_figures_of_a_sweep(written, command, small_file, tmp_path):
 
 def test_plots_of_keys_with_one_last_part_are_apart(written, command, small_file, tmp_path):
     grid = "grid: {newton.step_size: [0.1, 0.2], methods.newton.newton.step_size: [0.1, 0.2]}"
-    sweep = SWEEP.replace("grid:\n    newton.step_growth: [1.5, 3]", grid).format(base=pathlib.Path(small_file).resolve())
+    sweep = SWEEP.format(base=pathlib.Path(small_file).resolve()).replace("grid:\n    newton.step_growth: [1.5, 3]", grid)
     (tmp_path / "two.yaml").write_text(sweep)
     subprocess.run([command, "sweep", tmp_path / "two.yaml", "-o", tmp_path / "sweep"], check=True, stdout=subprocess.DEVNULL)
     assert {"seconds_by_newton_step_size.svg", "seconds_by_methods_newton_newton_step_size.svg"} <= set(written(tmp_path / "sweep"))
