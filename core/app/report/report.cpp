@@ -177,7 +177,8 @@ void write_runs_report(const std::vector<fs::path>& folders, const fs::path& fil
   refuse_other_file(file);
   const RunCollection collection = read_runs(folders);
   const fs::path place = fs::absolute(file).lexically_normal(), parent = place.parent_path();
-  refuse_unwritable(parent, "name a page elsewhere with drape report --out");
+  const fs::path written = file.parent_path();
+  refuse_unwritable(written.empty() ? "." : written, "name a page elsewhere with drape report --out");
   for (const RunRecord& run : collection.runs)
     if (std::error_code error; own_report(run) == place || fs::equivalent(own_report(run), place, error))
       refuse_path(file, "is the place of a run's own report; name another page with --out");

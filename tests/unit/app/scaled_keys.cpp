@@ -39,7 +39,7 @@ TEST_CASE("fit: a group is what the material sets, by a fabric too, or its defau
             .starts_with("material.warp_bending=3.0e-05, material.weft"));
   // A default that is written is set.
   CHECK(keys_of("bending_modulus: " + modulus + ", bending_hysteresis: 1e-3", {"material.bending"}) ==
-        "material.bending_modulus=" + modulus + ", material.bending_hysteresis=1.0e-03");
+        "material.bending_modulus=" + modulus + ", material.bending_hysteresis=0.001");
 }
 
 TEST_CASE("fit: a number is scaled once, whichever way it is named") {
