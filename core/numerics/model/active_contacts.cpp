@@ -86,7 +86,7 @@ ObstacleMotion ActiveContacts::motion_since(const BoundContacts& before, std::si
                                             bool& moved) const {
   if (models_[model] == before[model]) return [](const ObstaclePoint&) { return Eigen::Vector3d(0, 0, 0); };
   return [now = models_[model].get(), &from = *before[model], &moved](const ObstaclePoint& point) {
-    const Eigen::Vector3d displacement = now->displacement(from, point);
+    Eigen::Vector3d displacement = now->displacement(from, point);
     moved = moved || !displacement.isZero(1e-12);  // [m]: beyond round-off
     return displacement;
   };
