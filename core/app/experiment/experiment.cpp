@@ -19,9 +19,9 @@ namespace drape {
 
 namespace {
 
-/// `vertices`, and `columns` with `rows`, count the same. The one that would not be read is refused, unless
-/// it is the default, which a saved config has.
-void check_vertex_counts(const Experiment& e, ConfigErrors& errors) {
+/// Refuses what the cloth would not read: a seed without random numbers, and one of `vertices` and `columns`
+/// with `rows`, which count the same. A default, which a saved config has, stays.
+void check_cloth_keys(const Experiment& e, ConfigErrors& errors) {
   const ClothParameters& c = e.parameters.cloth;
   const ConfigNode* cloth = e.source.find("cloth");
   if (!cloth) return;
@@ -124,7 +124,7 @@ std::optional<Experiment> read_experiment(ConfigNode source, const Registry& reg
   e.resolved = experiment_schema().write(&e.parameters);
   if (const ConfigNode* name = e.source.find("name"); name && name->kind == ConfigNode::Kind::scalar)
     check_name("name", e.parameters.name, name->where, errors);
-  check_vertex_counts(e, errors);
+  check_cloth_keys(e, errors);
   check_start_coordinates(e, errors);
   check_material(e, errors);
   make_plugins(e, errors);

@@ -176,9 +176,9 @@ std::vector<std::string> write_report(const fs::path& folder, const std::functio
 void write_runs_report(const std::vector<fs::path>& folders, const fs::path& file) {
   refuse_other_file(file);
   const RunCollection collection = read_runs(folders);
-  const fs::path place = fs::absolute(file).lexically_normal(), parent = place.parent_path();
-  const fs::path written = file.parent_path();
-  refuse_unwritable(written.empty() ? "." : written, "name a page elsewhere with drape report --out");
+  const fs::path place = fs::absolute(file).lexically_normal();
+  const fs::path parent = file.parent_path();
+  refuse_unwritable(parent.empty() ? "." : parent, "name a page elsewhere with drape report --out");
   for (const RunRecord& run : collection.runs)
     if (std::error_code error; own_report(run) == place || fs::equivalent(own_report(run), place, error))
       refuse_path(file, "is the place of a run's own report; name another page with --out");
@@ -186,7 +186,7 @@ void write_runs_report(const std::vector<fs::path>& folders, const fs::path& fil
   const RunTable table = table_of(collection);
   Json runs = Json::array();
   for (const RunRecord& run : collection.runs)
-    runs.push_back(run_json(run, run.data ? run.data->methods.size() : 1, physics, parent));
+    runs.push_back(run_json(run, run.data ? run.data->methods.size() : 1, physics, place.parent_path()));
   write_file(file, page(collection.name.empty() ? "Several runs" : collection.name,
                         {{"kind", "runs"},
                          {"name", collection.name},

@@ -169,7 +169,7 @@ bool RunProcess::ended() {
   const bool stopped = stopped_ || signal == SIGINT || signal == SIGTERM || signal == SIGHUP;
   if (status_.state == RunState::cancelled && !stopped) {
     status_.state = RunState::failed;
-    // A refusal lists every fault, of which one is expected, perhaps.
+    // A refusal lists every fault, and its sweep may expect any of them.
     const std::string said = last_lines(files_.log(), status_.refused() ? 200 : 5);
     if (too_slow_) {
       status_.exit_code = exit_too_slow;
