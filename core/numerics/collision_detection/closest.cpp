@@ -87,9 +87,4 @@ Closest closest_edge_edge(const Vector3d& x0, const Vector3d& x1, const Vector3d
   return result;
 }
 
-Closest closest_point_plane(const Vector3d& x0, const Vector3d& x1, const Vector3d& x2, const Vector3d& x3) {
-  const Vector3d e1 = x2 - x1, e2 = x3 - x1;
-  return inside_triangle(project(e1, e2, e1.cross(e2), x0 - x1));
-}
-
 }  // namespace drape

@@ -40,8 +40,5 @@ inline Closest closest_edge_end(const Eigen::Vector3d& x0, const Eigen::Vector3d
   }
   return closest;
 }
-/// Point x0 against the infinite plane of (x1, x2, x3).
-Closest closest_point_plane(const Eigen::Vector3d& x0, const Eigen::Vector3d& x1, const Eigen::Vector3d& x2,
-                            const Eigen::Vector3d& x3);
 
 }  // namespace drape

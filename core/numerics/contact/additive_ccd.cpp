@@ -30,12 +30,11 @@ struct Motion {
     p = positions_of(pair, x1, obstacles) - x;
     rounding = 16 * std::numeric_limits<double>::epsilon() * (size + p.cwiseAbs().maxCoeff() + offset);
     x.colwise() -= Vector3d(x.col(0));
-    if (kind != PairKind::point_plane) p.colwise() -= Vector3d(p.rowwise().mean());
+    p.colwise() -= Vector3d(p.rowwise().mean());
   }
 
-  /// Vertices [0, first_end) against [first_end, end); a plane is represented by one of its points.
+  /// Vertices [0, first_end) against [first_end, 4).
   int first_end() const { return first_primitive_size(kind); }
-  int end() const { return kind == PairKind::point_plane ? 2 : 4; }
 
   /// Whether the bounding boxes alone guarantee `min_gap_fraction` of the gap.
   bool stays_apart(double min_gap_fraction) const {
@@ -46,7 +45,7 @@ struct Motion {
   /// An upper bound of the rate at which the distance shrinks [m per whole motion].
   double speed() const {
     double a = 0, b = 0;
-    for (int k = 0; k < end(); ++k) {
+    for (int k = 0; k < 4; ++k) {
       double& largest = k < first_end() ? a : b;
       largest = std::max(largest, p.col(k).squaredNorm());
     }
@@ -57,7 +56,7 @@ struct Motion {
   double separation_time(const PairPositions& now, const Vector3d& n, double distance) const {
     double time = std::numeric_limits<double>::infinity();
     for (int a = 0; a < first_end(); ++a)
-      for (int b = first_end(); b < end(); ++b) {
+      for (int b = first_end(); b < 4; ++b) {
         const double room = n.dot(now.col(a) - now.col(b)) - distance, rate = n.dot(p.col(b) - p.col(a));
         if (room < 0) return 0;
         if (rate > 0) time = std::min(time, room / rate);

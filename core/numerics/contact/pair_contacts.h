@@ -10,10 +10,9 @@
 
 namespace drape {
 
-/// Point 0 against triangle 1 … 3, or edge (0, 1) against edge (2, 3). point_plane is point 0 against the
-/// infinite, static plane of three obstacle vertices. edge_end is point 0, the end of edge (0, 1), against
-/// edge (2, 3).
-enum class PairKind : char { point_triangle, edge_edge, point_plane, edge_end };
+/// Point 0 against triangle 1 … 3, or edge (0, 1) against edge (2, 3). edge_end is point 0, the end of edge
+/// (0, 1), against edge (2, 3).
+enum class PairKind : char { point_triangle, edge_edge, edge_end };
 
 /// A pair of primitives. Indices count the cloth's n vertices, then the obstacles'.
 struct ContactPair {

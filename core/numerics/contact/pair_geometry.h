@@ -20,10 +20,9 @@ inline PairPositions positions_of(const ContactPair& pair, const Positions& x, c
 
 inline Closest closest(PairKind kind, const PairPositions& x) {
   const Eigen::Vector3d x0 = x.col(0), x1 = x.col(1), x2 = x.col(2), x3 = x.col(3);
-  if (kind == PairKind::point_triangle) return closest_point_triangle(x0, x1, x2, x3);
   if (kind == PairKind::edge_edge) return closest_edge_edge(x0, x1, x2, x3);
   if (kind == PairKind::edge_end) return closest_edge_end(x0, x2, x3);
-  return closest_point_plane(x0, x1, x2, x3);
+  return closest_point_triangle(x0, x1, x2, x3);
 }
 
 /// Whether the vertices of a pair are two edges.
@@ -32,9 +31,8 @@ inline bool has_two_edges(PairKind kind) { return kind == PairKind::edge_edge ||
 /// The number of vertices of a pair's first primitive.
 inline int first_primitive_size(PairKind kind) { return has_two_edges(kind) ? 2 : 1; }
 
-/// The distance of the two primitives' bounding boxes, a lower bound of theirs; 0 for a plane [m].
+/// The distance of the two primitives' bounding boxes, a lower bound of theirs [m].
 inline double box_distance(PairKind kind, const PairPositions& x) {
-  if (kind == PairKind::point_plane) return 0;
   Eigen::Vector3d low_a = x.col(0), high_a = low_a, low_b = x.col(3), high_b = low_b;
   const Eigen::Vector3d x1 = x.col(1), x2 = x.col(2);
   Eigen::Vector3d& low = has_two_edges(kind) ? low_a : low_b;

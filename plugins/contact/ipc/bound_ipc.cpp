@@ -43,7 +43,7 @@ class BoundIpc::Candidates final : public CollisionCandidates {
         fraction_(fraction),
         vertex_triangles_(surface_candidates(found, contact.cloth_)) {
     for (ContactPair& pair : found) {
-      if (pair.obstacle < 0) pair.dhat = contact.rest_->layers.dhat_of(pair.vertices);
+      if (pair.obstacle < 0) pair.dhat = contact.rest_->layers.dhat_of(pair);
       const bool has_barrier = pair.weight > 0 && pair.dhat > 0;
       (!has_barrier ? ccd_only_ : pair.at_rim ? rims_ : barrier_).push_back(pair);
     }

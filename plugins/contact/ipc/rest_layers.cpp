@@ -138,14 +138,16 @@ RestLayers RestLayers::of(const Surface& cloth, const Level& level, double dhat)
   });
   RestLayers result;
   result.dhat_ = dhat;
-  for (std::size_t i = 0; i < pairs.size(); ++i) result.pairs_.push_back({pairs[i].vertices, reach[i]});
-  std::ranges::sort(result.pairs_, {}, &RestPair::vertices);
+  for (std::size_t i = 0; i < pairs.size(); ++i)
+    result.pairs_.push_back({{pairs[i].vertices, pairs[i].kind}, reach[i]});
+  std::ranges::sort(result.pairs_, {}, &RestPair::key);
   return result;
 }
 
-double RestLayers::dhat_of(const std::array<int, 4>& vertices) const {
-  const auto pair = std::ranges::lower_bound(pairs_, vertices, {}, &RestPair::vertices);
-  return pair != pairs_.end() && pair->vertices == vertices ? pair->dhat : dhat_;
+double RestLayers::dhat_of(const ContactPair& pair) const {
+  const Key key(pair.vertices, pair.kind);
+  const auto found = std::ranges::lower_bound(pairs_, key, {}, &RestPair::key);
+  return found != pairs_.end() && found->key == key ? found->dhat : dhat_;
 }
 
 std::string RestLayers::remark() const {

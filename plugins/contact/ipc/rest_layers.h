@@ -2,10 +2,12 @@
 
 #include <array>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "core/kernel/interfaces/level.h"
 #include "core/numerics/collision_detection/surface.h"
+#include "core/numerics/contact/pair_contacts.h"
 
 namespace drape::ipc {
 
@@ -21,18 +23,20 @@ class RestLayers {
   /// than 50 million.
   static RestLayers of(const Surface& cloth, const Level& level, double dhat);
 
-  /// d̂ of the self pair with these vertices [m], 0 for a pair without a barrier.
-  double dhat_of(const std::array<int, 4>& vertices) const;
+  /// d̂ of a self pair [m], 0 for a pair without a barrier.
+  double dhat_of(const ContactPair& pair) const;
   /// Names the pairs without a barrier, for messages; empty if there are none.
   std::string remark() const;
 
  private:
+  /// A vertex and a triangle may have the vertices of two edges, in the same order.
+  using Key = std::pair<std::array<int, 4>, PairKind>;
   struct RestPair {
-    std::array<int, 4> vertices;
+    Key key;
     double dhat;  ///< of layers [m], 0 for neighbours
   };
   double dhat_ = 0;              // of all other pairs [m]
-  std::vector<RestPair> pairs_;  // ascending by vertices
+  std::vector<RestPair> pairs_;  // ascending by key
 };
 
 }  // namespace drape::ipc

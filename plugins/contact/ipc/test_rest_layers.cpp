@@ -132,3 +132,17 @@ TEST_CASE("ipc: layers of a cloth that is smaller than dhat have a barrier, and 
   CHECK((g.col(2).head(n).array() > 0).all());
   CHECK((g.col(2).tail(n).array() < 0).all());
 }
+
+TEST_CASE("ipc: two edges have not the gap at rest of a vertex and a triangle of the same four vertices") {
+  // Vertex 0 lies half of d̂ above the triangle 1, 2, 3; edge 0-1 is far from edge 2-3.
+  const Level level = Level::of(
+      0, mesh_of({{0.05, 0, 0.5e-3}, {0, 0, 0}, {0.1, -0.05, 0}, {0.1, 0.05, 0}, {0.05, 0.05, 0.05}},
+                 {{0, 1, 4}, {4, 1, 3}, {1, 2, 3}}));
+  const auto contact = bound(level);
+  CHECK(collisions(*contact, level.rest.vertices)->value(level.rest.vertices) == 0);
+  Positions x = level.rest.vertices;
+  x.row(0) << 0.12, 0, 0.96e-3;  // edge 0-1 passes 0.8 d̂ above edge 2-3
+  const auto set = collisions(*contact, x);
+  CHECK(set->contact_count() == 1);
+  CHECK(set->smallest_gap() == Approx(0.8e-3).epsilon(1e-3));
+}

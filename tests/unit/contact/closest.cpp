@@ -23,18 +23,15 @@ double height_left_out(const PairPositions& x) {
 }
 
 /// The weights are those of a point on either side, and no other pair of points is nearer: by convexity that
-/// holds when no vertex lies on the near side of its side's point, seen along r. A point of a plane may have
-/// weights of any size, and r = Σ c_k x_k has a rounding error in proportion to them.
+/// holds when no vertex lies on the near side of its side's point, seen along r.
 void check_optimal(PairKind kind, const PairPositions& x, double tolerance = 4e-15) {
   const Closest found = closest(kind, x);
   const int first = first_primitive_size(kind);
   CAPTURE(x, found.c.transpose());
   CHECK(std::abs(found.c.head(first).sum() - 1) <= 1e-15);
   CHECK(std::abs(found.c.sum()) <= 1e-15 * found.c.norm());
-  if (kind != PairKind::point_plane) {
-    CHECK(found.c.head(first).minCoeff() >= 0);
-    CHECK(found.c.tail(4 - first).maxCoeff() <= 0);
-  }
+  CHECK(found.c.head(first).minCoeff() >= 0);
+  CHECK(found.c.tail(4 - first).maxCoeff() <= 0);
   const Vector3d r = connection(x, found);
   Vector3d a = Vector3d::Zero(), b = Vector3d::Zero();  // from x_0
   for (int k = 1; k < 4; ++k)
@@ -44,10 +41,7 @@ void check_optimal(PairKind kind, const PairPositions& x, double tolerance = 4e-
   for (int k = 0; k < 4; ++k) {
     const Vector3d from_own = x.col(k) - x.col(0) - (k < first ? a : b);
     const double ahead = r.dot(from_own) * (k < first ? 1 : -1);
-    if (kind == PairKind::point_plane)
-      CHECK(std::abs(ahead) <= tolerance * size * found.c.norm() * (from_own.norm() + r.norm()));
-    else
-      CHECK(ahead >= -tolerance * size * (from_own.norm() + r.norm()) - left_out * r.norm());
+    CHECK(ahead >= -tolerance * size * (from_own.norm() + r.norm()) - left_out * r.norm());
   }
 }
 
@@ -63,7 +57,7 @@ void check_directions(PairKind kind, const PairPositions& x) {
     CHECK(d.tail(4 - first).sum() == 0);
     CHECK(d.norm() > 0);
     for (int k = 0; k < 4; ++k)
-      if (found.c[k] == 0 && kind != PairKind::point_plane) CHECK(d[k] == 0);
+      if (found.c[k] == 0) CHECK(d[k] == 0);
     const Vector3d motion = x * d;
     CHECK(std::abs(connection(x, found).dot(motion)) <= 1e-13 * x.norm() * motion.norm());
   }
@@ -79,7 +73,7 @@ PairPositions random_positions(std::mt19937& random) {
 
 TEST_CASE("no other points of a random pair are closer") {
   std::mt19937 random(1);
-  for (const auto kind : {PairKind::point_triangle, PairKind::edge_edge, PairKind::point_plane}) {
+  for (const auto kind : {PairKind::point_triangle, PairKind::edge_edge}) {
     std::set<std::vector<bool>> regions;
     for (int i = 0; i < 3000; ++i) {
       const PairPositions x = random_positions(random);
@@ -90,8 +84,8 @@ TEST_CASE("no other points of a random pair are closer") {
       for (int k = 0; k < 4; ++k) zeros.push_back(found.c[k] == 0);
       regions.insert(zeros);
     }
-    // face, 3 edges, 3 vertices; 3 × 3 places on two edges; the plane
-    CHECK(regions.size() == (kind == PairKind::edge_edge ? 9 : kind == PairKind::point_triangle ? 7 : 1));
+    // face, 3 edges, 3 vertices; 3 × 3 places on two edges
+    CHECK(regions.size() == (kind == PairKind::edge_edge ? 9 : 7));
   }
 }
 
@@ -164,8 +158,6 @@ TEST_CASE("exactly degenerate pairs") {
   CHECK(closest_point_triangle(e3, o, e1, e2).free == 0);
   CHECK(closest_point_triangle(e3 + 0.5 * e1, o, e1, e2).free == 1);
   CHECK(closest_point_triangle(e3 + 0.3 * (e1 + e2), o, e1, e2).free == 2);
-  CHECK(distance(point_plane, columns(5 * e1 - 2 * e3, o, e1, e2)) == 2);
-  CHECK(closest_point_plane(5 * e1 - 2 * e3, o, e1, e2).free == 2);
 }
 
 TEST_CASE("the parameter of the nearest point of a segment is clamped, and 0 on one without length") {
