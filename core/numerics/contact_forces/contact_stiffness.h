@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 
 #include "core/kernel/interfaces/material.h"
 
@@ -26,6 +27,8 @@ inline double contact_stiffness(const Material& material) {
 /// κ for loads of this pressure on the cloth [Pa], such as an inflation: the largest κ 4^k that is at most
 /// ten times the pressure, and at least κ.
 inline double stiffness_for_load(double stiffness, double pressure) {
+  // The load may be infinite on the rest shape, where the cloth need not start.
+  if (!std::isfinite(10 * pressure)) return stiffness;
   while (stiffness > 0 && 4 * stiffness <= 10 * pressure) stiffness *= 4;
   return stiffness;
 }

@@ -62,7 +62,10 @@ void require_computable(const Law& law, const std::string& key, const Energy& en
   const Level level = checked_level();
   try {
     bound = energy.bind(level, Material());
+  } catch (const std::length_error& error) {  // it cannot be compiled
+    refuse(error.what());
   } catch (const std::exception& error) {
+    if (law.depends_on_place()) return;  // the cloth may lie where it is finite: bind() looks there
     refuse(error.what());
   }
   if (law.kind == ElementKind::vertex) return;

@@ -174,6 +174,17 @@ TEST_CASE("a formula that is not finite at rest is refused") {
   refused("density: \"thickness*E*max(g11, 0)^1.5\"", "the stiffness of the rest shape is not finite");
 }
 
+TEST_CASE("a formula of a place need be finite only where the cloth is") {
+  const auto energy = make_plugin_from<Energy>(
+      "{type: formula, constants: {h: {value: 0.2, unit: m}}, density: \"thickness*E*(h/w)*(g11^2 + "
+      "g22^2)\"}");
+  TriangleMesh mesh = grid({0.1, 0.1}, 3, 3, Diagonals::one_way);
+  CHECK_THROWS_WITH(energy->bind(Level::of(0, mesh), Material()),
+                    Catch::Contains("not finite on the rest shape of level 0"));
+  mesh.vertices.col(2).setConstant(0.4);
+  CHECK(energy->bind(Level::of(0, mesh), Material())->value(1.1 * mesh.vertices) > 0);
+}
+
 TEST_CASE("gravity by a formula is linear, as the plugin is") {
   const Level level = curved_level();
   const Material material;

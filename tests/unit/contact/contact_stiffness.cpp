@@ -1,6 +1,7 @@
 #include "core/numerics/contact_forces/contact_stiffness.h"
 
 #include <catch2/catch.hpp>
+#include <limits>
 
 #include "core/numerics/model/level_model.h"
 #include "core/numerics/patterns/generate.h"
@@ -54,6 +55,17 @@ TEST_CASE("The stiffness for a load is the weight's times a power of four, up to
     }
   }
   CHECK(stiffness_for_load(0, 100) == 0);  // no barrier
+}
+
+TEST_CASE("A load that is infinite on the rest shape leaves the weight's stiffness") {
+  CHECK(stiffness_for_load(14.7, std::numeric_limits<double>::infinity()) == 14.7);
+  CHECK(stiffness_for_load(14.7, std::numeric_limits<double>::max()) == 14.7);
+  const std::string lift =
+      "{type: formula, per: vertex, constants: {c: {value: 1, unit: m^2/s^2}, h: {value: 1, unit: m}}, "
+      "energy: "
+      "\"-c*mass*log(z/h)\"}";
+  const TriangleMesh flat = grid({0.1, 0.1}, 3, 3, Diagonals::one_way);
+  CHECK(bound_stiffness(flat, Material(), lift, {"ipc"})[0] == contact_stiffness(Material()));
 }
 
 TEST_CASE("The stiffness is raised by four above a mean pressure of fifty times it, up to a bound") {
