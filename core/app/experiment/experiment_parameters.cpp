@@ -107,8 +107,8 @@ void ClothParameters::declare(Declaration<ClothParameters>& d) {
 
 void StartParameters::declare(Declaration<StartParameters>& d) {
   d.add("file", &StartParameters::file,
-        "mesh with the coarsest level's triangles that replaces the rest shape as start; finer levels split "
-        "it at edge midpoints")
+        "mesh with the coarsest level's triangles that replaces the rest shape as start; finer levels "
+        "interpolate it linearly over the rest shape")
       .path();
   declare_file_coordinates(d);
   d.declared("unit").description("unit of the start's file; null: that of the cloth's file");

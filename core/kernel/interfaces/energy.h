@@ -52,6 +52,7 @@ class Roles {
 
   constexpr bool has(EnergyRole role) const { return (bits_ & bit(role)) != 0; }
   constexpr void add(EnergyRole role) { bits_ |= bit(role); }
+  bool operator==(const Roles&) const = default;
 
  private:
   static constexpr unsigned bit(EnergyRole role) { return 1U << static_cast<unsigned>(role); }

@@ -59,7 +59,7 @@ std::optional<double> sampled_midpoint_factor(const BindEnergy& bind) {
       if (!(std::abs(halved - *factor * own) <= 1e-9 * std::abs(halved))) return std::nullopt;
     }
   }
-  return factor.value_or(1);
+  return factor;  // none where no sampled state has energy
 }
 
 // What the borders have cancels between four sheets. Bent to both sides, so that forces at rest cancel too.

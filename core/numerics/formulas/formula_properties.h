@@ -25,7 +25,8 @@ Eigen::Vector3d green_strains(double s1, double s2, double angle);
 using BindEnergy = std::function<std::unique_ptr<BoundEnergy>(const Level&)>;
 
 /// Energy::midpoint_factor of an energy that does not depend on where an element is at rest, as its values
-/// show on small meshes of two sizes and on those meshes split; none if no factor holds for all.
+/// show on small meshes of two sizes and on those meshes split; none if no factor holds for all, or if none
+/// of their states has energy.
 std::optional<double> sampled_midpoint_factor(const BindEnergy& bind);
 
 /// Energy::plate_stiffness of a fold's energy, on a grid of right-angled triangles of 1 cm.

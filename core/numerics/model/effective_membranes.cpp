@@ -1,6 +1,7 @@
 // Membranes of coarse levels that answer as the finest level's do: they buckle below the mesh, and give way
 // at lone pins.
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <optional>
@@ -35,11 +36,15 @@ LevelModel LevelModel::with_effective_membranes(int levels_below, const std::vec
     softened = *level_;
     softened->softening = softening_at_pins(*level_, lone_pins, material_.poisson_ratio, levels_below);
   }
+  // Several laws would each wrinkle by itself, also where their sum is taut.
+  const bool alone = std::ranges::count(terms_, EnergyRole::membrane, &Term::role) == 1;
   LevelModel model = *this;
   for (Term& term : model.terms_) {
     if (term.role != EnergyRole::membrane) continue;
     const Stencils plain = term.energy->stencils();
-    term.energy = term.kind->bind_buckling(softened ? *softened : *level_, material_, s);
+    // A law of its triangle's size, whose midpoint factor is not 1, would take the softened area for its own.
+    const Level& level = softened && term.kind->midpoint_factor() == 1 ? *softened : *level_;
+    term.energy = alone ? term.kind->bind_buckling(level, material_, s) : term.kind->bind(level, material_);
     if (!term.energy || !same_entries(term.energy->stencils(), plain))
       throw std::runtime_error("energy " + term.name +
                                ": bind_buckling must return an energy with the stencils of bind");

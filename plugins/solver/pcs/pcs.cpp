@@ -58,10 +58,10 @@ struct PcsSolver : Progression {
           "how many levels above a coarse level the Hessian is that the Galerkin product restricts, at "
           "most the finest; for energies that are evaluated on the finest level")
         .between(1, 8);
-    d.add_choice(
-         "membranes", &PcsSolver::effective, {{"plain", false}, {"effective", true}},
-         "how membranes of coarse levels act, unless they are seen by the refiner: by their own laws, or "
-         "as the finest level's do, which buckle below the coarse mesh and give way at lone pins")
+    d.add_choice("membranes", &PcsSolver::effective, {{"plain", false}, {"effective", true}},
+                 "how membranes of coarse levels act, unless they are seen by the refiner or, until a level "
+                 "relaxes, have no midpoint factor: by their own laws, or as the finest level's do, which "
+                 "buckle below the coarse mesh and give way at lone pins")
         .source("PCS section 4 for plain; effective is a departure (docs/theory/locking.md)");
     d.add_choice("relaxation", &PcsSolver::relaxes, {{"plain", true}, {"none", false}},
                  "what a coarse level minimises after its proxy: its own energy, which makes folds as "
@@ -75,7 +75,7 @@ struct PcsSolver : Progression {
   std::unique_ptr<Objective> objective(const Problem& problem, int level) const override {
     if (level == problem.finest()) return Progression::objective(problem, level);
     return std::make_unique<ProxyObjective>(
-        problem, level, parts(problem, level),
+        problem, level, [this, &problem, level] { return parts(problem, level); },
         ProxyOptions{hessian, relaxes, effective && seen_by.membrane == Interpolation::midpoint});
   }
 

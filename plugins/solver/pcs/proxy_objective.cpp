@@ -1,5 +1,7 @@
 #include "plugins/solver/pcs/proxy_objective.h"
 
+#include <utility>
+
 #include "core/numerics/model/lone_pins.h"
 
 namespace drape {
@@ -34,50 +36,73 @@ void add_blocks(const BlockMatrix& part, const std::vector<int>& slots, double f
 
 }  // namespace
 
-ProxyObjective::ProxyObjective(const Problem& problem, int level, const std::vector<ProxyPart>& parts,
+ProxyObjective::ProxyObjective(const Problem& problem, int level, ChooseParts choose_parts,
                                const ProxyOptions& options)
-    : Objective(problem.model(level)), problem_(problem), level_(level), options_(options) {
-  std::vector<std::shared_ptr<const BlockPattern>> patterns;
-  for (const ProxyPart& part : parts) {
-    if (part.above == 0) {
-      own_.push_back(part);
-      continue;
-    }
-    FinerPart& finer = finer_.emplace_back();
-    finer.part = part;
-    for (int k = 0; k < part.above; ++k) finer.transfers.emplace_back((*part.interpolation)[level + k]);
-    finer.prolonged.resize(part.above);
-    finer.forces.resize(part.above);
-  }
+    : Objective(problem.model(level)),
+      problem_(problem),
+      level_(level),
+      choose_parts_(std::move(choose_parts)),
+      options_(options) {
   ProxyObjective::model_changed();
-  for (FinerPart& finer : finer_) {
-    if (options_.matrix == ProxyMatrix::coarse) continue;
-    const ProxyPart& part = finer.part;
-    finer.matrices.emplace_back(finer.matrix_model->pattern());
-    for (int k = part.matrix_above; k > 0; --k) {
-      finer.products.emplace_back(*finer.matrices.back().pattern, (*part.interpolation)[level + k - 1]);
-      finer.matrices.emplace_back(finer.products.back().coarse_pattern());
-    }
-    patterns.push_back(finer.matrices.back().pattern);
-  }
-  if (options_.matrix == ProxyMatrix::coarse || !own_.empty()) patterns.push_back(model().pattern());
-  matrix_ = BlockMatrix(united(patterns));
-  for (FinerPart& finer : finer_)
-    if (!finer.matrices.empty()) finer.slots = slots_of(*finer.matrices.back().pattern, *matrix_.pattern);
-  if (options_.matrix == ProxyMatrix::coarse || own_.empty() || matrix_.pattern == model().pattern()) return;
-  own_matrix_ = BlockMatrix(model().pattern());
-  own_slots_ = slots_of(*model().pattern(), *matrix_.pattern);
 }
 
 void ProxyObjective::model_changed() {
   if (options_.effective)  // a schedule may change which vertices a pin selects
     effective_ = std::make_shared<const LevelModel>(model().with_effective_membranes(
         problem_.finest() - level_, lone_pins(model(), [&] { return problem_.model(problem_.finest()); })));
+  if (is_plain_) return;
+  std::vector<ProxyPart> parts = choose_parts_();
+  const bool differ = parts != parts_;
+  if (differ) {
+    parts_ = std::move(parts);
+    make_parts();
+  }
   for (FinerPart& finer : finer_) {
     finer.model = problem_.model(level_ + finer.part.above);
     finer.matrix_model =
         options_.matrix == ProxyMatrix::galerkin ? problem_.model(level_ + finer.part.matrix_above) : nullptr;
   }
+  if (differ) make_matrices();
+}
+
+void ProxyObjective::make_parts() {
+  own_.clear();
+  finer_.clear();
+  for (const ProxyPart& part : parts_) {
+    if (part.above == 0) {
+      own_.push_back(part);
+      continue;
+    }
+    FinerPart& finer = finer_.emplace_back();
+    finer.part = part;
+    for (int k = 0; k < part.above; ++k) finer.transfers.emplace_back((*part.interpolation)[level_ + k]);
+    finer.prolonged.resize(part.above);
+    finer.forces.resize(part.above);
+  }
+}
+
+void ProxyObjective::make_matrices() {
+  const std::shared_ptr<const BlockPattern> before = matrix_.pattern;
+  std::vector<std::shared_ptr<const BlockPattern>> patterns;
+  for (FinerPart& finer : finer_) {
+    if (options_.matrix == ProxyMatrix::coarse) continue;
+    const ProxyPart& part = finer.part;
+    finer.matrices.emplace_back(finer.matrix_model->pattern());
+    for (int k = part.matrix_above; k > 0; --k) {
+      finer.products.emplace_back(*finer.matrices.back().pattern, (*part.interpolation)[level_ + k - 1]);
+      finer.matrices.emplace_back(finer.products.back().coarse_pattern());
+    }
+    patterns.push_back(finer.matrices.back().pattern);
+  }
+  if (options_.matrix == ProxyMatrix::coarse || !own_.empty()) patterns.push_back(model().pattern());
+  matrix_ = BlockMatrix(united(patterns));
+  if (before && before != matrix_.pattern) smooth_pattern_changed();
+  for (FinerPart& finer : finer_)
+    if (!finer.matrices.empty()) finer.slots = slots_of(*finer.matrices.back().pattern, *matrix_.pattern);
+  own_slots_.clear();
+  if (options_.matrix == ProxyMatrix::coarse || own_.empty() || matrix_.pattern == model().pattern()) return;
+  own_matrix_ = BlockMatrix(model().pattern());
+  own_slots_ = slots_of(*model().pattern(), *matrix_.pattern);
 }
 
 bool ProxyObjective::switch_to_plain() {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <vector>
 
@@ -18,6 +19,8 @@ struct ProxyPart {
   int matrix_above = 0;  ///< the same for the model that gives the matrix; at most `above`
   /// Prolongations, one for each level; must outlive the proxy. Null if `above` is 0.
   const std::vector<ProlongationMatrix>* interpolation = nullptr;
+
+  bool operator==(const ProxyPart&) const = default;
 };
 
 /// Matrix for search directions on coarse levels.
@@ -38,9 +41,11 @@ struct ProxyOptions {
 /// The gradient is exact.
 class ProxyObjective : public Objective {
  public:
-  /// Refers to `problem`.
-  ProxyObjective(const Problem& problem, int level, const std::vector<ProxyPart>& parts,
-                 const ProxyOptions& options);
+  using ChooseParts = std::function<std::vector<ProxyPart>()>;
+
+  /// Refers to `problem`. Chooses the parts again for every load: a schedule may change an energy's midpoint
+  /// factor.
+  ProxyObjective(const Problem& problem, int level, ChooseParts choose_parts, const ProxyOptions& options);
   bool is_proxy() const override { return !is_plain_ || options_.effective; }
   bool switch_to_plain() override;
 
@@ -63,16 +68,19 @@ class ProxyObjective : public Objective {
     const Positions& prolong(const Positions& x, int count);
   };
 
+  void make_parts();
+  void make_matrices();
   /// The level's own energies.
   const LevelModel& own_model() const { return effective_ ? *effective_ : model(); }
   void add_own_hessians(const Positions& x, Projection projection, BlockMatrix& matrix) const;
 
   const Problem& problem_;
   int level_;
+  ChooseParts choose_parts_;
   ProxyOptions options_;
   bool is_plain_ = false;
   std::shared_ptr<const LevelModel> effective_;  // the level's model with effective membranes, or null
-  std::vector<ProxyPart> own_;                   // parts of the level's own model
+  std::vector<ProxyPart> parts_, own_;           // all, and those of the level's own model
   std::vector<FinerPart> finer_;
   BlockMatrix own_matrix_, matrix_;  // of own_, if its pattern differs from the sum's; the sum
   std::vector<int> own_slots_;       // index in matrix_ of each block of own_matrix_

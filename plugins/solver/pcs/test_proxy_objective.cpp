@@ -61,7 +61,8 @@ std::vector<ProxyPart> proxy_parts(const Problem& problem, int level, int depth,
 ProxyObjective proxy_of(const Problem& problem, int level, int depth,
                         const ProxyInterpolation& interpolation = by_refiner,
                         ProxyMatrix matrix = ProxyMatrix::galerkin) {
-  return ProxyObjective(problem, level, proxy_parts(problem, level, depth, interpolation), {matrix});
+  return ProxyObjective(
+      problem, level, [=, &problem] { return proxy_parts(problem, level, depth, interpolation); }, {matrix});
 }
 
 }  // namespace
@@ -158,10 +159,10 @@ TEST_CASE("A proxy that relaxes switches to the plain energy of its level, once"
   const ProxyInterpolation interpolation = GENERATE(by_refiner, by_midpoints);
   const auto parts = proxy_parts(f.problem, 0, 1, interpolation);
   const Positions x = f.state(0);
-  ProxyObjective never(f.problem, 0, parts, {ProxyMatrix::galerkin});
+  ProxyObjective never(f.problem, 0, [&] { return parts; }, {ProxyMatrix::galerkin});
   CHECK_FALSE(never.switch_to_plain());
   CHECK(never.is_proxy());
-  ProxyObjective proxy(f.problem, 0, parts, {ProxyMatrix::galerkin, true});
+  ProxyObjective proxy(f.problem, 0, [&] { return parts; }, {ProxyMatrix::galerkin, true});
   PlainObjective plain(*f.problem.models[0]);
   Positions g, expected;
   plain.gradient(x, expected);
@@ -225,7 +226,7 @@ TEST_CASE("Membranes of coarse levels buckle below the mesh, before the proxy re
   Positions x = f.state(0);
   x.col(0) *= 0.6;
   REQUIRE(buckling.value(x, {EnergyRole::membrane}) < 0.5 * plain.value(x, {EnergyRole::membrane}));
-  ProxyObjective proxy(f.problem, 0, proxy_parts(f.problem, 0, 1, by_midpoints),
+  ProxyObjective proxy(f.problem, 0, [&] { return proxy_parts(f.problem, 0, 1, by_midpoints); },
                        {ProxyMatrix::galerkin, true, true});
   const double bending = plain.value(x, {EnergyRole::bending});
   REQUIRE(bending > 1e-4 * std::abs(buckling.value(x)));
@@ -239,8 +240,30 @@ TEST_CASE("Membranes of coarse levels buckle below the mesh, before the proxy re
   buckling.hessian(x, Projection::clamp, h);
   CHECK(proxy.matrix(x, Projection::clamp).values == h.values);
   // Seen by the refiner, membranes are the finest level's.
-  ProxyObjective by_loop(f.problem, 0, proxy_parts(f.problem, 0, 1, by_refiner),
+  ProxyObjective by_loop(f.problem, 0, [&] { return proxy_parts(f.problem, 0, 1, by_refiner); },
                          {ProxyMatrix::galerkin, false, true});
   ProxyObjective expected_by_loop = proxy_of(f.problem, 0, 1);
   CHECK(value_of(by_loop, x) == value_of(expected_by_loop, x));
+}
+
+TEST_CASE("A proxy follows a midpoint factor that a schedule takes away, as a resumed one does",
+          "[proxy_objective]") {
+  const Fixture f(Overrides{
+      {"cloth", "{shape: rectangle, size: [0.6, 0.5], triangulation: one_way, columns: 5, rows: 4}"},
+      {"energies",
+       "[neo_hookean, gravity, {type: formula, name: plastic, per: hinge, constants: {crease: 0}, "
+       "energy: \"3*k*length^2/area*(bend - crease)^2\"}]"},
+      {"schedule",
+       "{steps: 1, keys: [{parameter: energies.plastic.crease, times: [0, 1], values: [0, 0.3]}]}"}});
+  PcsSolver solver;
+  const Positions x = f.state(0);
+  LoadStepping& load = *f.problem.load_stepping;
+  load.begin(0, true);
+  const auto proxy = solver.objective(f.problem, 0);
+  proxy->matrix(x, Projection::clamp);
+  while (!load.finished()) load.advance(0, x);
+  proxy->set_model(f.problem.model(0), x, x);
+  const auto resumed = solver.objective(f.problem, 0);  // made under the load of a checkpoint
+  CHECK(value_of(*proxy, x) == value_of(*resumed, x));
+  CHECK(dense(proxy->matrix(x, Projection::clamp)) == dense(resumed->matrix(x, Projection::clamp)));
 }

@@ -211,3 +211,36 @@ TEST_CASE("Membranes of coarse levels buckle at the stress of a clamped column o
   LevelModel(level, Material(), {{"membrane", membrane}}, {}).with_effective_membranes(1);
   CHECK(membrane->bound == 0);
 }
+
+TEST_CASE("Several membranes keep their laws: each alone would wrinkle where their sum is taut",
+          "[level_model]") {
+  const Level level = Level::of(0, grid({2, 1}, 4, 3, Diagonals::one_way));
+  const auto first = std::make_shared<Shell>(EnergyRole::membrane, 0),
+             second = std::make_shared<Shell>(EnergyRole::membrane, 0);
+  LevelModel(level, Material(), {{"first", first}, {"second", second}}, {}).with_effective_membranes(1);
+  CHECK((first->bound == -1 && second->bound == -1));
+
+  const auto formula = [](const std::string& density) {
+    return std::shared_ptr<const Energy>(
+        make_plugin_from<Energy>("{type: formula, density: \"" + density + "\"}"));
+  };
+  const LevelModel halves(level, Material(),
+                          {{"shear", formula("thickness*mu*(g11^2 + g22^2 + 2*g12^2)")},
+                           {"area", formula("thickness*lambda/2*(g11 + g22)^2")}},
+                          {});
+  Positions x = level.rest.vertices;
+  x.col(0) *= 1.06;
+  x.col(1) *= 0.995;  // less than it contracts freely: taut
+  CHECK(halves.with_effective_membranes(1).value(x) == Approx(halves.value(x)).epsilon(1e-12));
+}
+
+TEST_CASE("A law that reads its triangle's area reads that at rest, also at a lone pin", "[level_model]") {
+  const Level level = Level::of(0, grid({2, 2}, 3, 3, Diagonals::one_way));
+  const LevelModel model(
+      level, Material(),
+      {{"sized", make_plugin_from<Energy>("{type: formula, constants: {c: {value: 1, unit: m^4 kg s^-2}}, "
+                                          "energy: \"c*(g11^2 + g22^2)/area\"}")}},
+      {});
+  const Positions x = 1.05 * level.rest.vertices;
+  CHECK(model.with_effective_membranes(1, {0}).value(x) <= model.value(x) * (1 + 1e-12));  // never stiffer
+}

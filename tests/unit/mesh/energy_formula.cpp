@@ -29,6 +29,9 @@ DRAPE_MEMBRANE(seam, "Stiffer on one side.") { return select(u > 0.5, 2.0, 1.0) 
 DRAPE_MEMBRANE(sized, "Depends on the mesh.") { return sqrt(area) * g11 * g11; }
 DRAPE_FOLD(crease, "A plastic rest angle.") { return 3 * k * length * length / area * square(bend - 0.3); }
 DRAPE_FOLD(fold, "As hinge.") { return 3 * k * length * length / area * square(bend); }
+DRAPE_FOLD(late, "Begins at 3.1 rad.") {
+  return 3 * k * length * length / area * square(max(abs(bend) - 3.1, S(0.0)));
+}
 DRAPE_VERTEX(wind, "Constant forces.") { return -2.0 * area * x - 0.5 * mass * z + 1e-3 * area; }
 DRAPE_VERTEX(patch_wind, "On half of the cloth.") { return select(u > 0.5, -2.0 * area, 0.0 * area) * x; }
 DRAPE_VERTEX(gust, "Only above the ground.") { return select(z > 0.01, -2.0 * area * x, 0.0); }
@@ -160,6 +163,7 @@ TEST_CASE("energy_formula: role and midpoint factor follow from the kind and the
   CHECK(FoldFormula<formulas::fold>({}).role() == EnergyRole::bending);
   CHECK(FoldFormula<formulas::fold>({}).midpoint_factor() == 2);
   CHECK_FALSE(FoldFormula<formulas::crease>({}).midpoint_factor());
+  CHECK_FALSE(FoldFormula<formulas::late>({}).midpoint_factor());
   CHECK(VertexFormula<formulas::wind>({}).role() == EnergyRole::external);
   CHECK(VertexFormula<formulas::wind>({}).midpoint_factor() == 1);
   CHECK(VertexFormula<formulas::spring>({}).role() == EnergyRole::position);
