@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <exception>
 #include <mutex>
+#include <system_error>
 #include <thread>
 #include <vector>
 
@@ -38,10 +39,14 @@ class Pool {
     std::unique_lock<std::mutex> lock(busy_, std::try_to_lock);
     if (!lock) return false;
     while (static_cast<int>(started_) < threads - 1) {
-      std::thread([this, index = started_] {
-        std::fesetenv(FE_DFL_ENV);  // not that of the caller, who may flush denormals just now
-        help(index);
-      }).detach();
+      try {
+        std::thread([this, index = started_] {
+          std::fesetenv(FE_DFL_ENV);  // not that of the caller, who may flush denormals just now
+          help(index);
+        }).detach();
+      } catch (const std::system_error&) {
+        break;  // the system has no more threads: those that are there do all pieces
+      }
       ++started_;
     }
     task_ = &task;

@@ -51,6 +51,8 @@ class Objective {
   /// Replaces the model by that of the same level under another load. The cloth was at `from` when the load
   /// changed, and is now at x.
   void set_model(std::shared_ptr<const LevelModel> model, const Positions& from, const Positions& x);
+  /// The value of the penalty at x [J]; 0 without one.
+  double penalty(const Positions& x) const { return penalty_ ? penalty_->value(x) : 0; }
   /// Sets an additional energy that is not part of the model, such as a position penalty; null for none.
   /// Refers to it until the next call.
   void set_penalty(const BoundEnergy* penalty) {

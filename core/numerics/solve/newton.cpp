@@ -51,6 +51,7 @@ class Newton {
     result_.level = f_.model().level().index;
     result_.message = run.remark;
     result_.factorisations = run.factorisations;
+    result_.analyses = run.analyses;
     result_.flops = run.flops;
     result_.seconds_by_phase = run.spent;
     for (const auto& [phase, seconds] : run.spent) result_.seconds += seconds;
@@ -78,7 +79,8 @@ class Newton {
         return finish({Outcome::cancelled, "stopped on request"});
       if (const double drift = check_.drift(); drift > max_drift)
         return finish({Outcome::infeasible, drift_text(drift, max_drift, f_.model())});
-      if (dirichlet_.is_moving()) move_on_if_relaxed();
+      // A step without descent says nothing of the forces: increase_penalty() follows, which moves pins, too.
+      if (dirichlet_.is_moving() && !stuck_) move_on_if_relaxed();
     }
   }
 
@@ -154,8 +156,7 @@ class Newton {
       }
       if (check_.is_cycling()) damp_cycle();
       if (load_.steps() == p_.max_steps)
-        return End{Outcome::max_steps_reached,
-                   max_steps_text(p_.max_steps, iterate_.force_residual(), check_)};
+        return End{Outcome::max_steps_reached, max_steps_text(result_, p_, check_)};
       follow_contact_forces();
       step_.begin();
       return std::nullopt;
@@ -204,9 +205,8 @@ class Newton {
     load_.report_increment();
     if (dirichlet_.infeasible()) return {Outcome::infeasible, "", "the rest of the cloth is at equilibrium"};
     if (in_tolerance) return {Outcome::converged};
-    const double residual = iterate_.force_residual();
-    return {residual < balanced ? Outcome::converged_to_rounding : Outcome::stalled,
-            rounding_text(residual, p_.force_tolerance, check_.rounding_residual())};
+    return {iterate_.force_residual() < balanced ? Outcome::converged_to_rounding : Outcome::stalled,
+            rounding_text(result_, p_, check_.rounding_residual())};
   }
 
   /// Steps repeat each other: damps the lag of friction, which such steps mostly come from, or h.
@@ -269,7 +269,7 @@ class Newton {
     if (failed) add_to_message(weak_barrier(f_.model().with_stiffness(f_.contacts().stiffness()), result_.x));
     load_.store_progress(result_);
     result_.seconds += watch_.seconds();
-    result_.analyses = step_.factor().analyses();
+    result_.analyses += step_.factor().analyses();
     record_contacts(f_.contacts(), result_);
     return std::move(result_);
   }

@@ -19,8 +19,9 @@ struct LevelRun {
   std::string remark = {};                   ///< beginning of the result's message
   ContactStiffness stiffness = {};           ///< at least this of each contact model [Pa]
   const Hierarchy* hierarchy = nullptr;      ///< of the level, for LinearSolver::multigrid; may be null
-  int factorisations = 0;                    ///< on the level before this minimisation …
-  double flops = 0;                          ///< … and their operations
+  /// On the level before this minimisation, and the operations of the factorisations.
+  int factorisations = 0, analyses = 0;
+  double flops = 0;
 };
 
 /// Minimises the objective F from x (n×3) [m] by implicit steps

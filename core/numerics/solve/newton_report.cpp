@@ -13,6 +13,20 @@ constexpr double suitable_ratio = 10;
 /// A residual that was lowest within this fraction of max_steps still falls.
 constexpr double falling_fraction = 0.1;
 
+bool misses_decrement_alone(const LevelResult& so_far, const NewtonParameters& p) {
+  return so_far.force_residual <= p.force_tolerance && p.decrement_tolerance > 0;
+}
+
+/// Which tolerance is not met.
+std::string unmet(const LevelResult& so_far, const NewtonParameters& p) {
+  if (misses_decrement_alone(so_far, p))
+    return "the decrement, " + three_digits(so_far.decrement) +
+           " m/s at last, was above decrement_tolerance = " + three_digits(p.decrement_tolerance) +
+           " in one of the last three iterations";
+  return "the force residual is " + three_digits(so_far.force_residual) +
+         ", above force_tolerance = " + three_digits(p.force_tolerance);
+}
+
 }  // namespace
 
 IterationRow iteration_row(Objective& objective, const Iterate& iterate, const NewtonStep& step,
@@ -22,7 +36,7 @@ IterationRow iteration_row(Objective& objective, const Iterate& iterate, const N
   row.level = so_far.level;
   row.step = so_far.steps;
   row.iteration = iteration;
-  row.energy = iterate.energy_without_friction();
+  row.energy = iterate.energy_without_friction() - objective.penalty(iterate.x());
   if (objective.is_proxy()) {
     row.proxy_energy = row.energy;
     row.energy = objective.plain_energy(iterate.x());
@@ -55,11 +69,13 @@ std::string blocked_text(const LoadStepper& load) {
          load.limit_text();
 }
 
-std::string max_steps_text(int max_steps, double residual, const EquilibriumCheck& check) {
+std::string max_steps_text(const LevelResult& so_far, const NewtonParameters& p,
+                           const EquilibriumCheck& check) {
+  const std::string begin = "no equilibrium within max_steps = " + std::to_string(p.max_steps) + "; ";
+  if (misses_decrement_alone(so_far, p) && !check.is_within(1)) return begin + unmet(so_far, p);
   const int steps = check.steps_since_lowest();
-  const bool falls = steps < falling_fraction * max_steps;
-  return "no equilibrium within max_steps = " + std::to_string(max_steps) + "; force residual " +
-         three_digits(residual) +
+  const bool falls = steps < falling_fraction * p.max_steps;
+  return begin + "force residual " + three_digits(so_far.force_residual) +
          (falls ? ", which still falls: raise max_steps"
                 : ", which was " + three_digits(check.lowest_residual()) + " " + std::to_string(steps) +
                       " steps before and has not been lower since: more steps are unlikely to help");
@@ -78,10 +94,10 @@ std::string drift_text(double drift, double most, const LevelModel& model) {
               : "pin it, put something under it, start it nearer to what is there, or raise the friction");
 }
 
-std::string rounding_text(double residual, double tolerance, double rounding) {
-  return "the force residual is " + three_digits(residual) +
-         ", above force_tolerance = " + three_digits(tolerance) + ": round-off alone accounts for up to " +
-         three_digits(rounding) + " here, and no step lowers it";
+std::string rounding_text(const LevelResult& so_far, const NewtonParameters& p, double rounding) {
+  return unmet(so_far, p) + ": round-off alone accounts for up to " + three_digits(rounding) +
+         (misses_decrement_alone(so_far, p) ? " of the force residual here" : " here") +
+         ", and no step lowers it";
 }
 
 std::string weak_barrier(const LevelModel& model, const Positions& x) {

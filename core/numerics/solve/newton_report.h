@@ -4,6 +4,7 @@
 
 #include "core/numerics/model/objective.h"
 #include "core/numerics/solve/load_stepper.h"
+#include "core/numerics/step/newton_parameters.h"
 #include "core/numerics/step/newton_step.h"
 
 namespace drape {
@@ -21,11 +22,12 @@ std::string drift_text(double drift, double most, const LevelModel& model);
 /// Why the increment under way ends the level.
 std::string blocked_text(const LoadStepper& load);
 
-/// Tells whether the force residual still falls.
-std::string max_steps_text(int max_steps, double residual, const EquilibriumCheck& check);
+/// Tells which tolerance is not met, and whether the force residual still falls.
+std::string max_steps_text(const LevelResult& so_far, const NewtonParameters& p,
+                           const EquilibriumCheck& check);
 
-/// Why a force residual above the tolerance, of which round-off explains `rounding`, counts as converged.
-std::string rounding_text(double residual, double tolerance, double rounding);
+/// Why a state that misses a tolerance counts as converged: round-off explains `rounding` of its residual.
+std::string rounding_text(const LevelResult& so_far, const NewtonParameters& p, double rounding);
 
 /// A message that names the gap, the barrier stiffness and a suitable one, if a contact model's barrier is
 /// too weak for the load. Empty if no gap is far below d̂, or if a gap closed for another reason. Costs one

@@ -46,12 +46,14 @@ std::vector<LevelResult> Progression::resume(const Problem& problem, const Metho
       result.outcome = Outcome::cancelled;
       result.message = "stopped on request";
       result.factorisations = start.factorisations;
+      result.analyses = start.analyses;
       result.flops = start.flops;
       result.seconds = start.seconds;
       result.seconds_by_phase = spent;
     } else {
       LevelRun run{clock, observer, l < problem.finest(), spent, state, problem.load_stepping.get(), remark};
       run.factorisations = start.factorisations;
+      run.analyses = start.analyses;
       run.flops = start.flops;
       run.hierarchy = &problem.hierarchy;
       if (!anew) run.stiffness = results.back().contact_stiffness;

@@ -200,6 +200,7 @@ Refined refine_safely(const Problem& problem, int level, const Positions& x,
       refined.x = std::move(result.x);
       refined.iterations += result.iterations;
       refined.factorisations += result.factorisations;
+      refined.analyses += result.analyses;
       refined.flops += result.flops;
       const int violating = objective.partition_by_strain_limit(refined.x);
       refined.cancelled = descent.cancelled();

@@ -14,7 +14,7 @@ struct Refined {
   Positions x;
   std::string fault;       ///< why it is infeasible, naming triangles; empty if it is feasible
   bool cancelled = false;  ///< the observer requested a stop
-  int iterations = 0, factorisations = 0;
+  int iterations = 0, factorisations = 0, analyses = 0;
   double flops = 0;
   double seconds = 0;
 };

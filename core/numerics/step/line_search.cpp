@@ -13,6 +13,7 @@ constexpr double sufficient_decrease = 1e-4;
 
 bool LineSearch::search(Iterate& iterate, const ImplicitStep& step, const Positions& direction) {
   slope_ = step.gradient().cwiseProduct(direction).sum();
+  iterate.set_limited_by("");  // that was another direction's
   if (!(slope_ < 0)) return false;
   trial_ = iterate.x() + direction;
   const StepLimit limit = iterate.max_step(trial_);

@@ -64,7 +64,7 @@ void StepController::end_step(double force_residual) {
     if (force_residual > stall_remainder * s_.stall_residual) {
       s_.backed_off = h > min_step_size;
       h = s_.backed_off ? std::max(h / back_off, min_step_size)
-                        : p_.step_size;  // the smallest has not helped
+                        : std::min(p_.step_size, s_.cycle_limit);  // the smallest has not helped
     }
   }
   if (force_residual < recovered_residual || stalls == -max_stall_count) s_.backed_off = false;

@@ -96,6 +96,8 @@ TEST_CASE("The search starts from the largest step that a limit allows, and name
   CHECK(s.line_search.step_length() == 0.3);
   CHECK((s.problem.iterate.x() - x - 0.3 * direction).norm() < 1e-15);
   CHECK(s.problem.iterate.limited_by() == "the limiter");
+  REQUIRE_FALSE(s.along(s.problem.iterate.gradient()));
+  CHECK(s.problem.iterate.limited_by().empty());
 }
 
 TEST_CASE("Where the energy changes by round-off only, the gradient's norm decides") {

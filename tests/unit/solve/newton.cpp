@@ -2,8 +2,10 @@
 
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <limits>
 
 #include "core/kernel/files/message_text.h"
+#include "core/kernel/interfaces/load_stepping.h"
 #include "core/numerics/patterns/generate.h"
 #include "core/numerics/solve/newton_state.h"
 #include "tests/support/keeping_observer.h"
@@ -23,6 +25,39 @@ struct BrokenHessian : Wells {
     sink.add(broken, 0, 0, block);
   }
   int broken;
+};
+
+/// Wells in which no vertex but the first may leave its place: no step that moves another one has an energy.
+struct Frozen : Wells {
+  Frozen(const Positions& centres, const Positions& at) : Wells(centres, 10, 0), place(at) {}
+  double value(const Positions& x) const override {
+    return x.bottomRows(15) == place.bottomRows(15) ? Wells::value(x)
+                                                    : std::numeric_limits<double>::infinity();
+  }
+  Positions place;
+};
+
+/// Allows half of the first motion and all others.
+struct LimitsOnce : NoEnergy {
+  StepLimit max_step(const Positions&, const Positions&) const override {
+    return asked++ == 0 ? StepLimit{0.5, "the limiter"} : StepLimit();
+  }
+  mutable int asked = 0;
+};
+
+/// A schedule at its end.
+struct AtItsEnd : LoadStepping {
+  int increment_count() const override { return 0; }
+  bool equilibrates() const override { return true; }
+  void begin(int, bool) override {}
+  LoadSteppingState state() const override { return {}; }
+  void restore(int, const LoadSteppingState&) override {}
+  std::shared_ptr<const LevelModel> model(int) override { return nullptr; }
+  int increment() const override { return 0; }
+  bool complete() const override { return true; }
+  double time() const override { return 0; }
+  StepLimit advance(int, const Positions&) override { return {}; }
+  bool advance_by(double, int, const Positions&) override { return true; }
 };
 
 const std::vector<NamedEnergy> only_weight = {{"weight", energy_of(Weight(), EnergyRole::external)}};
@@ -260,4 +295,46 @@ TEST_CASE("A minimisation resumed at any step continues bit for bit", "[newton]"
         }
       }
     }
+}
+
+TEST_CASE("The energy of a row is the level's own, without the penalty of pins under way") {
+  struct Kept : Observer {
+    void iteration(const IterationRow& row, const Positions& x) override {
+      energies.push_back(row.energy);
+      states.push_back(x);
+    }
+    std::vector<double> energies;
+    std::vector<Positions> states;
+  } kept;
+  NewtonCase c;
+  const Eigen::Vector3d target = c.level.rest.vertices.row(0).transpose() + Eigen::Vector3d(0, 0, 0.1);
+  const LevelModel model(
+      c.level, Material(),
+      {{"wells", energy_of(Wells(c.centres, 10, 0))}, {"limit", energy_of(Limiter(0.5), EnergyRole::limit)}},
+      {{0, target, 0}});
+  PlainObjective objective(model);
+  minimise(objective, c.level.rest.vertices, {.max_steps = 5}, {Stopwatch(), kept});
+  REQUIRE(kept.states.size() > 2);
+  for (std::size_t k = 0; k < kept.states.size(); ++k)
+    CHECK(kept.energies[k] == Approx(model.energy(kept.states[k])));
+}
+
+TEST_CASE("A step without descent is no equilibrium although the pins reach their targets after it") {
+  NewtonCase c;
+  c.centres.row(0).array() += 1;  // the pin carries far more than the free vertices lack
+  const Eigen::Vector3d target = c.level.rest.vertices.row(0).transpose() + Eigen::Vector3d(0, 0, 0.1);
+  const LevelModel model(c.level, Material(),
+                         {{"wells", energy_of(Frozen(c.centres, c.level.rest.vertices))},
+                          {"limit", energy_of(LimitsOnce(), EnergyRole::limit)}},
+                         {{0, target, 0}});
+  PlainObjective objective(model);
+  AtItsEnd loads;
+  const Stopwatch clock;
+  LevelRun run{clock, c.observer};
+  run.load_stepping = &loads;
+  const LevelResult r = minimise(objective, c.level.rest.vertices, {.force_tolerance = tight}, run);
+  INFO(r.message);
+  CHECK(r.x.row(0) == target.transpose());
+  CHECK(r.outcome == Outcome::stalled);
+  CHECK_THAT(r.message, Catch::StartsWith("the line search found no descent"));
 }

@@ -194,6 +194,22 @@ TEST_CASE("Round-off beyond the load leaves no equilibrium") {
   CHECK_THAT(r.message, Catch::Contains("round-off alone accounts for up to "));
 }
 
+TEST_CASE("A level whose decrement alone is above its tolerance says so") {
+  for (const int max_steps : {3, 400}) {
+    HangingStrip strip(1e6);
+    Observer silent;
+    const LevelResult r = strip.solve({.form = NewtonForm::statics,
+                                       .max_steps = max_steps,
+                                       .force_tolerance = 1e6,
+                                       .decrement_tolerance = 1e-30},
+                                      silent);
+    INFO(r.message);
+    CHECK(r.outcome != Outcome::converged);
+    CHECK_THAT(r.message,
+               Catch::Contains("above decrement_tolerance = 1e-30") && !Catch::Contains("force_tolerance"));
+  }
+}
+
 TEST_CASE("A run that ends at the rounding floor can be resumed bit for bit from any state") {
   KeepingObserver whole;
   whole.keeps_states = true;

@@ -310,6 +310,7 @@ TEST_CASE("What refinement factorises counts as its level's") {
   REQUIRE(results.size() == 2);
   CHECK(results[1].iterations == 0);
   CHECK(results[1].factorisations > 0);
+  CHECK(results[1].analyses > 0);
   CHECK(results[1].flops > 1000);
 }
 

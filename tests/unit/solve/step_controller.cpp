@@ -151,3 +151,13 @@ TEST_CASE("Where steps repeat each other h is limited to a quarter, again and ag
   inertia.end_limit();
   CHECK(inertia.inverse_h2() == 0);
 }
+
+TEST_CASE("Steps that begin with the first h again keep to the limit of a cycle") {
+  StepController c(doubling);
+  StepController::State state = c.state();
+  state.step_size = StepController::min_step_size;
+  state.cycle_limit = 0.25;
+  c.restore(state);
+  for (int k = 0; k < 20; ++k) step(c, 0.5, 2e3);
+  CHECK(c.step_size() == 0.25);
+}
