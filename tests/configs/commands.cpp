@@ -93,6 +93,7 @@ TEST_CASE("check-energy finds an energy or a force that jumps, and passes a law 
   CHECK(check("9*(s1 - 1)^2 + 9*(s2 - 1)^2 + s1*s2").exit_code == 0);
   CHECK(drape_with("check-energy '{type: formula, density: \"5\"}'", folders::source()).exit_code == 0);
   CHECK(check("5*max(g11, 0)^2").exit_code == 0);
+  CHECK_THAT(check("3000*if(g11 > 0.02, (g11 - 0.02)^1.5, 0)").out, !Contains("NOT SMOOTH"));  // steep
 }
 
 TEST_CASE("check finds laws with jumps or with forces at rest, of those that have neither it says nothing") {

@@ -62,12 +62,9 @@ class BlockCholesky {
   /// Whether there is an ordering that the next analysis may reuse.
   bool is_analysed() const { return !analysis_.fixed.empty(); }
 
-  bool has_factor() const { return has_factor_; }
   int unknowns() const { return 3 * static_cast<int>(analysis_.ordering.size()); }
-  /// Floating-point operations of one numeric factorisation, and entries of the factor; both without the
-  /// explicit zeros of supernodes.
+  /// Floating-point operations of one numeric factorisation, without the explicit zeros of supernodes.
   double flops() const { return flops_; }
-  double factor_entries() const { return entries_; }
   /// Number of symbolic analyses.
   int analyses() const { return analysis_.count; }
 

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 
-#include "core/kernel/threads/parallel.h"
 #include "core/numerics/step/factor_cache.h"
+#include "tests/support/any_threads.h"
 #include "tests/support/solve.h"
 
 using namespace drape;
@@ -104,16 +104,13 @@ TEST_CASE("Conjugate gradients that run out of iterations end with what suffices
 
 TEST_CASE("Multigrid has the same bits with any number of threads") {
   const Hanging h;
-  Positions first, x;
-  for (const int threads : {1, 2, 4}) {
-    set_thread_count(threads);
+  same_with_any_threads([&] {
+    Positions x;
     Multigrid m = h.multigrid();
     REQUIRE(m.set(h.matrix, h.shift, h.s.model().fixed()));
     REQUIRE(m.solve(h.b, x) == ConjugateGradients::End::converged);
-    if (threads == 1) first = x;
-    CHECK(x == first);
-  }
-  set_thread_count(0);
+    return x;
+  });
 }
 
 TEST_CASE("Multigrid refuses a matrix that is not positive definite") {
