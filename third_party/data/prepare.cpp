@@ -117,6 +117,9 @@ void write(const std::string& path, const Mesh& mesh) {
 
 void prepare(char** words) {
   const auto number = [&](int i) { return std::stod(words[i]); };
+  require(std::stoi(words[3]) >= 4 && number(4) > 0, "needs FACES of at least 4 and a HEIGHT above 0");
+  require(std::hypot(number(6), number(7)) > 1e-9 * std::abs(number(5)),
+          "cannot stand on its x axis: UP needs a y or z");
   Mesh mesh = read(words[1]);
   std::cout << "\"input_vertices\": " << mesh.number_of_vertices()
             << ", \"input_faces\": " << mesh.number_of_faces();

@@ -29,7 +29,6 @@ TriangleMesh read_cloth(const ClothParameters& c) {
   mesh.vertices *= c.scale;
   if (!c.rotate.isZero(0))
     for (Positions* rows : {&mesh.vertices, &mesh.warp}) *rows *= rotation_matrix(c.rotate).transpose();
-  if (c.scale < 0) mesh.warp *= -1;
   return mesh;
 }
 
@@ -38,24 +37,28 @@ std::vector<std::string> cut(TriangleMesh& cloth, const ClothParameters& c) {
   if (cloth.warp.rows() > 0) cloth.warp = projected_warp(cloth.warp, cloth);
   const bool along_file = c.grain_along != GrainAxis::x;  // was asked for, so that `grain` is 0 if it is null
   if (!c.grain && !along_file && c.grain_regions.empty()) return {};
-  std::vector<std::string> faults = grain_faults(cloth, c.grain_along);
-  if (!faults.empty()) return faults;
+  std::vector<char> asked(cloth.triangles.rows(),
+                          c.grain || along_file);  // whose grain is counted from the axis
   Positions warp = c.grain || along_file ? cut_directions(cloth, c.grain_along, c.grain.value_or(0))
                                          : warp_directions(cloth);
+  constexpr double rounding = 1e-12;  // [m]; a flat pattern that was rotated is flat but for round-off
   for (std::size_t i = 0; i < c.grain_regions.size(); ++i) {
     const GrainRegionParameters& region = c.grain_regions[i];
     const Positions own = cut_directions(cloth, c.grain_along, region.grain);
     bool any = false;
     for (Eigen::Index t = 0; t < warp.rows(); ++t) {
       const Eigen::Array3d centroid = cloth.vertices(cloth.triangles.row(t), Eigen::all).colwise().mean();
-      if ((centroid < region.lower.array()).any() || (centroid > region.upper.array()).any()) continue;
-      warp.row(t) = own.row(t), any = true;
+      if ((centroid < region.lower.array() - rounding).any() ||
+          (centroid > region.upper.array() + rounding).any())
+        continue;
+      warp.row(t) = own.row(t), asked[t] = any = true;
     }
     if (!any)
       return {"\"grain_regions\": entry " + std::to_string(i) + " has no triangle's centroid; widen its box"};
   }
-  cloth.warp = warp;
-  return {};
+  std::vector<std::string> faults = grain_faults(cloth, c.grain_along, asked);
+  if (faults.empty()) cloth.warp = warp;
+  return faults;
 }
 
 TriangleMesh make_cloth(const ClothParameters& c) {

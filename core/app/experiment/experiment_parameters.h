@@ -68,7 +68,9 @@ struct StartParameters {
   Eigen::Vector3d transformed(const Eigen::Vector3d& rest, double noise = 0) const;
   /// How the start's file is read beside this cloth.
   FileCoordinates file_coordinates(const ClothParameters& cloth) const {
-    return {unit.value_or(cloth.unit), up.value_or(cloth.up)};
+    // A polygon's unit is that of its points; a mesh of it is drape's own, in metres.
+    const FileCoordinates other = cloth.shape == "file" ? FileCoordinates(cloth) : FileCoordinates();
+    return {unit.value_or(other.unit), up.value_or(other.up)};
   }
   static void declare(Declaration<StartParameters>& d);
 };

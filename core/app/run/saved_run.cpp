@@ -74,8 +74,9 @@ ConfigNode saved_config(const Experiment& experiment) {
   const ExperimentParameters& p = experiment.parameters;
   if (!p.start.file.empty()) {
     StartParameters start = p.start;  // of a copy of the file as it was
-    start.unit = start.unit.value_or(p.cloth.unit);
-    start.up = start.up.value_or(p.cloth.up);
+    const FileCoordinates own = start.file_coordinates(p.cloth);
+    start.unit = own.unit;
+    start.up = own.up;
     set_path(config, "start", schema_of<StartParameters>().write(&start));
     set_path(config, "start.file", ConfigNode::of("start.ply"));
   }

@@ -93,16 +93,19 @@ std::optional<std::size_t> followed_by(const Experiment& e, std::size_t pin) {
   return obstacles && !named.empty() ? obstacles->index_of(named) : std::nullopt;
 }
 
-/// Another pin of a pin's vertices on a level that does not follow its obstacle; empty without one.
+/// Another pin that shares vertices with this one on a level and does not follow as it does; empty without
+/// one.
 std::string conflict(const Experiment& e, int pin, const Level& level, const Level& coarsest) {
   const std::vector<PinParameters>& pins = e.parameters.pins;
   std::vector<char> own(level.vertex_count(), 0);
   for (const int v : selected_vertices(pins[pin], level, coarsest)) own[v] = 1;
   for (std::size_t k = 0; k < pins.size(); ++k) {
-    if (followed_by(e, k) == followed_by(e, pin)) continue;
+    const bool same = followed_by(e, k) == followed_by(e, pin);
+    if (same && pins[k].follow.vertices == pins[pin].follow.vertices) continue;
+    const char* how = same ? " follows by other vertices" : " does not follow";
     for (const int v : selected_vertices(pins[k], level, coarsest))
       if (own[v])
-        return "pin " + std::to_string(k) + " does not follow, but both select vertex " + std::to_string(v) +
+        return "pin " + std::to_string(k) + how + ", but both select vertex " + std::to_string(v) +
                " of level " + std::to_string(level.index) + "; let their regions share no vertex";
   }
   return "";

@@ -230,10 +230,10 @@ void check_start(const Experiment& e, const SceneSummary& s, Warnings& warnings)
                                        : "give the \"unit\" of the start's file, or its \"scale\""));
 }
 
-void check_welded(const Experiment& e, const Level& coarsest, double median_edge, Warnings& warnings) {
+void check_welded(const Experiment& e, const Level& coarsest, double edge, Warnings& warnings) {
   if (e.parameters.cloth.shape != "file") return;
   constexpr double same_place = 1e-4;  // of an edge: files round coordinates
-  const Coincidence found = coincident_border(coarsest, same_place * median_edge);
+  const Coincidence found = coincident_border(coarsest, same_place * edge);
   if (found.count == 0) return;
   warnings.add("cloth", std::to_string(found.count) +
                             (found.count == 1 ? " border vertex lies" : " border vertices lie") +
@@ -267,11 +267,11 @@ ConfigErrors plausibility_warnings(const Experiment& e, const Scene& scene, cons
   ConfigErrors all;
   Warnings warnings(e, all);
   check_size(e.parameters, s, warnings);
-  check_welded(e, scene.hierarchy.levels[0], s.median_edge, warnings);
+  const double coarse_edge = std::ldexp(s.median_edge, s.level);
+  check_welded(e, scene.hierarchy.levels[0], coarse_edge, warnings);
   check_material(e.parameters, s, warnings);
   check_membrane(e, warnings);
   check_measured(e, s.median_edge, warnings);
-  const double coarse_edge = std::ldexp(s.median_edge, s.level);
   check_nearest(e, "pins", e.parameters.pins, scene.hierarchy.levels[0], coarse_edge, warnings);
   check_nearest(e, "handles", e.parameters.handles, scene.hierarchy.levels[0], coarse_edge, warnings);
   check_start(e, s, warnings);

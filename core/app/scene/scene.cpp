@@ -53,14 +53,15 @@ Positions read_start(const Experiment& e, const Level& coarsest, ConfigErrors& e
   return coarsest.rest.vertices;
 }
 
-/// The untransformed initial shape of every level: the rest shape, or that of the file.
+/// The untransformed initial shape of every level: the rest shape, or that of the file, which finer levels
+/// follow as states do. Edge midpoints would strain the cloth where the refiner moves rest positions.
 std::vector<Positions> start_shapes(const Experiment& e, const Hierarchy& hierarchy, ConfigErrors& errors) {
   const std::string& file = e.parameters.start.file;
   std::vector<Positions> shapes;
   for (const Level& level : hierarchy.levels)
     shapes.push_back(file.empty()       ? level.rest.vertices
                      : level.index == 0 ? read_start(e, level, errors)
-                                        : Positions(hierarchy.midpoints[level.index - 1] * shapes.back()));
+                                        : Positions(hierarchy.linear[level.index - 1] * shapes.back()));
   return shapes;
 }
 

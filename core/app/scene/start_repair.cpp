@@ -6,6 +6,7 @@
 #include "core/app/files/yaml_file.h"
 #include "core/app/scene/scene.h"
 #include "core/kernel/files/message_text.h"
+#include "core/numerics/mesh/mesh_faults.h"
 #include "core/numerics/model/required.h"
 
 namespace drape {
@@ -46,8 +47,12 @@ double winding_number(const TriangleMesh& mesh, const Vector3d& p) {
 }  // namespace
 
 bool is_inside(const Positions& points, const TriangleMesh& mesh) {
+  // What is open encloses what it surrounds almost wholly, as a scan with holes does: a cloth may lie in a
+  // bowl.
+  const bool open = !border_half_edges(mesh.triangles, static_cast<int>(mesh.vertices.rows())).empty();
+  const double enclosed = open ? 0.9 : 0.5;
   for (Eigen::Index i = 0; i < points.rows(); ++i)
-    if (winding_number(mesh, points.row(i).transpose()) > 0.5) return true;
+    if (winding_number(mesh, points.row(i).transpose()) > enclosed) return true;
   return false;
 }
 

@@ -63,7 +63,8 @@ Positions cut_directions(const TriangleMesh& rest, GrainAxis along, double degre
   return warp;
 }
 
-std::vector<std::string> grain_faults(const TriangleMesh& rest, GrainAxis along) {
+std::vector<std::string> grain_faults(const TriangleMesh& rest, GrainAxis along,
+                                      const std::vector<char>& triangles) {
   if (along == GrainAxis::u && rest.uv.rows() == 0)
     return {"\"grain_along: u\" needs a mesh with texture coordinates; write \"grain_along: x\""};
   if (along == GrainAxis::file && rest.warp.rows() == 0)
@@ -71,7 +72,7 @@ std::vector<std::string> grain_faults(const TriangleMesh& rest, GrainAxis along)
         "\"grain_along: file\" needs a PLY file whose faces have warp_x, warp_y and warp_z; write "
         "\"grain_along: x\""};
   for (Eigen::Index t = 0; t < rest.triangles.rows(); ++t)
-    if (direction(rest, t, Sides(rest, t), along).isZero(0))
+    if (triangles[t] && direction(rest, t, Sides(rest, t), along).isZero(0))
       return {"\"grain\" has no direction in triangle " + std::to_string(t) +
               (along == GrainAxis::u
                    ? ", whose texture coordinates have no area; unwrap it, or write \"grain_along: x\""

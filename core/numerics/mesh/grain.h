@@ -19,8 +19,9 @@ Positions warp_directions(const TriangleMesh& rest);
 /// triangle's front. Where texture coordinates have no area, the x axis stands for u.
 Positions cut_directions(const TriangleMesh& rest, GrainAxis along, double degrees);
 
-/// The first triangle in which the axis has no direction, and why.
-std::vector<std::string> grain_faults(const TriangleMesh& rest, GrainAxis along);
+/// The first of the triangles marked in `triangles` in which the axis has no direction, and why.
+std::vector<std::string> grain_faults(const TriangleMesh& rest, GrainAxis along,
+                                      const std::vector<char>& triangles);
 
 /// Directions of the coarse mesh for the four parts of each triangle, within the fine mesh's planes. Without
 /// rows if there are none.

@@ -159,6 +159,9 @@ Obstacle Obstacle::of(const ObstacleParameters& p, int number, const ObstacleMes
   ObstacleGeometry& geometry = body.geometry;
   geometry.frames = meshes.frames;
   geometry.pose = {p.scale, p.rotate, p.translate};
+  if (p.frame != 0 && p.animation.empty())
+    throw std::runtime_error(
+        fault_text(body.name, "\"frame\" is of an \"animation\", which it does not have; leave it out"));
   if (p.meshed_shape == "box") {
     geometry.local_scale = p.size;
   } else if (p.meshed_shape == "sphere") {

@@ -202,6 +202,12 @@ TEST_CASE("a pin that cannot follow is refused with the reason") {
       refusal(two_pins),
       Contains("pin 0 follows obstacle \"body\", which pin 1 does not follow, but both select vertex 40 "
                "of level 0; let their regions share no vertex"));
+  std::string other_vertices = sheet_on(ball, turn, "body");
+  other_vertices.insert(
+      other_vertices.find("]\nenergies"),
+      ", {region: nearest, point: [0.1, 0.1, 0], follow: {obstacle: body, vertices: [5, 17]}}");
+  CHECK_THAT(refusal(other_vertices),
+             Contains("which pin 1 follows by other vertices, but both select vertex 40"));
   std::string unnamed = sheet_on("{meshed_shape: sphere, radius: 0.1, subdivisions: 3}",
                                  replaced(turn, "body", "0"), "{obstacle: 0}");
   unnamed.insert(unnamed.find("]\nenergies"), ", {region: nearest, point: [0.1, 0.1, 0]}");

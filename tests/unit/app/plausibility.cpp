@@ -36,6 +36,14 @@ std::string warnings_of(const std::string& yaml) {
   return all;
 }
 
+/// The triangles whose centroids are below this height.
+Triangles faces_below(const TriangleMesh& mesh, double height) {
+  std::vector<int> kept;
+  for (int t = 0; t < mesh.triangles.rows(); ++t)
+    if (mesh.vertices(mesh.triangles.row(t), 2).mean() < height) kept.push_back(t);
+  return mesh.triangles(kept, Eigen::all);
+}
+
 std::string summary_text(const std::string& yaml) { return text_of(summary_of(*scene_from(yaml).scene)); }
 
 }  // namespace
@@ -96,6 +104,12 @@ TEST_CASE("What no fabric has gets a warning that says what is usual, before a r
                "are in metres; if its lengths are in millimetres, divide every length by 1000\n"));
   const std::string around = "obstacles: [{name: crate, meshed_shape: box, size: [3, 3, 3]}]\n";
   CHECK_THAT(warnings_of(scene_yaml(square, around)), Contains("the cloth starts inside the obstacle crate"));
+  const Scratch folder;
+  TriangleMesh tray = unit_box();  // without its lid
+  tray.triangles = faces_below(tray, 0.4);
+  write_mesh(folder / "tray.ply", tray);
+  CHECK(warnings_of(scene_yaml(square, "obstacles: [{name: tray, scale: 3, mesh: " +
+                                           (folder / "tray.ply").string() + "}]\n")) == "");
   CHECK_THAT(warnings_of(replaced(scene_yaml(square), "neo_hookean, ", "")),
              Contains("no energy resists stretching"));
   // In centimetres, or in one of two units, or in none.
@@ -192,6 +206,11 @@ TEST_CASE("Border vertices at one place are named, as long as they are not welde
              Contains("2: 4 border vertices lie on another one, as ") &&
                  Contains("(counted from 0) at (0.3, 0, 0): the cloth is not joined there; if it should be, "
                           "weld them in the file"));
+  both.vertices.bottomRows(16).col(1).array() += 5e-6;  // near for the file's edges, far for a fine level's
+  write_mesh(folder / "both.obj", both);
+  for (const char* levels : {"levels: 1", "levels: 4"})
+    CHECK_THAT(warnings_of(replaced(scene_yaml(cloth, "", 3.18e-4, "[]"), "levels: 1", levels)),
+               Contains("the cloth is not joined there"));
   both.vertices.bottomRows(16).col(0).array() += 1e-3;
   write_mesh(folder / "both.obj", both);
   CHECK(warnings_of(scene_yaml(cloth, "", 3.18e-4, "[]")) == "");

@@ -46,7 +46,7 @@ TEST_CASE("grain: warp turns counter-clockwise from x, in every triangle") {
   }
   mesh.warp.resize(0, 3);
   CHECK(warp_directions(mesh).col(0).isConstant(1));
-  CHECK(grain_faults(mesh, GrainAxis::x).empty());
+  CHECK(grain_faults(mesh, GrainAxis::x, std::vector<char>(mesh.triangles.rows(), true)).empty());
 }
 
 TEST_CASE("grain: strains of a material's frame follow the grain") {
@@ -154,6 +154,31 @@ TEST_CASE("grain: parts of a cloth may be cut at another angle, on every level")
   CHECK_THROWS_WITH(scene("[{lower: [1, 1, 1], upper: [2, 2, 2], grain: 55}]"),
                     Catch::Contains("\"grain_regions\": entry 0 has no triangle's centroid"));
   CHECK_THROWS_WITH(scene("[{lower: [0, 0, 0], upper: [2, 2, 2]}]"), Catch::Contains("\"grain\""));
+}
+
+TEST_CASE("grain: a region's box holds what a rotation puts beside it by round-off") {
+  const Scratch folder;
+  TriangleMesh mesh = grid({0.4, 0.4}, 5, 5, Diagonals::one_way);
+  mesh.vertices.col(1).array() -= 0.2;
+  write_mesh(folder / "flat.ply", mesh);
+  const Solved s = scene_from(
+      experiment("{shape: file, rotate: [90, 0, 0], grain: 0, file: " + (folder / "flat.ply").string() +
+                 ", grain_regions: [{lower: [-1, 0, -1], upper: [1, 0, 1], grain: 45}]}"));
+  const auto along = s.scene->hierarchy.levels[0].rest.warp.col(0).array();
+  CHECK((along - std::cos(M_PI / 4)).abs().maxCoeff() < 1e-9);
+}
+
+TEST_CASE("grain: a region needs an axis in its own triangles alone") {
+  const Scratch folder;
+  TriangleMesh mesh = unit_box();  // two of its faces are normal to x
+  write_mesh(folder / "box.ply", mesh);
+  const auto box = [&](const std::string& lower, const std::string& upper) {
+    return scene_from(experiment("{shape: file, file: " + (folder / "box.ply").string() +
+                                 ", grain_regions: [{lower: " + lower + ", upper: " + upper +
+                                 ", grain: 30}]}"));
+  };
+  CHECK_NOTHROW(box("[-1, -1, 0.4]", "[1, 1, 1]"));
+  CHECK_THROWS_WITH(box("[0.4, -1, -1]", "[1, 1, 1]"), Catch::Contains("which is normal to x"));
 }
 
 TEST_CASE("grain: a PLY file's faces may have directions of their own, which turn with the file") {
