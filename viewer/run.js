@@ -7,9 +7,10 @@ import {View} from './view.js';
 
 /// "after 39 s" and the like of a method: the sentence that one wants to know, beside the cloth.
 function sentence(run, row) {
-  const method = run.results.methods[row.method], last = method.levels?.at(-1), good = converged(method.status || '');
+  const method = run.results.methods[row.method], last = method.levels?.at(-1), good = converged(method.status || ''), tolerance = run.tolerance(row.method);
   const rest = !last ? method.status || 'no level is complete' : !good ? `not at rest: ${method.status.replace(/_/g, ' ')}, force residual ${number(last.force_residual)}`
-    : method.status === 'converged' && run.tolerance ? `at rest to ${Number(run.tolerance.toPrecision(3))}` : 'at rest to rounding';
+    : method.status !== 'converged' || !tolerance ? 'at rest to rounding'
+    : tolerance < 1 ? `at rest to ${Number(tolerance.toPrecision(3))}` : `ended at force residual ${number(last.force_residual)}`;  // 1: no balance is asked for
   const crossing = known(row.intersections) ? counted(row.intersections, 'intersection') : null;
   const preview = known(row.preview_seconds) ? h('span', {}, 'preview after ', h('b', {class: 'preview-time'}, seconds(row.preview_seconds))) : null;
   const end = last ? h('span', {}, 'end after ', h('b', {}, seconds(row.seconds))) : null;
@@ -42,7 +43,8 @@ function hero(run) {
   }
   for (const method of run.view.methods)
     for (const level of method.levels) Object.assign(level.states.at(-1), {total: totals[method.name + ' ' + level.level] ?? null});
-  const view = window.drapeViewer = new View(run.view, {first: run.view.methods[0].name, beside: true, picture});
+  const first = run.view.methods.find(method => method.levels.length).name;
+  const view = window.drapeViewer = new View(run.view, {first, beside: true, picture});
   return h('section', {class: 'hero', id: 'in-3d'}, view.element, facts, view.controls);
 }
 
@@ -105,7 +107,8 @@ function levelTable(run) {
 /// How close coarse levels are to finer ones, with the scene's start in place of the coarse level as a rival.
 function consistency(run) {
   const columns = metricColumns(run.results.metrics, 'pair').filter(column => column.shown !== 'stored');
-  const pairs = run.order.flatMap(method => (run.results.methods[method].consistency || []).map(pair => ({method, levels: `${pair.coarse} → ${pair.fine}`, ...pair})));
+  const pairs = run.order.flatMap(method => (run.results.methods[method].consistency || []).map(pair => ({method, levels: `${pair.coarse} → ${pair.fine}`,
+    ...flat(pair, ['of_start']), of_start: flat(pair.of_start ?? {}, [])})));
   if (!pairs.length || !columns.length) return null;
   const starts = unique(pairs.map(pair => pair.levels)).map(levels => ({levels, method: 'flat start', ...Object.fromEntries(columns.map(({name, better}) => {
     const values = pairs.filter(pair => pair.levels === levels).map(pair => pair.of_start?.[name]).filter(known);
@@ -146,8 +149,8 @@ function convergence(run) {
   const draw = kind => {
     const [, x, y, point] = plots[kind], lines = series.map(line => ({...look(line), points: line.rows.map(row => { const [a, b] = point(line, row); return {x: a, y: b}; })}));
     const all = lines.flatMap(line => line.points.map(p => p.x)).filter(known);
-    if (y === residual && run.tolerance && all.length) lines.push({label: 'tolerance', colour: 'var(--soft)', dash: '5 4', width: 1,
-      points: [Math.min(...all), Math.max(...all)].map(v => ({x: v, y: run.tolerance}))});
+    for (const tolerance of y === residual && all.length ? unique(run.order.map(run.tolerance)).filter(known) : [])
+      lines.push({label: 'tolerance', colour: 'var(--soft)', dash: '5 4', width: 1, points: [Math.min(...all), Math.max(...all)].map(v => ({x: v, y: tolerance}))});
     chart.draw({x, y, series: lines});
   };
   draw('residual_seconds');
@@ -164,12 +167,12 @@ function convergence(run) {
     fold('Settings: the experiment with all defaults', h('pre', {tabindex: 0}, run.config || 'config.yaml was not stored.')));
 }
 
-/// {results, table, measures, styles, step_sizes, errors and iterations as CSV, config, pictures, notes, view}.
+/// {results, table, measures, styles, step_sizes, tolerances, errors and iterations as CSV, config, pictures, notes, view}.
 export function runPage(data) {
   const {results, table} = data;
   results.methods ||= {};
   const run = {...data, rows: table.rows.filter(row => results.methods[row.method]), errors: rowsOf(data.errors), iterations: rowsOf(data.iterations),
-    tolerance: results.tolerance?.force_residual, of: {measures: data.measures, metrics: results.metrics}};
+    tolerance: name => data.tolerances?.[name] ?? results.tolerance?.force_residual, of: {measures: data.measures, metrics: results.metrics}};
   run.order = run.rows.map(row => row.method);
   return [h('header', {}, h('h1', {}, results.experiment || 'Unnamed experiment'), results.description ? h('p', {class: 'lead'}, results.description) : null),
     run.order.length ? hero(run) : h('p', {class: 'absent'}, 'The run holds no method’s results yet.'),

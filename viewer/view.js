@@ -3,6 +3,9 @@ import {embedded, gradient, paint, positions, scalars, triangles} from './blocks
 import {Scene} from './scene.js';
 import {choice, count, fold, h, save} from './text.js';
 
+/// So many digits, or a whole number where these do not suffice: no exponent.
+const digits = (value, n) => value < 10 ** n - .5 ? value.toPrecision(n) : count(value);
+
 export class View {
   /// `load(name)` is a promise of a block's bytes. Of the methods `first` is shown, or all; with `beside` the panel of a state
   /// has that of the method's end beside it.
@@ -206,7 +209,7 @@ export class View {
   label(box, {method, end, found}) {
     const {iteration = null, seconds = null, total = null} = found ? found.state : {}, running = found && found.level.status === 'running';
     const text = !found ? 'not reached yet' : [`level ${found.level.level}` + (running ? ', running' : ''),
-      ...(total !== null ? [`after ${total.toPrecision(2)} s`] : [iteration === null ? null : `${iteration} iterations`, seconds === null ? null : `${seconds.toPrecision(3)} s`])]
+      ...(total !== null ? [`after ${digits(total, 2)} s`] : [iteration === null ? null : `${iteration} iterations`, seconds === null ? null : `${digits(seconds, 3)} s`])]
       .filter(part => part).join(', ');
     box.replaceChildren(h('b', {}, method.name + (end ? ', end' : '')), h('span', {}, text));
   }

@@ -4,7 +4,7 @@ import fs from 'node:fs';
 import path from 'node:path';
 import {before} from 'node:test';
 import {pathToFileURL} from 'node:url';
-import {contactConfig, downloaded, drawnShare, faultsOf, guarded, newPage, onFirstScreen, openPage, run, scratch, screens, test, until} from './support.mjs';
+import {checkWhole, contactConfig, downloaded, drawnShare, guarded, newPage, onFirstScreen, openPage, run, scratch, screens, test, until} from './support.mjs';
 
 const folder = scratch(), report = pathToFileURL(path.join(folder, 'out/report.html')).href;
 
@@ -39,11 +39,7 @@ test('the first screen has the cloth and the time of the preview, wide and narro
     for (const part of ['#viewer-canvas', '.preview-time']) assert.ok(await onFirstScreen(page, part), `${part} at ${width}`);
     assert.match(await page.locator('.sentences li').first().textContent(), /^pcs: preview after [0-9.]+ s, end after [0-9.]+ s, 289 vertices, 0 intersections, at rest to 0.01\.$/);
     assert.ok(await drawnShare(page, '#viewer-canvas') > .05);
-    await page.evaluate(() => document.querySelectorAll('details').forEach(part => { part.open = true; }));
-    await until('the plots are drawn', () => page.evaluate(() => document.querySelectorAll('.plot svg').length >= 1));
-    assert.ok(await page.evaluate(() => document.documentElement.scrollWidth <= innerWidth));
-    assert.deepEqual(await faultsOf(page), []);
-    await page.context().close();
+    await checkWhole(page, 1);
   }
 });
 
@@ -277,6 +273,38 @@ test('printed, and without WebGL', async () => {
   await until('the sentence', async () => (await bare.locator('#viewer-note').textContent()).includes('no WebGL'));
   assert.ok(!(await bare.locator('#viewer-stage').isVisible()));
   assert.ok(await bare.locator('img.fallback').isVisible());
+});
+
+/// The report of a copy of the run with other results.
+async function edited(name, edit) {
+  fs.cpSync(path.join(folder, 'out'), path.join(folder, name), {recursive: true});
+  const file = path.join(folder, name, 'results.json'), results = JSON.parse(fs.readFileSync(file));
+  edit(results.methods);
+  fs.writeFileSync(file, JSON.stringify(results));
+  await writeReport(name);
+  return openPage(pathToFileURL(path.join(folder, name, 'report.html')).href);
+}
+
+test('minutes are written in seconds, without exponents', async () => {
+  const {page} = await edited('long', methods => { methods.pcs.levels[0].seconds = 123.4; });
+  await until('the label', async () => (await page.locator('#viewer-labels').textContent()).includes('after 123 s'));
+});
+
+test('the view begins with the first method that has a state', async () => {
+  const {page, state} = await edited('failed', methods =>
+    Object.assign(methods.pcs, {status: 'failed', levels: [{level: 0, status: 'failed', message: 'no memory'}], consistency: []}));
+  assert.deepEqual((await state()).panels.map(p => [p.method, p.vertices]), [['cascadic', 81], ['cascadic', 289]]);
+  assert.ok(await drawnShare(page, '#viewer-canvas') > .05);
+});
+
+test('a method has its own tolerance, and one that asks for no balance is not called at rest', async () => {
+  await run(folder, 'run', contactConfig, '--out', 'own', '--quiet', '--no-report', '--threads', '1', '--method', 'all', '--set', 'snapshots=0',
+    '--set', 'methods.newton.newton.force_tolerance=5e-2', '--set', 'methods.cascadic.newton.force_tolerance=1e9');
+  await writeReport('own');
+  const {page} = await openPage(pathToFileURL(path.join(folder, 'own/report.html')).href);
+  const said = await page.locator('.sentences').textContent();
+  assert.match(said, /newton: .* at rest to 0\.05\./);
+  assert.match(said, /cascadic: [^:]* ended at force residual [0-9.e-]+\./);
 });
 
 /// Writes four snapshots of pcs's level 0 into the run, as a recorded run has them: the sheet sinking to its last state.

@@ -1,4 +1,5 @@
 // What the browser tests share: tests that end what they start, the drape command, Chromium, and pixels.
+import assert from 'node:assert/strict';
 import {spawn} from 'node:child_process';
 import fs from 'node:fs';
 import {createRequire} from 'node:module';
@@ -185,8 +186,17 @@ export async function openPage(url, options = {}) {
   return {page, heard, state: () => page.evaluate(() => window.drapeViewer.state())};
 }
 
+/// Checks that a page, with all of it unfolded and so many plots drawn, fits its width and has no serious fault; closes it.
+export async function checkWhole(page, plots) {
+  await page.evaluate(() => document.querySelectorAll('details').forEach(part => { part.open = true; }));
+  await until('the plots are drawn', async () => await page.evaluate(() => document.querySelectorAll('.plot svg').length) >= plots);
+  assert.ok(await page.evaluate(() => document.documentElement.scrollWidth <= innerWidth));
+  assert.deepEqual(await faultsOf(page), []);
+  await page.context().close();
+}
+
 /// Serious faults of accessibility that axe-core finds in a page.
-export async function faultsOf(page) {
+async function faultsOf(page) {
   const {source} = createRequire(path.join(process.env.DRAPE_NODE_MODULES, '/'))('axe-core');
   await page.evaluate(source);
   const {violations} = await page.evaluate(() => window.axe.run());

@@ -4,7 +4,7 @@ import fs from 'node:fs';
 import path from 'node:path';
 import {before} from 'node:test';
 import {pathToFileURL} from 'node:url';
-import {contactConfig, downloaded, drawnShare, faultsOf, guarded, listenTo, newPage, onFirstScreen, run, scratch, screens, source, test, until} from './support.mjs';
+import {checkWhole, contactConfig, downloaded, drawnShare, guarded, listenTo, newPage, onFirstScreen, run, scratch, screens, source, test, until} from './support.mjs';
 
 const folder = scratch();
 
@@ -33,11 +33,7 @@ test('24 runs fit one screen of thumbnails, and nothing scrolls sideways', async
     assert.ok(await onFirstScreen(page, '#matrix'), `at ${screen.viewport.width}`);
     assert.ok(await drawnShare(page, '#matrix') > .1);
     assert.equal(await page.locator('#counts').textContent(), '24 runs of 8 variations: 24 converged.');
-    await page.evaluate(() => document.querySelectorAll('details').forEach(part => { part.open = true; }));
-    await until('the plots are drawn', () => page.evaluate(() => document.querySelectorAll('.plot svg').length === 2));
-    assert.ok(await page.evaluate(() => document.documentElement.scrollWidth <= innerWidth));
-    assert.deepEqual(await faultsOf(page), []);
-    await page.context().close();
+    await checkWhole(page, 2);
   }
 });
 

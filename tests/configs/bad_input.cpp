@@ -369,6 +369,9 @@ TEST_CASE("keys that the shape or the region does not read, and empty items, are
       {"cloth: {vertices: 400, columns: 9, rows: 9}",
        "5:19: \"vertices\" in cloth is not read beside \"columns\" and \"rows\"; leave it out, or set them "
        "to 0"},
+      {"cloth: {vertices: 400, triangulation: equilateral, rows: 9}",
+       "5:19: \"vertices\" in cloth is not read beside \"columns\" and \"rows\"; leave it out, or set them "
+       "to 0"},
       {"cloth: {triangulation: random, rows: 9}",
        "5:38: \"rows\" in cloth is not read with \"triangulation: random\"; \"vertices\" counts them"},
       {"cloth: {shape: disc, seed: 2}",
@@ -402,6 +405,23 @@ TEST_CASE("two keys of a schedule may not set one parameter") {
   for (const std::string first : {"energies.2.acceleration.2", "energies.gravity.acceleration"})
     CHECK(said(first, z) ==
           "error: e.yaml:17:3: key \"" + z + "\" sets what key \"" + first + "\" sets; remove one of them\n");
+}
+
+TEST_CASE("an option for what a schedule sets would have no effect") {
+  const std::string schedule =
+      "--set 'schedule={keys: [{parameter: friction, times: [0, 1], values: [0.1, 0.2]}]}' ";
+  const std::string acceleration =
+      "--set 'schedule={keys: [{parameter: energies.gravity.acceleration, times: [0, 1], values: [[0, 0, "
+      "-5], "
+      "[0, 0, -9]]}]}' ";
+  const std::string weighted =
+      replaced(small_experiment(), "gravity]", "{type: gravity, acceleration: [0, 0, -9]}]");
+  for (const char* option : {"energies.2.acceleration=[0,0,-1]", "energies.gravity.acceleration.2=-1"})
+    CHECK_THAT(said_of(weighted, acceleration + "--set " + option), Catch::Contains("has no effect"));
+  CHECK_THAT(
+      said_of(small_experiment(), schedule + "--set friction=0.5"),
+      Catch::Contains("--set friction: has no effect, since a schedule sets it; set the schedule's values, "
+                      "as in --set schedule.keys.0.values=…"));
 }
 
 TEST_CASE("a results folder that cannot be used") {

@@ -337,15 +337,9 @@ const std::string sheets_run =
     "newton.max_steps=8 --set start.translate=[-0.2,-0.2,0.1015]";
 const std::string go_on = "run --resume out --quiet --no-report --threads 1 --checkpoint 0";
 
-long rows_in(const fs::path& file) {
-  std::ifstream rows(file);  // a run that begins anew may remove it at any time
-  return std::count(std::istreambuf_iterator<char>(rows), {}, '\n');
-}
-
-/// Waits until the run has made some steps.
+/// Waits until the run has taken that many steps.
 void wait_for_steps(Command& command, const fs::path& out, int steps) {
-  command.wait_until(out.string() + " has " + std::to_string(steps) + " steps",
-                     [&] { return rows_in(out / "iterations.csv") > steps; });
+  wait_for_lines(command, out / "iterations.csv", steps + 1);
 }
 
 /// What a run of the sheets leaves that was interrupted in the middle.
@@ -367,7 +361,7 @@ TEST_CASE("A run that is killed at random moments resumes every time, with equal
   REQUIRE(check.wait().exit_code == 0);
   const double to_begin = check.processor_time();
   drape_ends(replaced(sheets_run, "--out out", "--out whole"), folder, 1);
-  const long all_steps = rows_in(folder / "whole/iterations.csv");
+  const long all_steps = lines_in(folder / "whole/iterations.csv");
 
   std::mt19937 random(5);
   int kills = 0, cut = 0;
@@ -383,7 +377,7 @@ TEST_CASE("A run that is killed at random moments resumes every time, with equal
                          [&] { return command.processor_time() > part * to_begin; });
     else
       wait_for_steps(command, folder / "out",
-                     static_cast<int>(rows_in(folder / "out/iterations.csv") + part * all_steps / 20));
+                     static_cast<int>(lines_in(folder / "out/iterations.csv") + part * all_steps / 20));
     command.send(SIGKILL);
     cut += command.wait().exit_code == 128 + SIGKILL;
   }
@@ -448,8 +442,7 @@ TEST_CASE("A damaged checkpoint is replaced by its predecessor, with a warning")
   interrupt_sheets(folder);
   drape_ends(replaced(sheets_run, "--out out", "--out whole"), folder, 1);
   folder.write("out/checkpoint/state.bin", "drapestt");
-  CHECK_THAT(drape_ends(go_on, folder, 1).err,
-             Contains("state.bin: is cut short; going on from the checkpoint before it"));
+  CHECK_THAT(drape_ends(go_on, folder, 1).err, Contains("state.bin: is cut short; going on from "));
   check_equal(folder / "out", folder / "whole");
 }
 
@@ -560,6 +553,14 @@ TEST_CASE("A checkpoint whose values do not fit its experiment is refused before
   refused("the experiment has no method", [](auto& c) { c.methods[0] = "x"; });
   refused("the level that the methods begin with", [](auto& c) { c.first_level = -1; });
   refused("the level under way", [](auto& c) { c.state.level = 1 << 30; });
+  refused("the lag of friction", [&](auto& c) { under_way(c).contacts.damping = {0.5, {}}; });
+  refused("the lag of friction", [&](auto& c) { under_way(c).contacts.damping.fraction = std::nan(""); });
+  refused("the lag of friction", [&](auto& c) { under_way(c).contacts.damping.lag.resize(7); });
+  refused("the lag of friction", [&](auto& c) {
+    FrictionContact contact{};
+    contact.vertices = {1 << 20, -1, -1, -1};
+    under_way(c).contacts.damping.lag.assign(under_way(c).contacts.stiffness.size(), {{contact}});
+  });
   refused("the level under way", [&](auto& c) { under_way(c).so_far.level += 1; });
   refused("the level before the one under way", [](auto& c) {
     c.state.finished.pop_back();

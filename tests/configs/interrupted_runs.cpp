@@ -19,17 +19,6 @@ const std::string endless =
     "--set newton.force_tolerance=1e-300 --set newton.step_size=2e-4 --set newton.step_growth=1 "
     "--set newton.max_steps=100000 ";
 
-long lines_in(const fs::path& file) {
-  std::ifstream lines(file);  // which there may not be yet
-  return std::count(std::istreambuf_iterator<char>(lines), {}, '\n');
-}
-
-/// Waits until the file has that many lines.
-void wait_for_lines(Command& command, const fs::path& file, long lines) {
-  command.wait_until(file.string() + " has " + std::to_string(lines) + " lines",
-                     [&] { return lines_in(file) >= lines; });
-}
-
 }  // namespace
 
 TEST_CASE("SIGINT ends a run after the step, with all results so far and the report") {
@@ -202,4 +191,16 @@ TEST_CASE("before a run has begun the first signal ends the process") {
     CHECK(ended.out == "");
     CHECK(!fs::exists(folder / "out"));
   }
+}
+
+TEST_CASE("a run that is sent SIGTERM, and then SIGINT by its sweep, still saves its state") {
+  const Scratch folder(small_experiment());
+  DrapeAtWork command(endless + "--no-report", folder);
+  wait_for_lines(command, folder / "out/iterations.csv", 6);
+  command.send(SIGTERM);
+  command.wait_until("the signal is delivered", [&] { return !command.has_pending(SIGTERM); });
+  command.send(SIGINT);
+  const Ended ended = command.wait();
+  CHECK(ended.exit_code == 128 + SIGTERM);
+  CHECK_THAT(ended.err, Catch::EndsWith("stopped on request; everything up to then is in out\n"));
 }

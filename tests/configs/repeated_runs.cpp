@@ -21,19 +21,22 @@ std::map<std::string, std::string> meshes_of(const Scratch& folder, const std::s
   return meshes;
 }
 
+/// The meshes with one thread; with two, and again with either, they must be the same.
+std::map<std::string, std::string> repeated(const Scratch& folder, const std::string& options) {
+  const auto one = meshes_of(folder, options, 1), two = meshes_of(folder, options, 2);
+  CHECK((meshes_of(folder, options, 1) == one));
+  CHECK((meshes_of(folder, options, 2) == two));
+  CHECK((one == two));
+  return one;
+}
+
 }  // namespace
 
 // Both on many elements, so that loops are shared out.
 
 TEST_CASE("runs are equal bit for bit, with one thread, with two, and with one and two") {
   const Scratch folder(small_experiment());
-  const auto meshes_with = [&](int threads) {
-    return meshes_of(folder, "--set cloth.columns=24 --set cloth.rows=24 --set newton.max_steps=5", threads);
-  };
-  const auto one = meshes_with(1), two = meshes_with(2);
-  CHECK((meshes_with(1) == one));
-  CHECK((meshes_with(2) == two));
-  CHECK((one == two));
+  repeated(folder, "--set cloth.columns=24 --set cloth.rows=24 --set newton.max_steps=5");
 }
 
 TEST_CASE("so are runs with obstacles, self-contact, friction and a strain limit") {
@@ -41,11 +44,7 @@ TEST_CASE("so are runs with obstacles, self-contact, friction and a strain limit
   write_sheets(folder, 20);
   const std::string options =
       "--set start.translate=[-0.2,-0.2,0.1035] --set newton.max_steps=6 --set contact.0.self_contact=";
-  const auto meshes_with = [&](int threads) { return meshes_of(folder, options + "true", threads); };
-  const auto one = meshes_with(1), two = meshes_with(2);
-  CHECK((meshes_with(1) == one));
-  CHECK((meshes_with(2) == two));
-  CHECK((one == two));
+  const auto one = repeated(folder, options + "true");
   for (const auto& [name, bytes] : meshes_of(folder, options + "false", 2)) {
     INFO(name);
     CHECK((bytes != one.at(name)));  // it does meet itself

@@ -259,6 +259,12 @@ TEST_CASE("an incomplete sweep is read as far as it got") {
         "error: ./sweep.json: not a sweep's list of runs; is it cut short?\n");
 }
 
+TEST_CASE("a page of several runs says that one of them is not complete") {
+  const Edited cut([](OrderedJson& all) { all["complete"] = false; });
+  shown_by("report a b --out two.html", cut.folder.path);
+  CHECK(page_data(text_of(cut.folder / "two.html"))["complete"] == false);
+}
+
 TEST_CASE("a sweep without a name is read, with runs that have no results") {
   const Scratch folder;
   folder.write("sweep.json", R"({"runs": [{"name": "a", "seed": 1, "folder": "r", "status": "pending"}]})");
@@ -277,14 +283,16 @@ TEST_CASE("compare finds nothing between a run and itself") {
   }
 }
 
-TEST_CASE("what a run of one level has is compared, and its h is the experiment's or its method's own") {
+TEST_CASE("what a run of one level has is compared, and its newton is the experiment's or its method's own") {
   const Scratch folder(small_experiment());
   const std::string run =
       "run e.yaml --levels 1 --method newton --quiet --no-report --set newton.step_size=0.2 ";
   drape_ends(run + "--out a", folder);
-  drape_ends(run + "--out b --set methods.newton.newton.step_size=0.3", folder);
+  drape_ends(run + "--out b --set 'methods.newton.newton={step_size: 0.3, force_tolerance: 5e-2}'", folder);
   CHECK(read_run(folder / "a").methods[0].step_size == 0.2);
   CHECK(read_run(folder / "b").methods[0].step_size == 0.3);
+  CHECK(read_run(folder / "a").methods[0].force_tolerance == 1e-2);
+  CHECK(read_run(folder / "b").methods[0].force_tolerance == 5e-2);
   drape_ends("compare a b --bound largest_stretch=2", folder);
 }
 
@@ -336,6 +344,7 @@ TEST_CASE("compare gives energies no verdict where the models differ, and names 
 TEST_CASE("a bound is broken if a method no longer converges or exists") {
   const Edited stalled([](OrderedJson& all) { all["methods"]["pcs"]["status"] = "stalled"; });
   CHECK(stalled.compare().exit_code == 0);
+  CHECK_THAT(stalled.compare().out, Contains("\npcs: converged before and does not now\n"));
   const Ended ended = stalled.compare(" --bound seconds=2");
   CHECK(ended.exit_code == 1);
   CHECK_THAT(ended.out, Contains("broken: pcs: converged before and does not now; no bound holds\n"));

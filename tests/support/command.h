@@ -7,11 +7,13 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <chrono>
 #include <filesystem>
 #include <fstream>
 #include <functional>
+#include <iterator>
 #include <nlohmann/json.hpp>
 #include <sstream>
 #include <string>
@@ -161,6 +163,17 @@ class Command {
   pid_t pid_ = 0;
   siginfo_t ended_{};
 };
+
+inline long lines_in(const std::filesystem::path& file) {
+  std::ifstream lines(file);  // which may not be there yet, or be removed at any time
+  return std::count(std::istreambuf_iterator<char>(lines), {}, '\n');
+}
+
+/// Waits until the file has that many lines.
+inline void wait_for_lines(Command& command, const std::filesystem::path& file, long lines) {
+  command.wait_until(file.string() + " has " + std::to_string(lines) + " lines",
+                     [&] { return lines_in(file) >= lines; });
+}
 
 /// Waits for what no command of the test itself brings about. The test's own limit ends a wait in vain
 /// (tests/support/limited.cpp), and Catch2 then names the test case.

@@ -2,6 +2,8 @@
 
 #include <catch2/catch.hpp>
 
+#include "core/numerics/mesh_files/io.h"
+#include "core/numerics/patterns/generate.h"
 #include "tests/support/sweep_runs.h"
 
 namespace fs = std::filesystem;
@@ -26,6 +28,11 @@ struct CutSweep : Scratch {
   /// Lets the run end after three steps.
   void shorten() const {
     write("s.yaml", replaced(text_of(path / "s.yaml"), "max_steps: 400", "max_steps: 3"));
+  }
+  /// Holds a command that resumes the run.
+  void stop_resumed(Command& by_hand) const {
+    by_hand.wait_until("it resumes", [&] { return log().find("run_resumed") != std::string::npos; });
+    by_hand.send(SIGSTOP);
   }
   nlohmann::json run() const { return runs_of(path / "out")[0]; }
   std::string log() const { return text_of(path / slow_run / "log.jsonl"); }
@@ -55,8 +62,7 @@ TEST_CASE("a sweep that was killed runs an experiment that has changed since fro
 TEST_CASE("a sweep removes no run that another process is resuming") {
   const CutSweep folder(SIGKILL);
   DrapeAtWork by_hand("run --resume " + slow_run + " --no-report", folder);
-  by_hand.wait_until("it resumes", [&] { return folder.log().find("run_resumed") != std::string::npos; });
-  by_hand.send(SIGSTOP);
+  folder.stop_resumed(by_hand);
   folder.write(slow_run + "/notes", "mine");
   folder.shorten();
   drape_with(sweep_slow, folder.path);
@@ -71,8 +77,7 @@ TEST_CASE("a sweep removes no run that another process is resuming") {
 TEST_CASE("a run that another process was resuming when its sweep began is one of the sweep's results") {
   const CutSweep folder(SIGKILL);
   DrapeAtWork by_hand("run --resume " + slow_run + " --no-report", folder);
-  by_hand.wait_until("it resumes", [&] { return folder.log().find("run_resumed") != std::string::npos; });
-  by_hand.send(SIGSTOP);
+  folder.stop_resumed(by_hand);
   drape_with(sweep_slow, folder.path);
   CHECK(folder.run()["status"] == "failed");
   by_hand.send(SIGCONT);
@@ -130,7 +135,8 @@ TEST_CASE("a sweep starts no run once its program was replaced, and the same com
   fs::rename(folder / "bin/new", folder / "bin/drape");
   const Ended ended = command.wait();
   CHECK(ended.exit_code == 3);
-  CHECK_THAT(ended.err, Catch::Contains("bin/drape was replaced or removed while the sweep ran"));
+  CHECK_THAT(ended.err,
+             Catch::Contains("bin/drape or a library of it was replaced or removed while the sweep ran"));
   CHECK(count_of(runs_of(folder / "out"), "failed") == 0);
   CHECK(count_of(runs_of(folder / "out"), "pending") > 0);
   drape_ends("sweep s.yaml --out out", folder);
@@ -147,4 +153,11 @@ TEST_CASE("a sweep's folders may have wildcards in their names, and bytes that a
                  "name: s\nexperiments: [" + files + "]\nset: {levels: 1}\nmethods: [newton]\n");
     CHECK(drape_ends("sweep '" + name + "/s.yaml' --out out -q", folder).err == "");
   }
+  // An obstacle's file in such a folder cannot be named in a config.yaml.
+  drape::write_mesh(folder.path / name / "ball.ply", drape::unit_sphere(1));
+  folder.write(name + "/e2.yaml",
+               small_experiment() +
+                   "\ncontact: ipc\nobstacles: [{name: ball, mesh: ball.ply, translate: [0, 0, -3]}]\n");
+  CHECK_THAT(refused_by("run '" + name + "/e2.yaml' --out other", folder.path), Catch::Contains("no UTF-8"));
+  CHECK_FALSE(fs::exists(folder / "other"));
 }

@@ -209,3 +209,11 @@ TEST_CASE("a sweep over several experiments names each run by its experiment") {
   CHECK_THAT(said("experiments: [../scenes/a.yaml]\nset: {levels: 0}\n"),
              Contains("\"levels\" must be at least 1"));
 }
+
+TEST_CASE("a run that converges without the message that its sweep expects does not pass") {
+  const Scratch folder(small_experiment());
+  folder.write("s.yaml",
+               "name: s\nbase: e.yaml\nset: {levels: 1}\nmethods: [newton]\nablation:\n"
+               "  - {name: a, expect: {message: snow}}\n");
+  drape_ends("sweep s.yaml --out out", folder, 1);
+}

@@ -183,6 +183,7 @@ TEST_CASE("--most-levels limits the levels of experiments") {
   CHECK_THAT(plan(""), Contains("few/seed_1  levels 1,") && Contains("many/seed_1  levels 3,"));
   CHECK_THAT(plan(" --most-levels 2"),
              Contains("few/seed_1  levels 1,") && Contains("many/seed_1  levels 2,"));
+  CHECK_THAT(plan(" --most-levels 2"), Contains("{\"levels\":2}") && !Contains("{\"levels\":3}"));
   drape_ends("sweep s.yaml --most-levels 2 --out out", folder);
   CHECK_THAT(text_of(folder / "out/runs/many/seed_1/config.yaml"), Contains("\nlevels: 2\n"));
 }
@@ -224,4 +225,14 @@ TEST_CASE("a setting may be a whole map or list, and its files are relative to t
   CHECK(json["complete"] == true);
   CHECK(json["runs"][0]["settings"]["energies"][1]["acceleration"][2] == -5);
   CHECK(json["runs"][1]["folder"] == "runs/mesh/seed_1");
+}
+
+TEST_CASE("a key that only other variations set has the run's own value") {
+  const Scratch folder(small_experiment());
+  folder.write("s.yaml",
+               "name: s\nbase: e.yaml\nset: {material: {fabric: cotton}, newton.max_steps: 9}\nablation:\n"
+               "  - {name: a}\n"
+               "  - {name: b, set: {material.fabric: wool-lycra, methods.newton.newton.max_steps: 7}}\n");
+  CHECK_THAT(shown_by("sweep s.yaml --dry-run", folder.path),
+             Catch::Contains("{\"material.fabric\":\"cotton\",\"methods.newton.newton.max_steps\":9}"));
 }

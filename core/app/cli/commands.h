@@ -60,7 +60,7 @@ void add_reference_command(Commands& commands);
 /// Throws std::runtime_error after printing what the compiler says.
 void compile_plugins(const std::vector<std::string>& files);
 
-/// Makes SIGINT, SIGTERM and SIGHUP (a lost terminal) request a stop; a second one ends the process at
+/// Makes SIGINT, SIGTERM and SIGHUP (a lost terminal) request a stop; the same one again ends the process at
 /// once, unless it is SIGHUP. SIGHUP stays ignored under nohup. SIGPIPE is ignored: a run goes on where
 /// nobody reads its progress.
 void stop_on_signals();

@@ -103,8 +103,7 @@ int print_fabric(const FabricOptions& options) {
   if (const ConfigNode* source = values.find("source")) std::cout << ": " << source->scalar;
   std::cout << "\n";
   print_sheet(own, values);
-  const std::string value =
-      options.file.empty() ? options.name : "{file: " + options.file + ", row: " + options.name + "}";
+  const std::string value = options.file.empty() ? options.name : fabric.one_line();
   std::cout
       << "Where a figure is not known, the material's default stands for it: material: {fabric: " << value
       << "}\nDrape coefficient, by simulation: drape run configs/tests/cusick.yaml --set 'material.fabric="

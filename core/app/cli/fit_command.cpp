@@ -8,6 +8,7 @@
 #include "core/app/cli/config_arguments.h"
 #include "core/app/experiment/declared_metrics.h"
 #include "core/app/experiment/exit_codes.h"
+#include "core/app/experiment/experiment_path.h"
 #include "core/app/files/json_file.h"
 #include "core/app/files/machine.h"
 #include "core/app/files/yaml_file.h"
@@ -58,15 +59,13 @@ void complete(FitRequest& request, const Registry& registry) {
   setup.config = request.config;
   setup.name = experiment->parameters.name + "_fit";
   setup.keys = scaled_keys(*experiment, request.by, "--by", errors);
+  for (const ScaledKey& key : setup.keys) refuse_scheduled(experiment->source, key.path, "--by", errors);
   choose_metric(*experiment, setup.metric, errors);
   if (setup.method == all_methods) throw std::runtime_error("--method: a fit takes one method");
   setup.method = chosen_methods(
       *experiment, setup.method.empty() ? std::vector<std::string>() : std::vector{setup.method})[0];
   for (const Override& o : request.overrides())
-    if (const auto value = value_of_option(o.value, o.option, errors)) {
-      setup.set.add(o.key, *value);
-      setup.set.key_locations.back().file = o.option;
-    }
+    if (const auto value = value_of_option(o.value, o.option, errors)) setup.set.add(o.key, *value);
   require_none(errors);
   const std::optional<Sweep> sweep = setup.sweep({1}, registry, errors);
   require_none(errors);

@@ -19,11 +19,13 @@ namespace drape {
 
 namespace {
 
-volatile std::sig_atomic_t received = 0;
+volatile std::sig_atomic_t received = 0, latest = 0;
 
 void on_signal(int number) {
-  // A terminal that is closed may send SIGHUP twice: its shell does, and then the system.
-  if (received && number != SIGHUP) std::_Exit(exit_by_signal + number);
+  // Only the same one twice: Slurm and systemd signal a sweep and its runs alike, and the sweep then stops
+  // its runs by SIGINT. A terminal that is closed may send SIGHUP twice: its shell does, and then the system.
+  if (number == latest && number != SIGHUP) std::_Exit(exit_by_signal + number);
+  latest = number;
   if (!received) received = number;
 }
 

@@ -75,11 +75,14 @@ sys.exit(figures.main())
 /// and if python3 does not start.
 int make_figures(const std::string& folder, const std::string& out) {
   require_run_or_sweep(folder);
-  // In the build tree the package lies beside bin/, once installed where Python looks for it.
-  if (const fs::path built = own_program().parent_path().parent_path() / "python";
-      fs::exists(built / "drape")) {
+  // The package lies beside bin/ in the build tree, in lib/ once installed, and around the command in a
+  // wheel.
+  const fs::path root = own_program().parent_path().parent_path();
+  for (const fs::path& place : {root / "python", root / "lib/python3/dist-packages", root.parent_path()}) {
+    if (!fs::exists(place / "drape/__init__.py")) continue;
     const char* path = std::getenv("PYTHONPATH");
-    setenv("PYTHONPATH", (built.string() + (path && *path ? std::string(":") + path : "")).c_str(), 1);
+    setenv("PYTHONPATH", (place.string() + (path && *path ? std::string(":") + path : "")).c_str(), 1);
+    break;
   }
   const char* python = std::getenv("DRAPE_PYTHON");
   python = python && *python ? python : "/usr/bin/python3";  // for which `make python` builds the module

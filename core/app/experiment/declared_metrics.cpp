@@ -89,11 +89,12 @@ void check_declarations(const std::vector<DeclaredMetric>& metrics, const Locati
   static const auto of_level = split(
       "level vertices triangles status message steps iterations from_initial_state factorisations flops "
       "analyses seconds seconds_by_phase energy energy_parts energy_on_finest energy_released "
-      "energy_parts_released decrement force_residual intersections smallest_gap mesh mesh_checksum "
-      "snapshots not_measured",
+      "energy_parts_released decrement force_residual intersections smallest_gap contact_stiffness mesh "
+      "mesh_checksum snapshots not_measured",
       ' ');
-  static const auto of_pair = split("coarse fine fields fields_checksum of_start not_measured", ' ');
+  static const auto of_pair = split("coarse fine fields fields_checksum of_start against not_measured", ' ');
   std::map<std::pair<MetricScope, std::string>, std::string> owners;
+  std::map<std::string, std::string> measures = {{energy_gap, "the run itself"}};  // of errors.csv, by whom
   for (const DeclaredMetric& metric : metrics) {
     const auto refuse = [&](const std::string& what) {
       errors.push_back({where, "metric " + metric.name + ": " + what});
@@ -110,6 +111,18 @@ void check_declarations(const std::vector<DeclaredMetric>& metrics, const Locati
       else if (!is_new)
         refuse(value + (owner->second == metric.name ? " is declared twice"
                                                      : " is declared by metric " + owner->second + " too"));
+      // In results.json "a.b" is a member of "a", which would be a number.
+      for (const auto& [place, other] : owners)
+        if (place.first == metric.scope &&
+            (place.second.starts_with(column.name + ".") || column.name.starts_with(place.second + ".")))
+          refuse(value + " has one place in results.json with \"" + place.second + "\" of metric " + other);
+      if (metric.scope != MetricScope::pair || column.error.empty()) continue;
+      const auto [measure, is_first] = measures.insert({column.error, "metric " + metric.name});
+      if (!is_first)
+        refuse("the error \"" + column.error + "\" needs another name: errors.csv has one of " +
+               measure->second);
+      else if (column.error.find_first_of(", \"\n\r") != std::string::npos)
+        refuse("the error \"" + column.error + "\" needs a name without commas, quotes and blanks");
     }
   }
 }

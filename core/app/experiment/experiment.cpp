@@ -38,7 +38,8 @@ void check_cloth_keys(const Experiment& e, ConfigErrors& errors) {
     const std::string why = "with \"triangulation: random\"; \"vertices\" counts them";
     if (c.columns > 0) refuse("columns", why);
     if (c.rows > 0) refuse("rows", why);
-  } else if (c.columns > 0 && c.rows > 0 && c.vertices != ClothParameters().vertices) {
+  } else if ((c.triangulation == "equilateral" ? c.columns > 0 || c.rows > 0 : c.columns > 0 && c.rows > 0) &&
+             c.vertices != ClothParameters().vertices) {
     refuse("vertices", "beside \"columns\" and \"rows\"; leave it out, or set them to 0");
   }
 }
@@ -110,6 +111,7 @@ std::optional<Experiment> read_experiment(const std::filesystem::path& file, con
     errors.push_back({{file.string(), 0, 0}, "is a sweep: `drape sweep` runs it, `drape check` checks it"});
   if (!errors.empty()) return std::nullopt;
   for (const Override& o : overrides) set_parameter(source, o.key, o.value, o.option, errors);
+  for (const Override& o : overrides) refuse_scheduled(source, o.key, o.option, errors);
   return read_experiment(std::move(source), registry, errors);
 }
 

@@ -1,5 +1,7 @@
 #include "core/app/experiment/experiment_path.h"
 
+#include <algorithm>
+
 #include "core/app/experiment/experiment_parameters.h"
 #include "core/app/files/yaml_file.h"
 #include "core/kernel/files/string_utils.h"
@@ -111,6 +113,24 @@ bool set_parameter(ConfigNode& experiment, const std::string& path, const std::s
                    const std::string& option, ConfigErrors& errors) {
   const std::optional<ConfigNode> parsed = value_of_option(value, option, errors);
   return parsed && set_parameter(experiment, path, *parsed, Location{option, 0, 0}, errors);
+}
+
+void refuse_scheduled(const ConfigNode& experiment, const std::string& path, const std::string& option,
+                      ConfigErrors& errors) {
+  const ConfigNode* schedule = experiment.find("schedule");
+  const ConfigNode *keys = schedule ? schedule->find("keys") : nullptr, *set = value_at(experiment, path);
+  for (std::size_t k = 0; set && keys && k < keys->items.size(); ++k) {
+    const ConfigNode* own = keys->items[k].find("parameter");
+    const ConfigNode* scheduled = own ? value_at(experiment, own->scalar) : nullptr;
+    // By their places: an item of a list has an index and a name, and a number may be one of a list's.
+    if (scheduled && (scheduled == set || std::ranges::any_of(scheduled->items, [&](const ConfigNode& item) {
+                        return &item == set;
+                      })))
+      errors.push_back({{option, 0, 0},
+                        "has no effect, since a schedule sets it; set the schedule's values, as in --set "
+                        "schedule.keys." +
+                            std::to_string(k) + ".values=…"});
+  }
 }
 
 }  // namespace drape

@@ -24,4 +24,9 @@ bool set_parameter(ConfigNode& experiment, const std::string& path, ConfigNode v
 bool set_parameter(ConfigNode& experiment, const std::string& path, const std::string& value,
                    const std::string& option, ConfigErrors& errors);
 
+/// Appends an error if a schedule of the experiment, whose first value replaces any other, sets the value at
+/// this path.
+void refuse_scheduled(const ConfigNode& experiment, const std::string& path, const std::string& option,
+                      ConfigErrors& errors);
+
 }  // namespace drape

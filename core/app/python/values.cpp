@@ -161,6 +161,7 @@ ConfigNode with_value(ConfigNode experiment, const std::string& key, const py::o
     set_places(node, where);
     set_parameter(experiment, key, std::move(node), where, errors);
   }
+  refuse_scheduled(experiment, key, option_of(key), errors);
   throw_errors(errors);
   return experiment;
 }

@@ -235,6 +235,12 @@ Comparison compare(const RunCollection& before, const RunCollection& after, cons
   };
   list("first", a, b);
   list("second", b, a);
+  Names changed;
+  for (const auto& [name, was] : a.converged)
+    if (const auto now = b.converged.find(name); now != b.converged.end() && now->second != was)
+      changed.push_back(
+          name + (was ? ": converged before and does not now" : ": did not converge before and does now"));
+  for (const std::string& line : first_of(changed, 40)) lists += line + "\n";
   for (const auto& [name, was] : a.converged) {
     if (ratios.empty()) break;
     const auto now = b.converged.find(name);

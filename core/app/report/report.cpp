@@ -153,15 +153,18 @@ std::vector<std::string> write_report(const fs::path& folder, const std::functio
   PictureSet set = draw_pictures(run, cancelled, picture_width);
   const ReportView view = report_view(run);
   for (const std::string& note : view.notes) add_new(set.notes, note);
-  Json step_sizes = Json::object();
-  for (const MethodRecord& method : run.methods)
+  Json step_sizes = Json::object(), tolerances = Json::object();
+  for (const MethodRecord& method : run.methods) {
     if (method.step_size) step_sizes[method.name] = *method.step_size;
+    if (method.force_tolerance) tolerances[method.name] = *method.force_tolerance;
+  }
   const Json data = {{"kind", "run"},
                      {"results", run.results},
                      {"table", table_json(table_of(collection))},
                      {"measures", measures_json(run.error_measures)},
                      {"styles", styles_json(collection)},
                      {"step_sizes", step_sizes},
+                     {"tolerances", tolerances},
                      {"errors", csv_json(run.errors)},
                      {"iterations", csv_json(run.iterations)},
                      {"config", run.configuration},

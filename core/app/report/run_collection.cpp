@@ -92,6 +92,7 @@ void read_single_runs(const std::vector<fs::path>& folders, RunCollection& colle
     configs.push_back(config_but_seed(*run.data, run.seed));
     folder_of[run.data->experiment].try_emplace(configs.back(), folder.string());
     run.status = run.data->converged() ? "converged" : "not_converged";
+    collection.complete = collection.complete && run.data->complete;
     collection.runs.push_back(std::move(run));
   }
   for (std::size_t k = 0; k < folders.size(); ++k) {

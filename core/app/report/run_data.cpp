@@ -30,10 +30,17 @@ std::vector<std::string> texts(const Json& json) {
   return all;
 }
 
+/// Members of objects have their path as name: energy_parts.hinge.
+void add_values(const Json& json, const std::string& path, Values& values) {
+  for (const auto& [name, value] : json.items()) {
+    if (value.is_object()) add_values(value, path + name + ".", values);
+    if (value.is_number() && std::isfinite(value.get<double>())) values[path + name] = value.get<double>();
+  }
+}
+
 Values values_of(const Json& json) {
   Values values;
-  for (const auto& [name, value] : json.items())
-    if (value.is_number() && std::isfinite(value.get<double>())) values[name] = value.get<double>();
+  add_values(json, "", values);
   return values;
 }
 
@@ -67,11 +74,12 @@ MethodRecord method_of(const std::string& name, const Json& json, const JsonFile
   return method;
 }
 
-OptionalNumber step_size(const ConfigNode& config, const std::string& method) {
+/// A key of the method's `newton`.
+OptionalNumber newton_number(const ConfigNode& config, const std::string& method, const char* key) {
   const ConfigNode* own = config.find("methods");
-  for (const char* key : {method.c_str(), "newton", "step_size"}) own = own ? own->find(key) : own;
+  for (const char* part : {method.c_str(), "newton", key}) own = own ? own->find(part) : own;
   const ConfigNode* common = config.find("newton");  // a method has what differs from it alone
-  const ConfigNode* node = own ? own : common ? common->find("step_size") : nullptr;
+  const ConfigNode* node = own ? own : common ? common->find(key) : nullptr;
   return node ? number_of(node->scalar) : std::nullopt;
 }
 
@@ -182,7 +190,8 @@ RunData read_run(const std::filesystem::path& folder) {
   const JsonFile file(folder / "results.json", "run the experiment again");
   for (const auto& [name, value] : member_of(json, "methods").items()) {
     run.methods.push_back(method_of(name, value, file));
-    run.methods.back().step_size = step_size(run.config, name);
+    run.methods.back().step_size = newton_number(run.config, name, "step_size");
+    run.methods.back().force_tolerance = newton_number(run.config, name, "force_tolerance");
   }
   // The progressive method comes first; the others stay in file order.
   std::stable_partition(run.methods.begin(), run.methods.end(),

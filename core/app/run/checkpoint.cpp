@@ -27,6 +27,8 @@ std::filesystem::path newest(const std::filesystem::path& folder) { return folde
 std::filesystem::path previous(const std::filesystem::path& folder) {
   return folder / "checkpoint/previous.bin";
 }
+/// What the next save writes, whole if it was cut between its renames.
+std::filesystem::path next_of(const std::filesystem::path& folder) { return folder / "checkpoint/next.bin"; }
 
 }  // namespace
 
@@ -74,7 +76,7 @@ Checkpoint decode_body(std::string_view bytes) {
 }
 
 void save_checkpoint(const std::filesystem::path& folder, const Checkpoint& checkpoint) {
-  const std::filesystem::path file = newest(folder), next = file.parent_path() / "next.bin";
+  const std::filesystem::path file = newest(folder), next = next_of(folder);
   make_folder(file.parent_path());
   write_file(next, encode(checkpoint));
   sync_to_disk(next);
@@ -91,12 +93,11 @@ bool has_checkpoint(const std::filesystem::path& folder) {
 
 Checkpoint load_checkpoint(const std::filesystem::path& folder, std::vector<std::string>& warnings) {
   std::string faults;
-  for (const auto& file : {newest(folder), previous(folder)}) {
-    if (!std::filesystem::exists(file)) continue;
+  for (const auto& file : {newest(folder), previous(folder), next_of(folder)}) {
+    if (!std::filesystem::exists(file) || (faults.empty() && file == next_of(folder))) continue;
     try {
       Checkpoint checkpoint = decode(read_file(file));
-      if (!faults.empty())
-        warnings.push_back(faults + "; going on from the checkpoint before it, " + file.string());
+      if (!faults.empty()) warnings.push_back(faults + "; going on from " + file.string());
       return checkpoint;
     } catch (const std::exception& fault) {
       faults += (faults.empty() ? "" : "; ") + file.string() + ": " + fault.what();
@@ -112,7 +113,8 @@ Checkpoint load_checkpoint(const std::filesystem::path& folder, std::vector<std:
 
 void remove_checkpoints(const std::filesystem::path& folder) {
   std::error_code error;
-  for (const auto& file : {newest(folder), previous(folder)}) std::filesystem::remove(file, error);
+  for (const auto& file : {newest(folder), previous(folder), next_of(folder)})
+    std::filesystem::remove(file, error);
 }
 
 }  // namespace drape

@@ -121,6 +121,15 @@ class Check {
     for (const TangentialDisplacements& displacements : memory.tangential_displacements)
       require(ascends(displacements, [](const TangentialDisplacement& d) { return d.contact; }),
               "the contacts' tangential displacements");
+    const LagDamping& damping = memory.damping;
+    require(damping.fraction > 0 && damping.fraction <= 1 &&
+                (damping.lag.size() == models.size() || (damping.lag.empty() && damping.fraction == 1)),
+            "the lag of friction");
+    const int n = scene_.hierarchy.levels[level].vertex_count();
+    for (const FrictionContacts& groups : damping.lag)
+      for (const auto& group : groups)
+        for (const FrictionContact& contact : group)
+          for (const int v : contact.vertices) require(v >= -1 && v < n, "the lag of friction");
   }
 
   void factor(const FactorCache::State& s, int n) const {

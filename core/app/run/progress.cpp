@@ -127,14 +127,12 @@ void Progress::level_finished(const LevelResult& r) {
 }
 
 void Progress::method_failed(int level, const std::string& cause) {
-  if (verbosity_ == Verbosity::quiet) return;
   clear_line();
   std::fprintf(stderr, "%-9s level %d/%d %-12s %s\n", method_.c_str(), level, levels_ - 1, "failed",
                printable(cause).c_str());
 }
 
 void Progress::not_measured(const std::string& metric, const std::string& cause) {
-  if (verbosity_ == Verbosity::quiet) return;
   clear_line();
   std::fprintf(stderr, "metric %s was not measured: %s\n", metric.c_str(), printable(cause).c_str());
 }

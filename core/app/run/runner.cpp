@@ -130,6 +130,9 @@ bool run(const Experiment& experiment, const Scene& scene, const RunOptions& opt
     } catch (...) {
       failure = {std::min(observer.level(), scene.finest()), message_in_flight()};
       progress.method_failed(failure->level, failure->cause);
+      // What a prototype of Python raises, such as KeyboardInterrupt, stops the run, which is to be resumed
+      // in this method.
+      cancelled = observer.stop_requested();
     }
     const std::vector<LevelResult>& results = observer.now().state.finished;
     recorder.method_finished(results, failure);
@@ -166,10 +169,15 @@ bool run_experiment(const Experiment& experiment, const Scene& scene, const RunO
   if (!start_file.empty()) start = read_mesh(start_file);  // it may be of the run that is overwritten
   refuse_long_names(options.out, methods);
   const ConfigNode config = saved_config(experiment);
+  const std::string config_text = to_yaml(config);
+  if (first_unprintable(config_text) != config_text.npos)
+    throw std::runtime_error(
+        "a file of the experiment is in a folder whose name is no UTF-8, so that its config.yaml could not "
+        "be read again; rename the folder");
   const RunFolder folder(options.out, options.overwrite, files_of(config));
   return with_folder(folder, options, [&] {
     Checkpoint begun;
-    begun.config = to_yaml(config);
+    begun.config = config_text;
     begun.methods = methods;
     begun.first_level = options.first_level;
     if (!options.warm_started_from.empty()) begun.start = scene.starts[options.first_level];

@@ -35,9 +35,9 @@ class LocalEngine {
       std::this_thread::sleep_for(std::chrono::milliseconds(5));
     }
     if (replaced)
-      throw std::runtime_error(
-          own_program().string() +
-          " was replaced or removed while the sweep ran, so the other runs were not started");
+      throw std::runtime_error(own_program().string() +
+                               " or a library of it was replaced or removed while the sweep ran, so the "
+                               "other runs were not started");
   }
 
  private:

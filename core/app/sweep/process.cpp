@@ -1,14 +1,20 @@
 #include "core/app/sweep/process.h"
 
 #include <fcntl.h>
+#include <link.h>
 #include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <cerrno>
 #include <csignal>
+#include <cstdlib>
 #include <cstring>
 #include <fstream>
 #include <stdexcept>
+#include <utility>
+#include <vector>
 
 #include "core/kernel/files/file.h"
 
@@ -29,6 +35,26 @@ namespace {
       redirect(err, O_WRONLY | O_CREAT | O_APPEND, 2))
     execvp(words[0], words);
   _exit(127);
+}
+
+namespace fs = std::filesystem;
+
+fs::file_time_type time_of(const fs::path& file) {
+  std::error_code none;  // the kernel's own library is no file
+  return fs::last_write_time(file, none);
+}
+
+/// The libraries of this process, plugins among them, with the times of their last changes.
+std::vector<std::pair<fs::path, fs::file_time_type>> libraries() {
+  std::vector<std::pair<fs::path, fs::file_time_type>> times;
+  dl_iterate_phdr(
+      [](dl_phdr_info* info, std::size_t, void* to) {
+        if (*info->dlpi_name)
+          static_cast<decltype(times)*>(to)->emplace_back(info->dlpi_name, time_of(info->dlpi_name));
+        return 0;
+      },
+      &times);
+  return times;
 }
 
 Exit exit_of(int status) {
@@ -90,8 +116,11 @@ std::filesystem::path own_program() {
 }
 
 bool own_program_replaced() {
+  static const auto first = libraries();
   std::error_code error;
-  return !std::filesystem::equivalent("/proc/self/exe", own_program(), error);
+  const auto is_other = [](const auto& library) { return time_of(library.first) != library.second; };
+  return !fs::equivalent("/proc/self/exe", own_program(), error) ||
+         std::any_of(first.begin(), first.end(), is_other);
 }
 
 std::string text_of_file(const std::filesystem::path& file) {

@@ -46,7 +46,8 @@ ProgramOutput run_program(const std::vector<std::string>& words);
 
 /// The executable file of this process.
 std::filesystem::path own_program();
-/// Whether that file was removed since, or replaced by another one.
+/// Whether that file, or since the first call a library of this process, such as a plugin, was removed or
+/// replaced.
 bool own_program_replaced();
 
 /// A file's text; empty without the file.

@@ -35,10 +35,25 @@ void keep_methods(ConfigNode& resolved, const std::vector<std::string>& chosen) 
 
 /// The value at a path of a resolved experiment: of a plugin its type; null if the experiment has none.
 nlohmann::ordered_json setting_at(const ConfigNode& resolved, const std::string& path) {
-  const ConfigNode* node = value_at(resolved, path);
+  // A fabric has become numbers; its name stays as a record.
+  const ConfigNode* node = value_at(resolved, path == "material.fabric" ? "material.from_fabric" : path);
+  // A method's newton has what differs from the experiment's alone.
+  const std::vector<std::string> words = split(path, '.');
+  if (!node && words.size() == 4 && words[0] == "methods" && words[2] == "newton" &&
+      value_at(resolved, "methods." + words[1]))
+    node = value_at(resolved, "newton." + words[3]);
   if (!node) return nullptr;
   const ConfigNode* type = node->find("type");
   return json_value(type ? *type : *node);
+}
+
+/// Takes the numbers that the experiment has in the end: an option, a schedule's key or a later setting may
+/// have replaced what the variation sets.
+void take_final_numbers(const ConfigNode& resolved, nlohmann::ordered_json& settings) {
+  for (auto& [path, value] : settings.items())
+    if (const ConfigNode* node = value.is_number() ? value_at(resolved, path) : nullptr;
+        node && node->kind == NodeKind::scalar)
+      value = json_value(*node);
 }
 
 class Reader {
@@ -113,6 +128,7 @@ class Reader {
       experiment = read_experiment(std::move(source), registry_, faults);
     }
     if (experiment) {
+      take_final_numbers(experiment->resolved, run.settings);
       check_methods(*experiment, methods, own ? variation.methods_where : source_.where_of("methods"),
                     faults);
       if (p.seeds.size() > 1 && experiment->parameters.start.perturbation == 0)
@@ -148,6 +164,9 @@ class Reader {
       run.seed = seed;
       run.folder = "runs/" + folder_name(variation.name) + "/seed_" + std::to_string(seed);
       run.config = to_yaml(resolved);
+      if (seed == seeds.front() && first_unprintable(run.config) != run.config.npos)
+        note({variation.where, "a file of it is in a folder whose name is no UTF-8; rename the folder"},
+             run.name);
       const auto [other, first] = configs_.emplace(run.config, run.name);
       if (!first && seed == seeds.front())
         same_.push_back({variation.where, "variations \"" + other->second + "\" and \"" + run.name +

@@ -111,7 +111,7 @@ std::vector<std::size_t> SweepFolder::prepare(const Sweep& sweep, int threads, b
   for (const SweepRun& run : sweep.runs) {
     json["runs"].push_back(
         {{"name", run.name}, {"settings", run.settings}, {"seed", run.seed}, {"folder", run.folder}});
-    if (run.expect.status != "converged")
+    if (run.expect.status != "converged" || !run.expect.message.empty())
       json["runs"].back()["expect"] = {{"status", run.expect.status}, {"message", run.expect.message}};
   }
   write(json);  // first: without it what follows would be a folder of runs and no sweep

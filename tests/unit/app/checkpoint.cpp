@@ -221,8 +221,7 @@ TEST_CASE("The newest complete checkpoint is used, and a damaged one is named") 
   std::filesystem::resize_file(newest, whole.size() - 1);
   CHECK(load_checkpoint(folder.path, warnings).method == 1);
   CHECK(std::exchange(warnings, {}) ==
-        std::vector{newest.string() + ": is cut short; going on from the checkpoint before it, " +
-                    previous.string()});
+        std::vector{newest.string() + ": is cut short; going on from " + previous.string()});
 
   // Between the two renames of a save there is no newest one.
   std::filesystem::remove(newest);
@@ -232,6 +231,10 @@ TEST_CASE("The newest complete checkpoint is used, and a damaged one is named") 
 
   folder.write("checkpoint/state.bin", whole.substr(0, 100));
   folder.write("checkpoint/previous.bin", "something else");
+  // A save that was cut between its renames has left the next one.
+  folder.write("checkpoint/next.bin", whole);
+  CHECK(load_checkpoint(folder.path, warnings).method == 2);
+  folder.damage("checkpoint/next.bin");
   const std::string error = error_in(folder.path);
   CHECK_THAT(error, Contains("state.bin: is cut short; ") && Contains("previous.bin: is no checkpoint"));
   CHECK_THAT(error, EndsWith("no checkpoint is whole: run the experiment again, as in drape run " +

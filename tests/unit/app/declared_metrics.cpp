@@ -74,6 +74,17 @@ TEST_CASE("values that have no place of their own in results.json are refused be
   CHECK(refused({metric("a", state, {"tilt", "tilt"})}) ==
         "metric a: the value \"tilt\" is declared twice\n");
   CHECK(refused({metric("a", state, {""})}) == "metric a: a value needs a name\n");
+  CHECK_THAT(refused({metric("a", state, {"contact_stiffness"})}),
+             Contains("a key \"contact_stiffness\" of its own"));
+  CHECK_THAT(refused({metric("a", state, {"gap"}), metric("b", state, {"gap.mean"})}),
+             Contains("has one place in results.json with \"gap\" of metric a"));
+  const auto error = [](const std::string& name, const std::string& value, const std::string& measure) {
+    return DeclaredMetric{name, MetricScope::pair, {.columns = {{.name = value, .error = measure}}}};
+  };
+  CHECK_THAT(refused({error("a", "x", "rms"), error("b", "y", "rms")}),
+             Contains("errors.csv has one of metric a"));
+  CHECK_THAT(refused({error("a", "x", energy_gap)}), Contains("errors.csv has one of the run itself"));
+  CHECK_THAT(refused({error("a", "x", "a,b")}), Contains("without commas"));
 }
 
 TEST_CASE("declarations that someone edited are read as far as they can be") {

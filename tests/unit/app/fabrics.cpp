@@ -243,3 +243,9 @@ TEST_CASE("drape fabric prints what a laboratory measures, and lists the table")
   CHECK_THAT(shown_by("fabric wool-lycra", folder.path), Contains("N/m\n"));
   CHECK_THAT(refused_by("fabric denim", folder.path), Contains("unknown fabric \"denim\""));
 }
+
+TEST_CASE("drape fabric prints a row's name as YAML has it") {
+  const OwnFabrics own("name,mass,thickness,warp_bending\n\"twill, fine\",0.3,5e-4,2e-5\n");
+  CHECK_THAT(shown_by("fabric 'twill, fine' --file own.csv", own.path),
+             Contains("material: {fabric: {file: own.csv, row: \"twill, fine\"}}"));
+}

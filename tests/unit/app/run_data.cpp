@@ -42,3 +42,12 @@ TEST_CASE("a level that is no whole number is named with its file and its key") 
   CHECK(said_of(R"({"methods": {"pcs": {"consistency": [{"coarse": 0, "fine": 1e10}]}}})") ==
         "results.json: \"fine\" must be a whole number, not 10000000000.0" + end);
 }
+
+TEST_CASE("values within objects have their path as name") {
+  const Scratch folder;
+  folder.write("results.json",
+               R"({"methods": {"pcs": {"levels": [{"height": {"lowest": 0.25, "highest": null}}]}}})");
+  const RunData run = read_run(folder.path);
+  CHECK(run.methods[0].levels[0].values.of("height.lowest") == 0.25);
+  CHECK(!run.methods[0].levels[0].values.of("height.highest"));
+}
