@@ -12,6 +12,7 @@ import shutil
 import subprocess
 import sys
 
+import numpy
 import setuptools
 import setuptools.command.build_py
 
@@ -52,5 +53,7 @@ class Compiled(setuptools.Distribution):
 BUILD.mkdir(exist_ok=True)
 setuptools.setup(
     version=re.search(r"project\(drape VERSION ([0-9.]+)", (SOURCE / "CMakeLists.txt").read_text()).group(1),
+    # A pybind11 from before 2.12, as Debian 12's, reads the arrays of numpy 1 alone; the numpy of this Python is one that it reads.
+    install_requires=["numpy<2" if numpy.__version__.startswith("1.") else "numpy", "scipy", "pandas"],
     packages=["drape"], package_dir={"drape": "core/app/python/drape"}, distclass=Compiled, cmdclass={"build_py": Build},
     options={"build": {"build_base": str(BUILD / "wheel")}, "egg_info": {"egg_base": str(BUILD)}})

@@ -34,8 +34,8 @@ class NumpyStvk(drape.Energy):
         height = numpy.sqrt(dot(e2, e2) - along**2)
         inverse = 1 / length, -along / (length * height), 1 / height
         nu = material.poisson_ratio
-        mu = material.membrane_modulus / (2 * (1 + nu))
-        lam = material.membrane_modulus * nu / (1 - nu * nu)
+        mu = material.mean_membrane_modulus / (2 * (1 + nu))
+        lam = material.mean_membrane_modulus * nu / (1 - nu * nu)
         return inverse, material.thickness * length * height / 2, mu, lam
 
     def strain(self, x, rest):

@@ -246,6 +246,7 @@ def test_a_result_shows_itself(experiment, monkeypatch, tmp_path):
     result = experiment.run(progress=False)
     shown = result._repr_html_()
     assert shown.startswith("<iframe srcdoc=") and "viewer-l0" in shown
+    assert 'sandbox="allow-scripts allow-downloads"' in shown  # its buttons save files
     opened = []
     monkeypatch.setattr("webbrowser.open", opened.append)
     monkeypatch.setattr("tempfile.tempdir", str(tmp_path))

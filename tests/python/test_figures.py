@@ -4,9 +4,11 @@ import csv
 import pathlib
 import subprocess
 
+import pandas
 import pytest
 
 pytest.importorskip("matplotlib")
+from drape.figures import latex_table  # noqa: E402
 
 SWEEP = """name: two
 base: {base}
@@ -77,3 +79,27 @@ def test_a_sweep_without_results_has_no_figures(command, small_file, tmp_path):
 def test_a_folder_without_results_has_no_figures(command, tmp_path):
     ended = subprocess.run([command, "figures", tmp_path, "-o", tmp_path / "figures"], capture_output=True, text=True)
     assert ended.returncode == 2 and "neither results.json nor sweep.json here" in ended.stderr
+
+
+def test_a_method_has_converged_if_all_its_levels_have():
+    status = ["converged", "converged, max_steps_reached", "converged_to_rounding, converged", "converged, failed"]
+    rows = pandas.DataFrame({"run": "a", "seed": [1, 2, 3, 4], "method": "pcs", "status": status, "seconds": [1.0, 50.0, 1.0, 70.0]})
+    assert r"pcs & 2 of 4 & 1 \\" in latex_table(rows)
+
+
+def test_runs_without_results_are_in_the_tables(written, command, small_file, tmp_path):
+    head = SWEEP.format(base=pathlib.Path(small_file).resolve()).split("ablation:")[0]
+    far = "{name: far, set: {pins: [{region: ball, point: [9, 9, 9], radius: 0.1}]}}"
+    (tmp_path / "two.yaml").write_text(head + "ablation: [{name: whole}, " + far + "]\n")
+    subprocess.run([command, "sweep", tmp_path / "two.yaml", "-o", tmp_path / "sweep"], stdout=subprocess.DEVNULL)
+    files = written(tmp_path / "sweep")
+    with files["table.csv"].open(newline="") as lines:
+        assert len(list(csv.DictReader(lines))) == 6
+    assert " & -- & 0 of 2 & " in files["table.tex"].read_text()
+
+
+def test_a_key_that_is_null_in_some_runs_keeps_them_in_its_plots(written, command, small_file, tmp_path):
+    sweep = SWEEP.format(base=pathlib.Path(small_file).resolve()).replace("newton.step_growth: [1.5, 3]", "material.warp_bending: [null, 1e-6]")
+    (tmp_path / "two.yaml").write_text(sweep)
+    subprocess.run([command, "sweep", tmp_path / "two.yaml", "-o", tmp_path / "sweep"], check=True, stdout=subprocess.DEVNULL)
+    assert ">--<" in written(tmp_path / "sweep")["seconds_by_warp_bending.svg"].read_text()

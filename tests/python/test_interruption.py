@@ -56,6 +56,31 @@ def test_an_exception_in_a_callback_is_raised(experiment, where, tmp_path, comma
     assert drape.read_run(tmp_path / "r")["pcs"].levels[-1].x.tobytes() == plain.tobytes()
 
 
+def test_ctrl_c_in_a_prototype_leaves_its_method_to_be_resumed(small, tmp_path):
+    class Interrupted(NumpyStvk):
+        due = False
+
+        def gradient(self, x, rest):
+            if Interrupted.due:
+                Interrupted.due = False
+                raise KeyboardInterrupt
+            return super().gradient(x, rest)
+
+    def interrupt(_):
+        Interrupted.due = True
+
+    drape.register("interrupted", Interrupted)
+    small["energies"][0] = "interrupted"
+    experiment, folder, methods = drape.Experiment(small), tmp_path / "r", ["pcs", "newton"]
+    with pytest.raises(KeyboardInterrupt):
+        experiment.run(methods=methods, out=folder, report=False, progress=False, on_level=interrupt)
+    resumed = drape.resume(folder, report=False, progress=False)
+    plain = experiment.run(methods=methods, progress=False)
+    for method in methods:
+        assert resumed[method].status == plain[method].status
+        assert resumed[method].levels[-1].x.tobytes() == plain[method].levels[-1].x.tobytes()
+
+
 def test_a_run_is_resumed_to_the_same_bits(small, tmp_path):
     class Own(NumpyStvk):
         """A prototype, which the command does not know."""

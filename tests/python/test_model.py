@@ -196,3 +196,9 @@ def test_an_energy_is_a_formula(small):
     assert experiment.scene()[0].energy(level.rest) > before
     with pytest.raises(drape.ConfigError, match=r'unknown name "q"'):
         drape.Experiment({**small, "energies": [{**spring, "energy": "mass*q"}]}).check()
+
+
+def test_a_material_has_its_stiffness_by_direction(small):
+    material = drape.Experiment({**small, "material": {"fabric": "gray-interlock"}}).scene()[0].material
+    assert (material.warp_bending, material.weft_bending, material.warp_stiffness) == (23.19e-6, 14.27e-6, None)
+    assert material.mean_bending_modulus * material.thickness**3 / 12 == pytest.approx((23.19e-6 * 14.27e-6) ** 0.5)

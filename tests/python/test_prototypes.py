@@ -256,6 +256,21 @@ def test_what_is_forgotten_is_named(scene):
             eval("empty." + method, {"empty": type("Empty", (kind,), {})(), "scene": scene})
 
 
+def test_a_class_that_is_refused_replaces_none():
+    faulty = type("Faulty", (prototypes.Springs,), {"parameters": {"stiffness": drape.Parameter(-1.0, minimum=0)}})
+    with pytest.raises(RuntimeError, match="default of parameter"):
+        drape.register("springs", faulty)
+    assert "springs" in dict(drape.plugins("energy"))
+
+
+def test_a_refiner_may_return_a_scenes_matrix(small):
+    small["refiner"] = "midpoint"
+    scene = drape.Experiment(small).scene()
+    drape.register("same", type("Same", (drape.Refiner,), {"weights": lambda self, level: scene.midpoints[level.index]}))
+    same = drape.Experiment({**small, "refiner": "same"}).scene()
+    assert same.levels[1].rest.tobytes() == scene.levels[1].rest.tobytes()
+
+
 def test_a_midpoint_factor_is_checked(capsys):
     assert drape.check_energy("hinge") and drape.check_energy(prototypes.NumpyStvk())
     assert "midpoint_factor: error" in capsys.readouterr().out
@@ -452,6 +467,10 @@ def test_a_run_with_a_method_that_failed_is_read_and_drawn(small, tmp_path):
     assert result["newton"].levels[-1].x.shape[1] == 3
     with pytest.raises(RuntimeError, match="stored no state"):
         result["failing"].levels[-1].x
+    assert result._repr_png_().startswith(b"\x89PNG")
+    with pytest.raises(ArithmeticError, match="at once"):
+        experiment.run(methods=["failing"], out=tmp_path / "first", report=False, progress=False)
+    assert drape.read_run(tmp_path / "first")._repr_png_() is None
     ended = subprocess.run([sys.executable, "-m", "drape.figures", tmp_path / "out", "-o", tmp_path / "figures"])
     assert ended.returncode == 0 and (tmp_path / "figures/newton_end.png").exists()
 

@@ -27,3 +27,12 @@ def test_values_that_need_each_other_are_set_one_after_another(experiment):
 def test_a_text_that_a_config_cannot_hold_is_refused(experiment):
     with pytest.raises(ValueError, match="is no text that UTF-8 can hold"):
         experiment.set("name", "\ud800")
+
+
+def test_what_a_schedule_sets_is_refused(small):
+    keys = [{"parameter": "energies.gravity.acceleration", "times": [0, 1], "values": [[0, 0, -5], [0, 0, -9.81]]}]
+    energies = ["neo_hookean", "hinge", {"type": "gravity", "acceleration": [0, 0, -9.81]}]
+    scheduled = {**small, "energies": energies, "schedule": {"keys": keys}}
+    for key, value in (("energies.gravity.acceleration", [0, 0, -1]), ("energies.2.acceleration", [0, 0, -1])):
+        with pytest.raises(drape.ConfigError, match="a schedule sets it"):
+            drape.Experiment(scheduled).set(key, value)

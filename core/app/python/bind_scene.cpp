@@ -51,12 +51,26 @@ void bind_level(py::module_& m) {
                        "A cloth material. Moduli are Young's moduli of the bulk. It cannot be changed: a "
                        "scene's is that of its experiment, which `set` changes.")
       .def(py::init(&make_material),
-           "Material(density=300.0): the keys of an experiment's `material`. Raises ConfigError.")
+           "Material(density=300.0): the keys of an experiment's `material`, but `fabric`. Raises "
+           "ConfigError.")
       .def_readonly("density", &Material::density, "ρ [kg/m³]")
       .def_readonly("thickness", &Material::thickness, "d [m]")
-      .def_readonly("membrane_modulus", &Material::membrane_modulus, "E_mem [Pa]")
-      .def_readonly("bending_modulus", &Material::bending_modulus, "E_bend [Pa]")
+      .def_readonly("membrane_modulus", &Material::membrane_modulus,
+                    "E_mem [Pa]; not read beside warp_stiffness")
+      .def_readonly("bending_modulus", &Material::bending_modulus,
+                    "E_bend [Pa]; not read beside warp_bending")
       .def_readonly("poisson_ratio", &Material::poisson_ratio, "ν [1]")
+      .def_readonly("warp_stiffness", &Material::warp_stiffness, "[N/m], or None")
+      .def_readonly("weft_stiffness", &Material::weft_stiffness, "[N/m], or None")
+      .def_readonly("shear_stiffness", &Material::shear_stiffness, "[N/m], or None")
+      .def_readonly("warp_bending", &Material::warp_bending, "[N m], or None")
+      .def_readonly("weft_bending", &Material::weft_bending, "[N m], or None")
+      .def_readonly("bias_bending", &Material::bias_bending, "[N m], or None")
+      .def_readonly("bending_hysteresis", &Material::bending_hysteresis, "2HB [N]")
+      .def_property_readonly("mean_membrane_modulus", &Material::mean_membrane_modulus,
+                             "Young's modulus of an isotropic membrane that stands for this material [Pa].")
+      .def_property_readonly("mean_bending_modulus", &Material::mean_bending_modulus,
+                             "The same of a plate [Pa].")
       .def_property_readonly("area_density", &Material::area_density, "Mass per area, ρ d [kg/m²].");
 
   py::class_<Level, std::shared_ptr<Level>>(

@@ -77,8 +77,15 @@ void register_prototype(std::unique_ptr<RegistryEntry> entry) {
   Registry& all = mutable_registry();
   const RegistryEntry* before = all.find(entry->kind, entry->name);
   entry->library = "Python";
-  if (before && before->library == entry->library) replaced->push_back(all.remove(entry->kind, entry->name));
-  all.add_entry(std::move(entry));
+  std::unique_ptr<RegistryEntry> earlier;
+  if (before && before->library == entry->library) earlier = all.remove(entry->kind, entry->name);
+  try {
+    all.add_entry(std::move(entry));
+  } catch (...) {
+    if (earlier) all.add_entry(std::move(earlier));
+    throw;
+  }
+  if (earlier) replaced->push_back(std::move(earlier));
 }
 
 }  // namespace drape::python

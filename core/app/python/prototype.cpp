@@ -37,7 +37,7 @@ MetricColumn column_of(const std::string& owner, const std::string& name, const 
   MetricColumn column;
   column.name = name;
   column.label =
-      declared_as<std::optional<std::string>>(declared, where, "label", "a str or None").value_or(name);
+      declared_as<std::optional<std::string>>(declared, where, "label", "a str or None").value_or("");
   column.unit = declared_text(declared, where, "unit");
   column.better = better_of(declared_text(declared, where, "better"), where);
   column.error = declared_text(declared, where, "error");

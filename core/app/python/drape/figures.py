@@ -22,7 +22,8 @@ ESCAPES = str.maketrans({c: "\\" + c for c in "&%$#_{}"} | {"\\": r"\textbacksla
 
 
 def _converged(rows: pandas.DataFrame) -> pandas.DataFrame:
-    return rows[rows["status"].str.startswith("converged")]
+    # A method whose levels ended differently has the status of each: "converged, max_steps_reached".
+    return rows[[all(word.startswith("converged") for word in str(status).split(", ")) for status in rows["status"]]]
 
 
 def _digits(value: float) -> str:
@@ -43,7 +44,7 @@ def _latex_cell(values: pandas.Series) -> str:
 def _varied(rows: pandas.DataFrame) -> list[str]:
     """The keys that a sweep varies: the table has them between the run's name and its seed."""
     names = list(rows)
-    keys = [name for name in names[names.index("run") + 1:names.index("seed")] if rows[name].nunique(dropna=False) > 1]
+    keys = [name for name in names[names.index("run") + 1:names.index("seed" if "seed" in names else "method")] if rows[name].nunique(dropna=False) > 1]
     return keys or (["run"] if rows["run"].nunique() > 1 else [])
 
 
@@ -62,7 +63,7 @@ def latex_table(rows: pandas.DataFrame) -> str:
              " & ".join(name.translate(ESCAPES) for name in head) + r" \\", r"\midrule"]
     for values, group in _groups(rows, keys):
         good = _converged(group)
-        cells = [("--" if pandas.isna(value) else str(value)).translate(ESCAPES) for value in values]
+        cells = [("--" if pandas.isna(value) or value == "" else str(value)).translate(ESCAPES) for value in values]
         cells += [f"{len(good)} of {len(group)}"] + [_latex_cell(good[name]) for name in columns]
         lines.append(" & ".join(cells) + r" \\")
     return "\n".join([*lines, r"\bottomrule", r"\end{tabular}", ""])
@@ -106,10 +107,11 @@ def _sweep_figures(rows: pandas.DataFrame, out: pathlib.Path) -> list[pathlib.Pa
     for name, title in COLUMNS.items():
         for key in keys if name in rows and rows[name].notna().any() else ():
             axes = matplotlib.pyplot.subplots()[1]
-            numeric = pandas.api.types.is_numeric_dtype(rows[key])
+            types = pandas.api.types  # null and booleans have no place on an axis of numbers
+            numeric = types.is_numeric_dtype(rows[key]) and not types.is_bool_dtype(rows[key]) and rows[key].notna().all()
             for label, group in _groups(good, [*(k for k in keys if k != key), "method"]):
-                spread = group.groupby(key)[name].agg(["median", "min", "max"]).dropna()
-                x = spread.index if numeric else spread.index.astype(str)
+                spread = group.groupby(key, dropna=False)[name].agg(["median", "min", "max"]).dropna()
+                x = spread.index if numeric else ["--" if pandas.isna(value) else str(value) for value in spread.index]
                 ranges = [spread["median"] - spread["min"], spread["max"] - spread["median"]]
                 axes.errorbar(x, spread["median"], yerr=ranges, marker="o", markersize=4, capsize=3, label=", ".join(map(str, label)))
             if numeric and rows[key].min() > 0 and rows[key].max() > 20 * rows[key].min():
@@ -130,8 +132,7 @@ def figures(results, out) -> list[pathlib.Path]:
     matplotlib.rcParams.update({"svg.fonttype": "none", "svg.hashsalt": "drape"})  # texts stay texts; equal runs give equal files
     folder, out = pathlib.Path(results), pathlib.Path(out)
     rows = read_sweep(folder)
-    rows = rows[rows["method"].fillna("") != ""] if "method" in rows else rows.iloc[:0]  # a run without results has no method
-    if rows.empty:
+    if "method" not in rows or (rows["method"].fillna("") == "").all():  # a run without results has no method
         raise RuntimeError(f"{folder}: no run has written results yet")
     out.mkdir(parents=True, exist_ok=True)
     rows.to_csv(out / "table.csv", index=False)

@@ -29,8 +29,8 @@ class Parameter:
 
 @dataclass(frozen=True)
 class Column:
-    """A value of a metric: unit ("1" if dimensionless), which way is better (lower, higher, neither), and the
-    name that errors.csv has it under, for pair metrics; empty for none."""
+    """A value of a metric: unit ("1" if dimensionless), which way is better (lower, higher, neither), the label
+    in reports, the name with spaces if None, and the name that errors.csv has it under, for pair metrics; empty for none."""
 
     unit: str = "1"
     better: str = "lower"
@@ -166,7 +166,7 @@ class Refiner(_Prototype):
     def _matrix(self, level: _core.Level) -> scipy.sparse.csr_matrix:
         answer = self.weights(level)
         try:
-            matrix = scipy.sparse.csr_matrix(answer)
+            matrix = scipy.sparse.csr_matrix(answer, copy=True)  # pybind11 takes none that is read-only, as a scene's
             if matrix.dtype.kind in "biuf":
                 return matrix
         except (TypeError, ValueError):

@@ -34,7 +34,7 @@ class Page:
     def _repr_html_(self) -> str:
         # A frame keeps the page's scripts and styles apart from the notebook's.
         return (f'<iframe srcdoc="{html.escape(self.text)}" width="100%" height="620" '
-                'style="border: 0" sandbox="allow-scripts"></iframe>')
+                'style="border: 0" sandbox="allow-scripts allow-downloads"></iframe>')
 
 
 def show(scene: _core.Scene, x, level: int = -1) -> Page:
@@ -177,11 +177,14 @@ class Result:
     def _repr_html_(self) -> str:
         return self.page._repr_html_()
 
-    def _repr_png_(self) -> bytes:
-        # For pages that show no frames.
+    def _repr_png_(self) -> Optional[bytes]:
+        # For pages that show no frames: the end of the first method that has a state.
+        drawn = next((name for name in self.methods if any(vars(level).get("mesh") for level in self[name].levels)), None)
+        if drawn is None:
+            return None
         with tempfile.TemporaryDirectory() as folder:
             file = pathlib.Path(folder, "end.png")
-            _core._draw(self.folder, file, self.methods[0], width=480)
+            _core._draw(self.folder, file, drawn, width=480)
             return file.read_bytes()
 
     def __repr__(self) -> str:
