@@ -41,17 +41,16 @@ all: build
 setup:
 	@third_party/setup run test
 
-# A build folder begins without tests and benchmarks, whose packages running does not need, and has them from the first
-# target on that asks for them.
-CONFIGURE = cmake --preset $(PRESET) --log-level=WARNING \
-            $$([ -e $(BUILD)/CMakeCache.txt ] || echo -D DRAPE_TESTS=OFF -D DRAPE_BENCHMARKS=OFF)
+CONFIGURE = cmake --preset $(PRESET) --log-level=WARNING
 
 configure:
 	@third_party/setup run
 	@$(CONFIGURE) >/dev/null
 
+# With the Python module where there is one, which loads these libraries.
 build: configure
-	@cmake --build $(BUILD) -j $(JOBS) --target drape_cli drape_plugins
+	@cmake --build $(BUILD) -j $(JOBS) --target drape_cli drape_plugins \
+	  $$(grep -qx DRAPE_PYTHON:BOOL=ON $(BUILD)/CMakeCache.txt && echo drape_python)
 
 build-tests: setup
 	@$(CONFIGURE) -D DRAPE_TESTS=ON >/dev/null
@@ -75,7 +74,7 @@ deb:
 
 wheel:
 	@third_party/setup run use-python
-	@/usr/bin/python3 -m pip wheel -q --no-build-isolation --no-deps --no-index -w build-package .
+	@CMAKE_BUILD_PARALLEL_LEVEL=$(JOBS) /usr/bin/python3 -m pip wheel -q --no-build-isolation --no-deps --no-index -w build-package .
 	@ls build-package/drape-*.whl
 
 notebooks: python setup
