@@ -2,15 +2,18 @@
 
 A function of a record that is not stored raises FileNotFoundError; fill_figures then says so in its place."""
 
+import csv
 import re
 
 from records import CONVERGED, RESULTS, WITHOUT_CONTACT, conditions, figure, median, read, seconds_text, stamps, usual_conditions, with_range
 
 METHODS = ["pcs", "cascadic", "newton"]
+MEASURED = ["cotton-broad", "wool-tropical", "polyester-tropical", "polyester-faille"]  # their drape coefficients
+FABRICS = [*MEASURED, *(f"{fabric} elastic" for fabric in MEASURED), "11oz-black-denim", "gray-interlock", "tango-red-jet-set", "cotton"]
 
 
 def table(head, rows, record, right=""):
-    """A Markdown table below the comment that tests/unit/docs_figures.cpp reads; `right` has an r for each column of numbers."""
+    """A Markdown table below the comment that tests/unit/pages/docs_figures.cpp reads; `right` has an r for each column of numbers."""
     rule = "|".join("---:" if k < len(right) and right[k] == "r" else "---" for k in range(len(head)))
     lines = [f"<!-- record: {' '.join('benchmarks/results/' + name for name in record)} -->"]
     return lines + ["| " + " | ".join(head) + " |", f"|{rule}|"] + ["| " + " | ".join(row) + " |" for row in rows]
@@ -24,8 +27,22 @@ def runs(study, method, scene=None, variant=None):
     return found
 
 
+def finished(study, method, scene=None, variant=None):
+    """Runs of which all came to rest: a preview is near to an end that is none."""
+    found = runs(study, method, scene, variant)
+    if any(r["status"] not in CONVERGED for r in found):
+        raise LookupError(f"{study}: {method} has not come to rest from every start")
+    return found
+
+
 def of(records, key):
     return median([r[key] for r in records])
+
+
+def over_cascadic(study, value):
+    """PCS's value over the cascadic method's, scene by scene and start by start."""
+    cascadic = {(r["scene"], r["seed"]): value(r) for r in finished(study, "cascadic")}
+    return [value(r) / cascadic[r["scene"], r["seed"]] for r in finished(study, "pcs", variant="default")]
 
 
 def lowest_to_highest(values):
@@ -57,7 +74,7 @@ def sphere(columns):
         "silhouette overlap": lambda r: preview(r, "silhouette_overlap"),
         "preview: energy above the final state [J]": lambda r: preview(r, "energy_above_end"),
         "level 1: RMS distance": lambda r: with_range([x["level_1"]["distance_rms"] for x in r], lambda v: figure(v, 2))}
-    rows = [[m] + [cells[c](runs("sphere", m)) for c in columns] for m in METHODS]
+    rows = [[m] + [cells[c](finished("sphere", m)) for c in columns] for m in METHODS]
     return table(["method"] + ["Newton iterations by level" if c == "iterations" else c for c in columns], rows,
                  ["sphere.md", "sphere.json"], "ll" + "r" * (len(columns) - 1))
 
@@ -208,12 +225,6 @@ def codim_ipc_ratios(starts, key):
     return [r["codim_ipc"][key] / r["drape"][key] for r in starts if key in r["drape"]]
 
 
-def codim_ipc_range(key):
-    """The lowest and the highest median over scenes and numbers of vertices."""
-    ratios_of = [codim_ipc_ratios(starts, key) for starts in beside_codim_ipc().values()]
-    return lowest_to_highest([median(found) for found in ratios_of if found])
-
-
 def codim_ipc():
     two = lambda v: figure(v, 2)  # noqa: E731
     rows = []
@@ -225,7 +236,7 @@ def codim_ipc():
         rows.append(row + [with_range([r.get("rms_distance") for r in starts], two)])
     # No comment for docs_figures: ratios start by start stand in no record.
     return table(["scene", "vertices", "iteration [s]: drape", "iteration [s]: Codim-IPC", "iteration: ratio", "to the same state [s]: drape",
-                  "to the same state [s]: Codim-IPC", "to the same state: ratio", "RMS distance of the final states"], rows, [], "lrrrrrrrr")[1:]
+                  "to the same state [s]: Codim-IPC", "to the same state: ratio", "RMS distance of the final states [diagonals]"], rows, [], "lrrrrrrrr")[1:]
 
 
 def beside(program, title):
@@ -238,7 +249,8 @@ def beside(program, title):
     for scene, starts in found.items():
         for key, name in (("drape", "drape"), (program, title)):
             ends = [r[key] for r in starts]
-            rows.append([scene, name, seconds_text([r["seconds"] for r in ends]), f"{sum(r.get('at_rest', True) for r in ends)} of {len(starts)}",
+            at_rest = sum(r.get("at_rest", r["force_residual"] < 1e-3) for r in ends)  # drape by its residual alone
+            rows.append([scene, name, seconds_text([r["seconds"] for r in ends]), f"{at_rest} of {len(starts)}",
                          with_range([r["force_residual"] for r in ends], two), str(sum(r["intersections"] > 0 for r in ends)),
                          with_range([r["largest_stretch"] for r in ends])])
     return table(["scene", "program", "CPU time [s]", "starts at rest", "force residual at the end", "starts with intersections", "largest stretch"],
@@ -282,7 +294,7 @@ STUDIES = [
 
 
 def studies():
-    minutes = lambda record: figure(stamps()["records"].get(record, {}).get("minutes"), 2)  # noqa: E731
+    minutes = lambda record: seconds_text([stamps()["records"].get(record, {}).get("minutes")])  # noqa: E731
     rows = [[title, f"[{record}](../../benchmarks/results/{record})", minutes(record), conditions(record)]
             for title, record in STUDIES if (RESULTS / record).exists()]
     rows.append(["[known answers](validation.md)", "`tests/physics`, which print and bound them", "–", "each build"])
@@ -304,6 +316,11 @@ def flops_of_five_scenes():
     """The lowest and the highest of the scenes with a fourth level but for the sphere."""
     scenes_of = {r["scene"] for r in read("four_levels.json")} - {"sphere"}
     return lowest_to_highest([flops_with_four_levels(scene) for scene in scenes_of])
+
+
+def drape_coefficient(fabric):
+    rows = csv.DictReader((RESULTS / "cusick.csv").read_text().splitlines())
+    return with_range([float(r["drape_coefficient"]) for r in rows if r["run"] == fabric], lambda v: f"{v:.1f}")
 
 
 def row_count(name):
@@ -338,7 +355,7 @@ BLOCKS = {
 }
 
 def median_seconds(method, key):
-    return seconds_text([of(runs("sphere", method), key)])
+    return seconds_text([of(finished("sphere", method), key)])
 
 
 VALUES = {
@@ -347,8 +364,13 @@ VALUES = {
     "sphere.finished": lambda: median_seconds("pcs", "seconds"),
     "sphere.cascadic": lambda: median_seconds("cascadic", "seconds"),
     "sphere.distance_ratio": lambda: figure(
-        median([r["preview"]["distance_rms"] for r in runs("sphere", "cascadic")])
-        / median([r["preview"]["distance_rms"] for r in runs("sphere", "pcs")]), 2),
+        median([r["preview"]["distance_rms"] for r in finished("sphere", "cascadic")])
+        / median([r["preview"]["distance_rms"] for r in finished("sphere", "pcs")]), 2),
+    "sphere, previews": lambda: lowest_to_highest(over_cascadic("sphere", lambda r: r["preview"]["distance_rms"])),
+    "sphere, level 1": lambda: lowest_to_highest(over_cascadic("sphere", lambda r: r["level_1"]["distance_rms"])),
+    "sphere, time to the preview": lambda: lowest_to_highest(over_cascadic("sphere", lambda r: r["seconds_of_preview"])),
+    "flops from single starts": lambda: lowest_to_highest(over_cascadic("previews", lambda r: r["tflop"])),
+    **{f"drape coefficient of {fabric}": lambda fabric=fabric: drape_coefficient(fabric) for fabric in FABRICS},
     "sphere.direct": lambda: median_seconds("newton", "seconds"),
     "usual conditions": usual_conditions,
     **{f"conditions of {name}": lambda name=name: conditions(name) for _, name in STUDIES},
@@ -356,8 +378,6 @@ VALUES = {
         [r["seconds_of_preview"] for r in runs("sphere", method)]) for method in METHODS},
     "flops of pcs on five scenes, four levels": flops_of_five_scenes,
     "processor of Codim-IPC's BLAS": lambda: read("codim_ipc.json")["runs"][0]["codim_ipc"]["blas_kernels"],
-    "iterations of Codim-IPC": lambda: codim_ipc_range("seconds_per_iteration"),
-    "same state by Codim-IPC": lambda: codim_ipc_range("seconds_to_same_state"),
     "sphere.solves": lambda: str(solves("sphere")[0]),
     "previews.solves": lambda: str(solves("previews")[0]),
     "dragon.pcs": lambda: seconds_text([of(runs("dragon_decrements", "pcs"), "seconds")]),

@@ -7,6 +7,7 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parent.parent
 RESULTS = ROOT / "benchmarks/results"
 CONVERGED = ["converged", "converged_to_rounding"]
+IDLE_LOAD = 0.3  # [cores] that others may keep busy before a study begins
 # One experiment under two names: the second is not run again, and shares the first one's record.
 TWINS = {"triangulation_1": "materials_2", "materials_3": "sphere_fine"}
 # No contact model looks for their intersections.
@@ -90,7 +91,8 @@ def conditions(name):
         if stamp["load_after"] >= own_load(stamp) + 0.5:
             parts.append(f"beside other work (load {figure(stamp['load_after'], 2)} after)")
     elif stamp.get("load_before") is not None and not idle(stamp):
-        parts.append(f"beside other work (load {figure(stamp['load_before'], 2)} before)")
+        when = "before" if stamp["load_before"] >= IDLE_LOAD else "after"
+        parts.append(f"beside other work (load {figure(stamp['load_' + when], 2)} {when})")
     elif stamp.get("busy"):
         parts.append("beside other work")
     if stamp.get("complete") is False:
@@ -110,4 +112,4 @@ def own_load(stamp):
 
 def idle(stamp):
     """Nothing else ran before, nor, but for the study's own threads, at its end."""
-    return stamp["load_before"] < 0.3 and stamp["load_after"] < own_load(stamp) + 0.5
+    return stamp["load_before"] < IDLE_LOAD and stamp["load_after"] < own_load(stamp) + 0.5
