@@ -5,10 +5,10 @@
 
 #include "core/kernel/interfaces/energy.h"
 #include "core/kernel/interfaces/refiner.h"
-#include "core/kernel/threads/parallel.h"
 #include "core/numerics/hierarchy/hierarchy.h"
 #include "core/numerics/hierarchy/midpoint.h"
 #include "core/numerics/patterns/generate.h"
+#include "tests/support/any_threads.h"
 #include "tests/support/conformance.h"
 #include "tests/support/decompositions.h"
 #include "tests/support/evaluate.h"
@@ -210,21 +210,10 @@ TEST_CASE("Energies give the same bits with any number of threads", "[conformanc
   for (const Candidate& candidate : all_energies()) {
     INFO(candidate.name);
     const auto energy = candidate.energy->bind(level, material);
-    double value = 0;
-    Positions gradient;
-    std::vector<double> hessian;
-    for (int threads : {1, 2, 3}) {
-      INFO(threads << " threads");
-      set_thread_count(threads);
-      const double v = energy->value(x);
-      const Positions g = gradient_of(*energy, x);
-      const std::vector<double> h = hessian_of(*energy, x, Projection::clamp).values;
-      if (threads == 1) value = v, gradient = g, hessian = h;
-      CHECK(v == value);
-      CHECK(g == gradient);
-      CHECK((h == hessian));
-    }
-    set_thread_count(0);
+    same_with_any_threads([&] {
+      return std::tuple(energy->value(x), gradient_of(*energy, x),
+                        hessian_of(*energy, x, Projection::clamp).values);
+    });
   }
 }
 

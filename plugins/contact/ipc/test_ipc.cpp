@@ -11,6 +11,7 @@
 #include "core/numerics/patterns/generate.h"
 #include "plugins/contact/ipc/bound_ipc.h"
 #include "tests/support/evaluate.h"
+#include "tests/support/ipc_obstacles.h"
 #include "tests/support/meshes.h"
 #include "tests/support/registry.h"
 
@@ -19,28 +20,7 @@ using namespace drape::ipc;
 
 namespace {
 
-Obstacle obstacle_of(const ObstacleParameters& p) { return Obstacle::of(p, 0, ObstacleMeshes::of(p, 0)); }
-
 using Vector = Eigen::Vector3d;
-
-ObstacleParameters box_obstacle(const Vector& size, const Vector& translate) {
-  ObstacleParameters box;
-  box.name = "table";
-  box.meshed_shape = "box";
-  box.size = size;
-  box.translate = translate;
-  return box;
-}
-
-ObstacleParameters sphere_obstacle(double radius, int subdivisions, const Vector& translate) {
-  ObstacleParameters sphere;
-  sphere.name = "ball";
-  sphere.meshed_shape = "sphere";
-  sphere.radius = radius;
-  sphere.subdivisions = subdivisions;
-  sphere.translate = translate;
-  return sphere;
-}
 
 /// A square cloth of side 1 folded like a letter, unstretched: straight layers `gap` apart, half circles
 /// between them; with noise.
@@ -156,19 +136,19 @@ TEST_CASE("ipc: a surface's areas and representative triangles") {
 }
 
 TEST_CASE("ipc: obstacles are valid and placed correctly, and named if they are not") {
-  ObstacleParameters p = sphere_obstacle(0.3, 3, {1, 2, 3});
-  const Obstacle ball = obstacle_of(p);
-  CHECK(ball.mesh.triangles.rows() == 20 * 64);
-  CHECK(((ball.mesh.vertices.rowwise() - Eigen::RowVector3d(1, 2, 3)).rowwise().norm().array() - 0.3)
+  ObstacleParameters p = ball(3, {1, 2, 3}, 0.3);
+  const Obstacle round = obstacle_of(p);
+  CHECK(round.mesh.triangles.rows() == 20 * 64);
+  CHECK(((round.mesh.vertices.rowwise() - Eigen::RowVector3d(1, 2, 3)).rowwise().norm().array() - 0.3)
             .abs()
             .maxCoeff() < 1e-14);
-  p = box_obstacle({1, 2, 4}, {0, 0, 1});
+  p = box({1, 2, 4}, {0, 0, 1});
   p.rotate = {0, 90, 0};
   p.scale = 0.5;
-  const Obstacle box = obstacle_of(p);
-  CHECK((box.mesh.vertices.colwise().maxCoeff() - Eigen::RowVector3d(1, 0.5, 1.25)).norm() < 1e-14);
-  CHECK(volume_of(box.mesh) == Approx(1));
-  CHECK(volume_of(ball.mesh) == Approx(4 * M_PI / 3 * 0.027).epsilon(0.02));
+  const Obstacle table = obstacle_of(p);
+  CHECK((table.mesh.vertices.colwise().maxCoeff() - Eigen::RowVector3d(1, 0.5, 1.25)).norm() < 1e-14);
+  CHECK(volume_of(table.mesh) == Approx(1));
+  CHECK(volume_of(round.mesh) == Approx(4 * M_PI / 3 * 0.027).epsilon(0.02));
 
   ObstacleParameters missing;
   missing.name = "bunny";
@@ -188,8 +168,7 @@ TEST_CASE(
   Ipc::Parameters p;
   p.dhat = 0.012;
   p.friction = 0.3;
-  p.obstacles = {sphere_obstacle(0.1, 2, {0, 0.5, -0.105}),
-                 box_obstacle({0.3, 0.4, 0.1}, {-0.1, 0.2, -0.06})};
+  p.obstacles = {ball(2, {0, 0.5, -0.105}, 0.1), box({0.3, 0.4, 0.1}, {-0.1, 0.2, -0.06})};
   std::vector<Obstacle> bodies;
   for (const auto& obstacle : p.obstacles) bodies.push_back(obstacle_of(obstacle));
   const Obstacles obstacles = Obstacles::of(bodies);
@@ -304,7 +283,7 @@ TEST_CASE("ipc: a model made and bound from another is as a new one, and shares 
   Ipc::Parameters p;
   p.stiffness = 7;
   p.friction = 0.2;
-  p.obstacles = {box_obstacle({1, 1, 0.1}, {0.2, 0.2, -0.05}), sphere_obstacle(0.05, 2, {0.2, 0.2, -0.5})};
+  p.obstacles = {box({1, 1, 0.1}, {0.2, 0.2, -0.05}), ball(2, {0.2, 0.2, -0.5}, 0.05)};
   const Ipc model(p);
   const auto contact = model.bind(level, Material());
   const auto barrier = [&](const BoundContact& c) {

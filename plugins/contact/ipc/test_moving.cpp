@@ -1,13 +1,14 @@
 #include <catch2/catch.hpp>
 
-#include "core/kernel/threads/parallel.h"
 #include "core/numerics/collision_detection/intersections.h"
 #include "core/numerics/contact_forces/friction.h"
 #include "core/numerics/mesh_files/io.h"
 #include "core/numerics/model/active_contacts.h"
 #include "core/numerics/patterns/generate.h"
 #include "plugins/contact/ipc/bound_ipc.h"
+#include "tests/support/any_threads.h"
 #include "tests/support/command.h"
+#include "tests/support/ipc_obstacles.h"
 #include "tests/support/meshes.h"
 #include "tests/support/random.h"
 
@@ -17,34 +18,13 @@ using Vector = Eigen::Vector3d;
 
 namespace {
 
-Obstacle obstacle_of(const ObstacleParameters& p) { return Obstacle::of(p, 0, ObstacleMeshes::of(p, 0)); }
-
 RandomNumbers uniform(11);
-
-ObstacleParameters box(const Vector& size, const Vector& translate = Vector::Zero()) {
-  ObstacleParameters p;
-  p.name = "block";
-  p.meshed_shape = "box";
-  p.size = size;
-  p.translate = translate;
-  return p;
-}
 
 Positions wavy(const Level& level, double height) {
   Positions x = level.rest.vertices;
   const double a = uniform(-20, 20), b = uniform(-20, 20);
   for (int v = 0; v < x.rows(); ++v) x(v, 2) = height * std::sin(a * x(v, 0) + b * x(v, 1));
   return x;
-}
-
-ObstacleParameters ball(int subdivisions, const Vector& translate) {
-  ObstacleParameters p;
-  p.name = "ball";
-  p.meshed_shape = "sphere";
-  p.radius = 0.05;
-  p.subdivisions = subdivisions;
-  p.translate = translate;
-  return p;
 }
 
 using Bodies = std::vector<ObstacleParameters>;
@@ -273,18 +253,13 @@ TEST_CASE("ipc: one of many obstacles moves, bit for bit the same with any numbe
   to = from;
   to[1].translate += Vector(0.02, 0.01, 0.3);
   to[1].rotate = {20, 10, 40};
-  std::vector<double> fractions;
-  for (const int threads : {1, 2, 3}) {
-    set_thread_count(threads);
+  const double fraction = same_with_any_threads([&] {
     const StepLimit limit = bound(to, level)->max_step(*bound(from, level), x);
     CHECK_THAT(limit.by, Catch::Contains("mover"));
-    fractions.push_back(limit.fraction);
-  }
-  set_thread_count(0);
-  CHECK(fractions[0] > 0.1);
-  CHECK(fractions[0] < 0.9);
-  CHECK(fractions[1] == fractions[0]);
-  CHECK(fractions[2] == fractions[0]);
+    return limit.fraction;
+  });
+  CHECK(fraction > 0.1);
+  CHECK(fraction < 0.9);
   to = from;
   to[1].translate.z() -= 1;
   CHECK(bound(to, level)->max_step(*bound(from, level), x).fraction == 1);
@@ -406,4 +381,11 @@ TEST_CASE("ipc: contacts that form in a step have friction when the obstacle mov
   contacts.update_obstacles(after, x, x);
   contacts.begin_step(x);
   CHECK(drag(contacts, after, x) == Approx(0.3 * normal_force(*after[0], x)).epsilon(1e-6));
+}
+
+TEST_CASE("ipc: a frame of an obstacle that is no animation is refused") {
+  ObstacleParameters still = box({1, 1, 1});
+  still.frame = 1;
+  CHECK_THROWS_WITH(obstacle_of(still),
+                    Catch::Contains("\"block\"") && Catch::Contains("which it does not have"));
 }

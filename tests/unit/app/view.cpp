@@ -7,16 +7,13 @@
 #include "core/app/report/report.h"
 #include "core/app/view/surface_fields.h"
 #include "core/app/view/view_document.h"
-#include "core/numerics/patterns/generate.h"
+#include "tests/support/metric_check.h"
 
 using namespace drape;
 
 namespace {
 
 constexpr double none = std::numeric_limits<double>::quiet_NaN();
-
-/// A unit square of (n + 1)² vertices in the plane z = 0, facing up.
-Level sheet(int n) { return Level::of(0, grid({1, 1}, n + 1, n + 1, Diagonals::one_way)); }
 
 template <class T>
 T at(const std::string& bytes, std::size_t place) {
@@ -42,7 +39,7 @@ Positions decoded(const std::string& bytes, Eigen::Index n) {
 }  // namespace
 
 TEST_CASE("positions come back within the rounding that is stated") {
-  Positions x = sheet(7).rest.vertices * 3.7;
+  Positions x = square(7).rest.vertices * 3.7;
   x.col(2) = (5 * x.col(0)).array().sin() * x.col(1).array();
   x.rowwise() += Eigen::RowVector3d(10, -4, 0.3);
   const std::string bytes = encode_positions(x);
@@ -58,7 +55,7 @@ TEST_CASE("positions come back within the rounding that is stated") {
 }
 
 TEST_CASE("triangles are differences, and pack well") {
-  const Level level = sheet(40);
+  const Level level = square(40);
   const std::string bytes = encode_triangles(level.rest.triangles);
   const Eigen::Index m = level.triangle_count();
   REQUIRE(bytes.size() == static_cast<std::size_t>(12 * m));
@@ -84,7 +81,7 @@ TEST_CASE("scalars include their range's ends, and 255 is missing") {
 }
 
 TEST_CASE("the gap is the distance to an obstacle, or to the cloth folded over itself") {
-  const Level level = sheet(20);
+  const Level level = square(20);
   const TriangleMesh table{level.rest.vertices * 3, level.rest.triangles};
   Positions x = level.rest.vertices;
   x.col(2).setConstant(0.004);
@@ -116,7 +113,7 @@ TEST_CASE("nearly all magnitudes lie in a field's range, and what is not finite 
 }
 
 TEST_CASE("the document names what can be coloured, and blocks of every state") {
-  const std::vector<Level> levels = {sheet(4)};
+  const std::vector<Level> levels = {square(4)};
   std::map<std::string, std::string> blocks;
   ViewDocument view(levels, {}, false,
                     [&](const std::string& name, std::string bytes) { blocks[name] = std::move(bytes); });
@@ -135,7 +132,7 @@ TEST_CASE("the document names what can be coloured, and blocks of every state") 
 }
 
 TEST_CASE("contact forces are coloured from zero, and not where there are none") {
-  const std::vector<Level> levels = {sheet(1)};
+  const std::vector<Level> levels = {square(1)};
   std::map<std::string, std::string> blocks;
   ViewDocument view(levels, {}, true,
                     [&](const std::string& name, std::string bytes) { blocks[name] = std::move(bytes); });
@@ -152,8 +149,8 @@ TEST_CASE("contact forces are coloured from zero, and not where there are none")
 }
 
 TEST_CASE("a page of one state holds its blocks and names no other file") {
-  const Level level = sheet(3);
-  const std::string page = viewer_page("a <state>", level, 1.1 * level.rest.vertices, {sheet(1).rest});
+  const Level level = square(3);
+  const std::string page = viewer_page("a <state>", level, 1.1 * level.rest.vertices, {square(1).rest});
   for (const char* part : {"<title>a &lt;state>", "\"kind\":\"states\"", "id=\"viewer-state\"",
                            "id=\"viewer-l0\"", "id=\"viewer-obstacle0\""})
     CHECK(page.find(part) != std::string::npos);
