@@ -14,7 +14,7 @@ namespace drape {
 namespace {
 
 constexpr int intervals = 64, halvings = 46;  // then even the root of an interval is small
-constexpr double least_jump = 1e-6;  ///< over the largest of all paths [1]
+constexpr double least_jump = 1e-6;           ///< over the largest of all paths [1]
 
 /// x(t) = from + t step, t in [0, 1].
 struct Path {
