@@ -2,8 +2,9 @@
 # make setup    install what third_party/packages-to-run.txt and packages-to-test.txt list (Debian 12, asks apt-get); each
 #               target installs what it needs of them
 # make demo     build the command and its plugins, drape a square over a sphere by PCS, show the preview first
-# make results  run what the pages state and fill their figures in, with the Python module, the scanned meshes and Blender, which studies
-#               need; at most eight hours on two cores; resumes; STUDIES=sphere,scale chooses some, STUDIES=scenes one that takes hours
+# make results  run what the pages state and fill their figures in, with all that studies need: the Python module, scanned meshes,
+#               Blender, OpenBLAS; at most eight hours on two cores; resumes; STUDIES=sphere,scale chooses some, STUDIES=scenes
+#               one that takes hours
 # make figures  fill the pages' figures in from the stored records; runs nothing
 # make python   build the Python module: PYTHONPATH=build/python python3 -c "import drape"; `make test` then tests it too
 # make deb      pack the command, its plugins, the C++ package and the Python module: build-package/drape_*.deb, for Debian 12
@@ -98,7 +99,7 @@ data: configure
 	@third_party/data/fetch data $(BUILD)
 
 # The records are stamped with the commit that ran, so nothing may differ from it (benchmarks/run_studies). Without the scanned
-# meshes or Blender, which are downloaded, only the studies that need them are left out.
+# meshes, Blender or OpenBLAS, which are downloaded, only the studies that need them are left out.
 results: benchmarks python
 	@third_party/setup compare || true
 	@third_party/data/fetch data $(BUILD) || true

@@ -37,7 +37,8 @@ STUDIES = {
     "sphere": previews("sphere", "the sphere to 98K vertices, three methods", 30, timed=True),
     "ratios": program("ratios", "parts of an iteration against each other", 15),
     "changes": program("changes", "what a change of a parameter costs", 10),
-    "linear_solvers": program("linear_solvers", "both linear solvers on the same matrices", 15),
+    "linear_solvers": program("linear_solvers", "both linear solvers on the same matrices", 15) | {
+        "check": ["sh", "-c", "/sbin/ldconfig -p | grep -q openblas || echo 'OpenBLAS: run third_party/setup compare' >&2"]},
     "python": {
         "what": "what the Python module costs", "minutes": 5, "timed": True, "needs": MODULE,
         "run": [["env", "PYTHONPATH={build}/python", "/usr/bin/python3", "benchmarks/python", "{drape}", "{out}/python.json"]],
