@@ -307,15 +307,22 @@ def solves(*names):
     return len(records), sum(r["intersections"] > 0 for r in records)
 
 
-def flops_with_four_levels(scene):
-    """PCS's median flops over the cascadic method's."""
-    return of(runs("four_levels", "pcs", scene, "default"), "tflop") / of(runs("four_levels", "cascadic", scene), "tflop")
+def medians_over_cascadic(study, value):
+    """PCS's median over the cascadic method's, by scene."""
+    names = dict.fromkeys(r["scene"] for r in read(f"{study}.json"))
+    return {name: median([value(r) for r in finished(study, "pcs", name, "default")])
+            / median([value(r) for r in finished(study, "cascadic", name)]) for name in names}
+
+
+def scenes_above(study, value):
+    """Those on which PCS has more than the cascadic method, and how many times as much."""
+    found = [f"{name} ({figure(ratio, 2)})" for name, ratio in medians_over_cascadic(study, value).items() if ratio > 1]
+    return " and ".join([", ".join(found[:-1]), found[-1]] if len(found) > 1 else found) or "none"
 
 
 def flops_of_five_scenes():
     """The lowest and the highest of the scenes with a fourth level but for the sphere."""
-    scenes_of = {r["scene"] for r in read("four_levels.json")} - {"sphere"}
-    return lowest_to_highest([flops_with_four_levels(scene) for scene in scenes_of])
+    return lowest_to_highest([ratio for name, ratio in medians_over_cascadic("four_levels", lambda r: r["tflop"]).items() if name != "sphere"])
 
 
 def drape_coefficient(fabric):
@@ -377,6 +384,9 @@ VALUES = {
     **{f"{method}'s preview of the sphere [s]": lambda method=method: seconds_text(
         [r["seconds_of_preview"] for r in runs("sphere", method)]) for method in METHODS},
     "flops of pcs on five scenes, four levels": flops_of_five_scenes,
+    **{f"{study}, more flops": lambda study=study: scenes_above(study, lambda r: r["tflop"]) for study in ("previews", "four_levels")},
+    **{f"{study}, level 1 farther": lambda study=study: scenes_above(study, lambda r: r["level_1"]["distance_rms"])
+       for study in ("previews", "four_levels")},
     "processor of Codim-IPC's BLAS": lambda: read("codim_ipc.json")["runs"][0]["codim_ipc"]["blas_kernels"],
     "sphere.solves": lambda: str(solves("sphere")[0]),
     "previews.solves": lambda: str(solves("previews")[0]),
