@@ -25,16 +25,13 @@ class LocalEngine {
   void run(const std::vector<std::size_t>& missing) {
     waiting_.assign(missing.begin(), missing.end());
     to_run_ = missing.size();
-    bool replaced = false;
     while (!waiting_.empty() || !running_.empty()) {
       if (options_.stop && options_.stop()) stop();
-      // Another program would give the sweep's later runs other results than the earlier ones.
-      if (!waiting_.empty() && own_program_replaced()) replaced = true, waiting_.clear();
       start_what_fits();
       collect();
       std::this_thread::sleep_for(std::chrono::milliseconds(5));
     }
-    if (replaced)
+    if (replaced_)
       throw std::runtime_error(own_program().string() +
                                " or a library of it was replaced or removed while the sweep ran, so the "
                                "other runs were not started");
@@ -80,6 +77,9 @@ class LocalEngine {
                      "warning: %s, seed %d may need %.1f GB where %.1f GB are to be had; it runs alone\n",
                      run.name.c_str(), run.seed, needed / 1e9, std::max(0.0, left) / 1e9);
       }
+      // Another program would give the sweep's later runs other results than the earlier ones.
+      replaced_ = own_program_replaced();
+      if (replaced_) return waiting_.clear();
       running_.push_back(
           {run, needed,
            RunProcess(folder_.files(run.folder), options_, sweep_.parameters.time_limit.value_or(0))});
@@ -131,7 +131,7 @@ class LocalEngine {
   std::deque<std::size_t> waiting_;
   std::list<Running> running_;
   std::size_t had_ = 0, to_run_ = 0, ended_ = 0, failed_ = 0;
-  bool stopping_ = false;
+  bool stopping_ = false, replaced_ = false;
 };
 
 }  // namespace
