@@ -36,11 +36,11 @@ TriangleMesh read_cloth(const ClothParameters& c) {
 std::vector<std::string> cut(TriangleMesh& cloth, const ClothParameters& c) {
   if (cloth.warp.rows() > 0) cloth.warp = projected_warp(cloth.warp, cloth);
   const bool along_file = c.grain_along != GrainAxis::x;  // was asked for, so that `grain` is 0 if it is null
-  if (!c.grain && !along_file && c.grain_regions.empty()) return {};
-  std::vector<char> asked(cloth.triangles.rows(),
-                          c.grain || along_file);  // whose grain is counted from the axis
-  Positions warp = c.grain || along_file ? cut_directions(cloth, c.grain_along, c.grain.value_or(0))
-                                         : warp_directions(cloth);
+  const bool everywhere = c.grain || along_file;
+  if (!everywhere && c.grain_regions.empty()) return {};
+  std::vector<char> asked(cloth.triangles.rows(), everywhere);  // where grain is counted from the axis
+  Positions warp =
+      everywhere ? cut_directions(cloth, c.grain_along, c.grain.value_or(0)) : warp_directions(cloth);
   constexpr double rounding = 1e-12;  // [m]; a flat pattern that was rotated is flat but for round-off
   for (std::size_t i = 0; i < c.grain_regions.size(); ++i) {
     const GrainRegionParameters& region = c.grain_regions[i];
