@@ -43,3 +43,15 @@ inline void wait_for(Command& command, const std::filesystem::path& sweep, const
     return std::filesystem::exists(sweep / "sweep.json") && count_of(runs_of(sweep), status) >= runs;
   });
 }
+
+/// Puts a copy of the program into the folder, as bin/drape, for replace_program to replace.
+inline void copy_program(const Scratch& folder) {
+  std::filesystem::create_directory(folder / "bin");
+  for (const char* name : {"bin/drape", "bin/new"}) std::filesystem::copy_file(drape_command, folder / name);
+  std::filesystem::create_directory_symlink(std::filesystem::path(drape_command).parent_path() / "../lib",
+                                            folder / "lib");
+}
+
+inline void replace_program(const Scratch& folder) {
+  std::filesystem::rename(folder / "bin/new", folder / "bin/drape");
+}

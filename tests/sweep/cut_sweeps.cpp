@@ -1,7 +1,10 @@
 // Sweeps that were cut: what the same command resumes, begins again, or leaves.
 
 #include <catch2/catch.hpp>
+#include <chrono>
+#include <csignal>
 
+#include "core/app/sweep/process.h"
 #include "core/numerics/mesh_files/io.h"
 #include "core/numerics/patterns/generate.h"
 #include "tests/support/sweep_runs.h"
@@ -122,17 +125,34 @@ TEST_CASE("a sweep replaces no complete results that it did not make") {
   CHECK(text_of(folder / (slow_run + "/results.json")) == results);
 }
 
+TEST_CASE("a signal ends a run that has only just been started") {
+  const Scratch folder;
+  const auto before =
+      std::signal(SIGINT, [](int) {});  // as a sweep's, which its children have until they begin
+  for (int k = 0; k < 50; ++k) {
+    const drape::Process run({"sleep", "2"}, folder / "out", folder / "err");
+    run.signal(SIGINT);
+    REQUIRE(run.wait().signal == SIGINT);
+  }
+  std::signal(SIGINT, before);
+}
+
+TEST_CASE("the time of a start that was killed counts") {
+  const CutSweep folder(SIGKILL);
+  const fs::path status = folder / (slow_run + ".status.json");
+  fs::last_write_time(status, fs::last_write_time(status) - std::chrono::seconds(100));
+  drape_with(sweep_slow, folder.path);
+  CHECK(folder.run()["seconds"].get<double>() > 99);
+}
+
 TEST_CASE("a sweep starts no run once its program was replaced, and the same command runs the rest") {
   const Scratch folder;
-  fs::create_directory(folder / "bin");
-  fs::copy_file(drape_command, folder / "bin/drape");
-  fs::copy_file(drape_command, folder / "bin/new");
-  fs::create_directory_symlink(fs::path(drape_command).parent_path() / "../lib", folder / "lib");
+  copy_program(folder);
   folder.write("e.yaml", small_experiment());
   folder.write("s.yaml", coarsest_by_newton + "repeats: 20\n");
   Command command("exec bin/drape sweep s.yaml --out out --workers 1", folder.path);
   wait_for(command, folder / "out", "converged", 1);
-  fs::rename(folder / "bin/new", folder / "bin/drape");
+  replace_program(folder);
   const Ended ended = command.wait();
   CHECK(ended.exit_code == 3);
   CHECK_THAT(ended.err,

@@ -85,6 +85,25 @@ TEST_CASE("a run whose results are cut short has failed, and the sweep's others 
   runs = runs_of(folder / "out");
   CHECK(runs[0]["starts"] == 2);
   CHECK(runs[1]["starts"] == 1);
+  folder.write(results, replaced(text_of(folder / results), "\"complete\": true", "\"complete\": false"));
+  CHECK_THAT(drape_ends("sweep s.yaml --out out", folder, 1).out,
+             Contains("is of a run that is not complete"));
+  CHECK(runs_of(folder / "out")[0]["status"] == "failed");
+}
+
+TEST_CASE("a sweep whose sweep.json is gone or empty keeps its finished runs") {
+  const bool is_empty = GENERATE(false, true);
+  const Scratch folder(small_experiment());
+  folder.write("s.yaml", coarsest_by_newton);
+  drape_ends("sweep s.yaml --out out", folder);
+  const std::string log = "out/runs/base/seed_1/log.jsonl", before = text_of(folder / log);
+  if (is_empty)
+    folder.write("out/sweep.json", "");
+  else
+    std::filesystem::remove(folder / "out/sweep.json");
+  drape_ends("sweep s.yaml --out out", folder);
+  CHECK(text_of(folder / log) == before);
+  CHECK(runs_of(folder / "out")[0]["status"] == "converged");
 }
 
 TEST_CASE("a run whose folder is removed is run again") {

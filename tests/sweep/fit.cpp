@@ -59,12 +59,22 @@ TEST_CASE("a fit finds the factor that gave a drape coefficient, and resumes") {
   CHECK(runs_of(folder / "fit").size() == count);
 }
 
+TEST_CASE("a fit whose program was replaced while it ran has not refused its input") {
+  const Scratch folder(specimen);
+  copy_program(folder);
+  Command command("exec bin/drape fit e.yaml --by material.bending --to 45 --starts 40 --threads 1 -o fit",
+                  folder.path);
+  wait_for(command, folder / "fit", "converged", 1);
+  replace_program(folder);
+  CHECK(command.wait().exit_code == 3);
+}
+
 TEST_CASE("a fit reports the median and the range over its starts") {
   const Scratch folder(specimen);
   const std::string shown = drape_ends("fit e.yaml --by material.bending --to 45 -o fit", folder).out;
   const json result = json_in(folder / "fit/fit.json");
   CHECK(result["values"].size() == 3);
-  CHECK(result["low"] < result["high"]);
+  CHECK(result["low"].get<double>() < result["high"].get<double>());
   CHECK(result["median"] == result["values"][1]);
   CHECK(result["median"] == Approx(45).epsilon(0.01));
   CHECK_THAT(shown, Catch::Contains(" in 3 of 3 starts)"));
@@ -76,6 +86,10 @@ TEST_CASE("a fit that misses its target says what it saw, and keeps the nearest"
   CHECK_THAT(high.err, Catch::Contains("error: drape_coefficient 145 is out of reach: factors from 1 to 1024 "
                                        "gave 3"));
   CHECK(json_in(folder / "high/fit.json")["reached"] == false);
+  CHECK_THAT(refused_by("fit e.yaml --by material.poisson_ratio --set material.poisson_ratio=0.3 --starts 1 "
+                        "--to 90 -o high",
+                        folder.path),
+             Catch::Contains("high: has runs of another fit ("));
   // Beyond a bound of the parameter.
   const Ended bound = drape_ends(
       "fit e.yaml --by material.poisson_ratio --set material.poisson_ratio=0.3 --starts 1 --to 90 -o bound",

@@ -50,6 +50,13 @@ TEST_CASE("seeds") {
         "\"set: {start.perturbation: 1e-3}\"\n");
 }
 
+TEST_CASE("a setting of what a schedule sets would have no effect") {
+  CHECK_THAT(
+      said_of("set: {schedule: {keys: [{parameter: material.density, times: [0, 1], values: [300, 400]}]}}\n"
+              "ablation: [{name: a}, {name: b, set: {levels: 1, material.density: 200}}]\n"),
+      Catch::Contains("has no effect, since a schedule sets it") && Catch::Contains("(variation \"b\")"));
+}
+
 TEST_CASE("the shape of an ablation") {
   const std::string shape =
       "\"ablation\" must be a list of variations, as in \"ablation: [{name: coarse, set: "

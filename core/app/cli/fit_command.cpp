@@ -180,7 +180,7 @@ int run_fit(FitRequest r, const Registry& registry) {
     std::cerr << "stopped on request; the same command goes on\n";
     return exit_by_signal + stop_signal();
   } catch (const std::exception& error) {
-    if (runs.samples().empty()) throw;  // nothing was run
+    if (!runs.begun()) throw;
     std::cerr << "error: " << printable(reason_of(error)) << "; the same command goes on\n";
     return exit_aborted;
   }

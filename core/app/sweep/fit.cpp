@@ -8,6 +8,7 @@
 
 #include "core/app/experiment/experiment_path.h"
 #include "core/app/report/run_data.h"
+#include "core/kernel/files/file.h"
 #include "core/kernel/files/message_text.h"
 #include "core/kernel/files/number_text.h"
 #include "core/kernel/files/string_utils.h"
@@ -182,14 +183,19 @@ const FitSample& FitRuns::at(double factor) {
     if (sample.factor == factor) return sample;
   std::set<double> factors = factors_;
   factors.insert(factor);
-  ConfigErrors errors;
-  const std::optional<Sweep> sweep = setup_.sweep(factors, registry_, errors);
+  ConfigErrors errors, of_others;
+  const bool is_valid = setup_.sweep({factor}, registry_, errors).has_value();
   FitSample sample;
   sample.factor = factor;
   for (const ConfigError& error : errors) sample.left_out.push_back(error.text());
-  if (!sweep) return samples_.emplace_back(std::move(sample));
+  if (!is_valid) return samples_.emplace_back(std::move(sample));
+  const std::optional<Sweep> sweep = setup_.sweep(factors, registry_, of_others);
+  if (!sweep)
+    refuse_path(folder_.path(),
+                "has runs of another fit (" + of_others[0].text() + "); name another folder with --out");
   factors_ = factors;
   std::vector<std::size_t> missing = folder_.prepare(*sweep, options_.threads, true);
+  begun_ = true;
   std::erase_if(missing, [&](std::size_t k) { return sweep->runs[k].name != name_of(factor); });
   run_locally(*sweep, folder_, missing, options_);
   folder_.refresh();

@@ -60,6 +60,7 @@ class FitRuns {
   /// Executes what is missing. Throws FitStopped, and std::runtime_error for a folder that holds other runs.
   const FitSample& at(double factor);
   const std::vector<FitSample>& samples() const { return samples_; }  ///< in the order of evaluation
+  bool begun() const { return begun_; }                               ///< whether runs may have been executed
 
  private:
   FitSample measured(const Sweep& sweep, double factor) const;
@@ -70,6 +71,7 @@ class FitRuns {
   const Registry& registry_;
   std::set<double> factors_;
   std::vector<FitSample> samples_;
+  bool begun_ = false;
 };
 
 enum class FitEnd {

@@ -1,6 +1,7 @@
 #include "core/app/sweep/run_status.h"
 
 #include <algorithm>
+#include <chrono>
 #include <cstring>
 #include <iterator>
 
@@ -28,13 +29,22 @@ RunStatus with_sound_results(const RunFiles& files, RunStatus status) {
     return status;
   }
   try {
-    read_results(files.folder, "--retry-failed runs it again");
+    if (member_of(read_results(files.folder, "--retry-failed runs it again"), "complete") != true)
+      refuse_path(files.results(), "is of a run that is not complete; --retry-failed runs it again");
   } catch (const std::exception& damaged) {
     status.state = RunState::failed;
     status.error = reason_of(damaged);
     status.exit_code = exit_aborted;
   }
   return status;
+}
+
+/// How long a start that was killed had gone on when it last saved its state [s].
+double seconds_to_checkpoint(const RunFiles& files) {
+  std::error_code begun, saved;
+  const auto from = std::filesystem::last_write_time(files.status(), begun),
+             to = std::filesystem::last_write_time(files.folder / "checkpoint/state.bin", saved);
+  return begun || saved ? 0 : std::max(0.0, std::chrono::duration<double>(to - from).count());
 }
 
 std::string last_lines(const std::filesystem::path& file, int most) {
@@ -126,7 +136,10 @@ RunStatus resolve_status(const RunFiles& files, RunStatus status) {
   const bool had_begun = status.state == RunState::running || status.state == RunState::cancelled ||
                          (status.state == RunState::failed && !status.refused());
   if (!had_begun) return status;
-  if (status.state == RunState::running) status.state = RunState::cancelled;
+  if (status.state == RunState::running) {
+    status.state = RunState::cancelled;
+    status.seconds += seconds_to_checkpoint(files);
+  }
   const Json results = complete_results(files.folder);
   if (results.is_null()) return status;
   const JsonFile file(files.results(), remedy_of_results);

@@ -119,6 +119,8 @@ class Reader {
         set_parameter(source, path, value, where, faults);
         if (set == &variation.set) run.settings[path] = json_value(value);
       }
+    for (std::size_t k = 0; k < variation.set.entries.size(); ++k)
+      refuse_scheduled(source, variation.set.entries[k].first, variation.set.key_locations[k].text(), faults);
     const bool own = !variation.methods.empty();
     const std::vector<std::string>& methods = own ? variation.methods : p.methods;
     if (own) run.settings["methods"] = methods;

@@ -58,8 +58,9 @@ std::vector<RunStatus> SweepFolder::checked_statuses(const Sweep& sweep, int thr
                            "that run's files to run it again: " +
                            files.folder.string() + "*");
   };
-  const Json before = read();
-  if (before.is_null()) return std::vector<RunStatus>(sweep.runs.size());
+  Json before = read();
+  // Without it the runs' own files tell what there is.
+  if (before.is_null()) before = {{"sweep", sweep.parameters.name}, {"runs", Json::array()}};
   if (const std::string other = before["sweep"]; other != sweep.parameters.name)
     refuse_path(path_, "holds the sweep \"" + other + "\"; name another folder with --out");
   std::set<std::string> folders;
