@@ -140,12 +140,16 @@ TEST_CASE("A run that is stopped at every step and resumed equals an uninterrupt
   const Scratch folder(small_experiment());
   const Overrides short_levels = {{"levels", "3"}, {"newton.max_steps", "8"}};
   CHECK(check_in_parts(folder, short_levels) > 60);
+  const Scratch compared(small_experiment());
+  const std::string reference = "{file: " + (folder / "whole/levels/pcs_l2.ply").string() + "}";
+  CHECK(check_in_parts(compared, {{"levels", "3"}, {"newton.max_steps", "2"}, {"reference", reference}}) > 5);
 }
 
 TEST_CASE("So does one with self-contact, obstacles, friction and a strain limit, however Newton solves it") {
   // A stop is asked for within steps of two iterations too, and such a part leads nowhere: more steps.
   const std::tuple<std::string, Overrides, int> cases[] = {
       {"as it is", {}, 60},
+      {"by multigrid", {{"newton.linear_solver", "multigrid"}}, 60},
       {"several iterations a step", {{"newton.iterations_per_step", "2"}, {"newton.max_steps", "12"}}, 60},
       {"static, with full projection",
        {{"newton.form", "static"}, {"newton.psd_blend", "full"}, {"levels", "2"}},
@@ -527,6 +531,37 @@ TEST_CASE("Resuming a complete run returns its exit code and checks its files") 
   CHECK(refused_by("run --resume good", folder.path) ==
         "error: good: the run is complete, but files are damaged or missing: levels/pcs_l0.ply, "
         "levels/pcs_l1.ply; run the experiment again, as in drape run good/config.yaml --out ANOTHER\n");
+  CHECK_THAT(refused_by("run --resume good --level 0 --out x", folder.path),
+             Contains("damaged or missing: levels/pcs_l0.ply"));
+}
+
+TEST_CASE("results.json tells on how many threads a run was resumed") {
+  const Scratch folder;
+  interrupt_sheets(folder);
+  drape_ends(replaced(go_on, "--threads 1", "--threads 2"), folder, 1);
+  const Json all = json_in(folder / "out/results.json");
+  CHECK(all["machine"]["threads"] == 1);
+  REQUIRE(all["resumed"].size() == 1);
+  CHECK(all["resumed"][0]["machine"]["threads"] == 2);
+}
+
+TEST_CASE("A changed rest shape of a cloth's file replaces no finer one") {
+  const Scratch folder;
+  write_sheets(folder);
+  drape_ends("run e.yaml --out out --quiet --no-report --method newton --levels 2 --set newton.max_steps=2",
+             folder, 1);
+  TriangleMesh rest = read_mesh(folder / "out/rest/l0.ply");
+  rest.vertices(0, 2) += 1e-3;
+  write_mesh(folder / "out/rest/l0.ply", rest);
+  const std::string finer = text_of(folder / "out/rest/l1.ply");
+  CHECK_THAT(refused_by("run --resume out", folder.path), Contains("does not follow from rest/l0.ply"));
+  CHECK((text_of(folder / "out/rest/l1.ply") == finer));
+}
+
+TEST_CASE("A description that is a folder's name is no input") {
+  const Scratch folder(small_experiment());
+  const Overrides named = {{"description", folder.path.string()}};
+  CHECK(files_of(saved_config(experiment_in(folder / "e.yaml", named))).empty());
 }
 
 TEST_CASE("A checkpoint whose values do not fit its experiment is refused before the first write") {

@@ -177,3 +177,24 @@ reference: {method: whole, force_tolerance: 1e-6}
     if (rows.text(k, "method") == "whole") last = rows.number(k, "reference_rms").value();
   CHECK(last < 1e-3);
 }
+
+TEST_CASE("seconds of increments leave out what recording takes, as those of levels do") {
+  const Scratch folder(R"(name: heavier
+cloth: {shape: square, side: 0.4, columns: 6, rows: 6}
+levels: 2
+pins: [{region: ball, point: [0, 0, 0], radius: 0.01}]
+energies: [neo_hookean, hinge, gravity]
+newton: {force_tolerance: 1e-2}
+schedule: {steps: 5, equilibrate: true, keys: [{parameter: energies.gravity.acceleration, times: [0, 1], values: [[0, 0, -9.81], [1, 0, -9.81]]}]}
+methods: {pcs: {}}
+)");
+  drape_ends("run e.yaml --out out --quiet --no-report --checkpoint 0", folder);
+  const auto pcs = json_in(folder / "out/results.json")["methods"]["pcs"];
+  double sums[] = {0, 0};
+  for (const auto& increment : pcs["increments"])
+    sums[increment["level"].get<int>()] += increment["seconds"].get<double>();
+  for (const int level : {0, 1}) {
+    CHECK(sums[level] > 0);
+    CHECK(sums[level] <= 1.001 * pcs["levels"][level]["seconds"].get<double>());
+  }
+}

@@ -12,6 +12,26 @@ namespace drape {
 
 using Json = JsonFile::Json;
 
+namespace {
+
+constexpr int most_levels = 100;
+
+bool nests_deeper(const std::string& text, int levels) {
+  int depth = 0;
+  bool in_text = false;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const char c = text[i];
+    if (c == '"') in_text = !in_text;
+    if (in_text && c == '\\') ++i;
+    if (in_text) continue;
+    if ((c == '[' || c == '{') && ++depth > levels) return true;
+    if (c == ']' || c == '}') --depth;
+  }
+  return false;
+}
+
+}  // namespace
+
 const Json& member_of(const Json& object, std::string_view key) {
   static const Json absent;
   if (!object.is_object()) return absent;
@@ -25,7 +45,12 @@ std::string text_member(const Json& object, const std::string& key) {
 }
 
 // Parsing and writing are large templates: they are compiled here alone.
-Json parse_json(const std::string& text) { return Json::parse(text, nullptr, false); }
+Json parse_json(const std::string& text) {
+  if (!nests_deeper(text, most_levels)) return Json::parse(text, nullptr, false);
+  // What is nested deeper is left out, since values are copied and written by recursion.
+  return Json::parse(
+      text, [](int depth, Json::parse_event_t, Json&) { return depth < most_levels; }, false);
+}
 
 std::string json_text(const Json& json, int indent) {
   return json.dump(indent, ' ', false, Json::error_handler_t::replace);

@@ -38,6 +38,13 @@ std::vector<std::pair<const char*, std::string>> cells_of(const IterationRow& ro
           {"time", number_cell(row.time, 9)}};
 }
 
+/// What runs, and where.
+nlohmann::ordered_json program_and_machine() {
+  return {{"version", std::string("drape ") + version()},
+          {"commit", commit()},
+          {"machine", {{"cpu", cpu_name()}, {"cores", core_count()}, {"threads", thread_count()}}}};
+}
+
 }  // namespace
 
 Recorder::Recorder(const RunFolder& folder, const Experiment& experiment, const Scene& scene,
@@ -58,14 +65,13 @@ Recorder::Recorder(const RunFolder& folder, const Experiment& experiment, const 
   results_["experiment"] = p.name;
   results_["description"] = p.description;
   results_["complete"] = false;
-  results_["version"] = std::string("drape ") + version();
-  results_["commit"] = commit();
-  results_["machine"] = {{"cpu", cpu_name()}, {"cores", core_count()}, {"threads", thread_count()}};
+  results_.update(program_and_machine());
   results_["tolerance"] = {{"force_residual", p.newton.force_tolerance}};
   const std::vector<std::string> remarks = remarks_of(experiment, scene);
   if (!remarks.empty()) results_["remarks"] = remarks;
   results_["metrics"] = json_of(declared_metrics(experiment.metrics));
   results_["methods"] = Json::object();
+  if (scene.reference) results_["reference"] = {{"file", p.reference.file}, {"mesh", "reference.ply"}};
   save();
   write_scene();
   save();
@@ -79,7 +85,15 @@ Recorder::Recorder(const RunFolder& folder, const Experiment& experiment, const 
   truncate_file(folder.file("iterations.csv"), state.iterations_bytes);
   truncate_file(folder.file("log.jsonl"), state.log_bytes);
   s_ = state;
+  increments_.reset();
   results_ = parse_json(std::exchange(s_.results, ""));
+  const Json now = program_and_machine(),
+             before = results_.contains("resumed") ? results_["resumed"].back() : results_;
+  for (const auto& [key, value] : now.items())
+    if (member_of(before, key) != value) {
+      results_["resumed"].push_back(now);
+      break;
+    }
   if (scene_.load_stepping && !s_.last_load.values.empty())
     scene_.load_stepping->restore(scene_.finest(), s_.last_load);
   reset_peak_memory();
@@ -134,6 +148,7 @@ void Recorder::level_started(int level) {
   s_.snapshots = {};
   s_.last = Cost();
   s_.overhead_before = s_.overhead;
+  increments_ = 0;
   log({{"event", "level_started"}, {"method", s_.method}, {"level", level}});
 }
 
@@ -212,18 +227,28 @@ Recorder::Json Recorder::state_entry(const LevelResult& r, const Cost& cost) {
 }
 
 void Recorder::increment_finished(const IncrementRow& r, const Positions& x) {
+  const Stopwatch watch;
   const LevelModel& model = *scene_.model(r.level);
-  method_entry()["increments"].push_back(
+  Json& increments = method_entry()["increments"];
+  if (!increments_) {
+    increments_ = 0;
+    for (const Json& before : increments)
+      if (before["level"] == r.level) *increments_ += before["seconds"].get<double>();
+  }
+  const double seconds = std::max(s_.last.seconds - *increments_, 0.0);  // without what recording took
+  *increments_ += seconds;
+  increments.push_back(
       {{"level", r.level},
        {"increment", r.increment},
        {"time", r.time},
        {"steps", r.steps},
        {"iterations", r.iterations},
-       {"seconds", r.seconds},
+       {"seconds", seconds},
        {"energy", finite_or_null(r.energy)},
        {"energy_released", finite_or_null(model.value(scene_.placed[r.level]) - model.value(x))},
        {"force_residual", finite_or_null(r.force_residual)},
        {"max_constraint_violation", r.max_constraint_violation}});
+  exclude(watch.seconds());
 }
 
 void Recorder::level_finished(const LevelResult& r) {

@@ -139,6 +139,8 @@ class Recorder : public Observer {
   std::map<std::string, std::string> not_measured_;
   std::vector<std::string> written_, restored_;  // names of files that were missing or different
   State s_;                                      // without results
+  /// The sum over the level's recorded increments [s]; empty after a resume, when results_ has them.
+  std::optional<double> increments_ = 0.0;
   std::optional<LevelResult> solved_reference_;
 };
 

@@ -3,6 +3,7 @@
 #include <limits>
 
 #include "core/app/experiment/declared_metrics.h"
+#include "core/app/files/json_file.h"
 #include "core/app/files/snapshot_file.h"
 #include "core/app/run/recorder.h"
 #include "core/app/run/recorder_files.h"
@@ -67,10 +68,7 @@ const RecordedState* Recorder::reference_state() const {
 
 const Positions* Recorder::find_reference(Observer& observer, bool cancelled) {
   const ReferenceParameters& p = experiment_.parameters.reference;
-  if (scene_.reference) {
-    results_["reference"] = {{"file", p.file}, {"mesh", "reference.ply"}};
-    return &*scene_.reference;
-  }
+  if (scene_.reference) return &*scene_.reference;
   const RecordedState* state = reference_state();
   if (!state) return nullptr;
   Json& entry = results_["reference"];
@@ -106,7 +104,7 @@ Recorder::Json Recorder::add_snapshots(const LevelResult& r, const Cost& cost, R
     own.energies.push_back(scene_.finest_model().value(
         prolonged(experiment_, scene_, s_.method, snapshot.x, r.level, scene_.finest())));
     entry["iterations"].push_back(snapshot.cost.iterations);
-    entry["seconds"].push_back(s_.spent.seconds + snapshot.cost.seconds);
+    entry["seconds"].push_back(own.cost.back().seconds);
   }
   make_folder(folder_.file("snapshots"));
   own.converged = has_converged(r.outcome);
@@ -167,7 +165,6 @@ void Recorder::write_errors(const Positions* reference, const std::function<bool
 }
 
 bool Recorder::measure_errors(Observer& observer, bool cancelled) {
-  const ReferenceParameters& p = experiment_.parameters.reference;
   const int finest = scene_.finest();
   // The last method may have been stopped under an earlier load than that of the other methods' states.
   if (scene_.load_stepping && !s_.last_load.values.empty())
@@ -179,7 +176,7 @@ bool Recorder::measure_errors(Observer& observer, bool cancelled) {
       if (&state->x != reference) {
         s_.method = state->method;
         Json row = compare(finest, *reference, state->x);
-        row["against"] = results_["reference"].value("method", p.file);
+        row["against"] = text_member(results_["reference"], scene_.reference ? "file" : "method");
         method_entry()["reference"] = row;
       }
   }

@@ -6,6 +6,7 @@
 #include <fstream>
 
 #include "core/app/files/json_file.h"
+#include "core/app/report/run_data.h"
 #include "core/kernel/files/file.h"
 #include "core/kernel/files/number_text.h"
 #include "core/kernel/files/string_utils.h"
@@ -46,7 +47,7 @@ std::vector<std::string> write_rest(const RunFolder& folder, const Scene& scene)
   std::vector<std::string> written;
   make_folder(folder.file("rest"));
   for (const Level& level : scene.hierarchy.levels) {
-    const std::string name = "rest/l" + std::to_string(level.index) + ".ply";
+    const std::string name = rest_file(level.index);
     if (write_where_other(folder.file(name), ply_bytes(level.rest))) written.push_back(name);
   }
   return written;

@@ -56,6 +56,29 @@ void refuse_damaged_results(const fs::path& folder) {
                             (folder / "config.yaml").string() + " --out ANOTHER");
 }
 
+/// A cloth of a file is read from rest/l0.ply, which has no second copy. Throws std::runtime_error where a
+/// rest shape does not follow from it, but for what other programs round otherwise.
+void refuse_other_rest(const fs::path& folder, const Scene& scene) {
+  for (const Level& level : scene.hierarchy.levels) {
+    const std::string name = rest_file(level.index);
+    if (!fs::exists(folder / name)) continue;
+    const Positions saved = read_mesh(folder / name).vertices, &own = level.rest.vertices;
+    if (saved.rows() != own.rows() || !((saved - own).norm() <= 1e-9 * own.norm()))
+      refuse_path(folder, name +
+                              " does not follow from rest/l0.ply: one of the two was changed; run the "
+                              "experiment again");
+  }
+}
+
+/// A finished level's state in a checkpoint; null if it has none.
+const RecordedState* saved_in(const std::optional<Checkpoint>& checkpoint, const std::string& method,
+                              int level) {
+  if (checkpoint)
+    for (const RecordedState& state : checkpoint->recorder.states)
+      if (state.method == method && state.level == level) return &state;
+  return nullptr;
+}
+
 /// Reads the experiment and the scene of a run. Returns false, with errors appended, if that is not possible.
 bool read_scene(const fs::path& folder, const Registry& registry, LargeMemory large, SavedRun& run,
                 ConfigErrors& errors) {
@@ -106,7 +129,8 @@ std::vector<fs::path> files_of(const ConfigNode& saved) {
     for (fs::path& file : files_of(part)) files.push_back(std::move(file));
   };
   for (const ConfigNode& item : saved.items) add(item);
-  for (const auto& entry : saved.entries) add(entry.second);
+  for (const auto& [key, value] : saved.entries)
+    if (key != "description") add(value);
   return files;
 }
 
@@ -155,6 +179,7 @@ std::optional<SavedRun> read_saved_run(const fs::path& folder, const Registry& r
   if (is_complete(folder)) {
     refuse_damaged_results(folder);
     if (!read_scene(folder, registry, LargeMemory::allowed, run, errors)) return {};
+    if (run.experiment.parameters.cloth.shape == "file") refuse_other_rest(folder, *run.scene);
     const std::vector<std::string> again = write_rest(locked, *run.scene);
     if (!again.empty()) warnings.push_back(written_again_text(again));
     return run;
@@ -175,6 +200,8 @@ SavedState saved_state(const fs::path& folder, const std::string& method, std::o
     std::vector<std::string> warnings;
     checkpoint = load_checkpoint(folder, warnings);
     if (state.method.empty()) state.method = checkpoint->methods.at(checkpoint->method);
+  } else {
+    refuse_damaged_results(folder);
   }
   if (state.method.empty())
     for (const auto& [name, entry] : results["methods"].items()) state.method = name;
@@ -183,7 +210,7 @@ SavedState saved_state(const fs::path& folder, const std::string& method, std::o
   constexpr int max_levels = 32;  // more than an experiment can have
   std::vector<int> levels;
   for (int l = 0; l < max_levels; ++l)
-    if (fs::exists(folder / level_file(state.method, l, ".ply")) ||
+    if (saved_in(checkpoint, state.method, l) || fs::exists(folder / level_file(state.method, l, ".ply")) ||
         (under_way && checkpoint->state.level == l))
       levels.push_back(l);
   const std::string whose = folder.string() + ": holds no state of method " + state.method;
@@ -192,9 +219,13 @@ SavedState saved_state(const fs::path& folder, const std::string& method, std::o
   if (std::ranges::find(levels, state.level) == levels.end())
     throw std::runtime_error(whose + " on level " + std::to_string(state.level) +
                              "; the last level that it has is " + std::to_string(levels.back()));
-  state.x = under_way && checkpoint->state.level == state.level
-                ? under_way->so_far.x
-                : read_mesh(folder / level_file(state.method, state.level, ".ply")).vertices;
+  const RecordedState* finished = saved_in(checkpoint, state.method, state.level);  // its mesh may be damaged
+  if (under_way && checkpoint->state.level == state.level)
+    state.x = under_way->so_far.x;
+  else if (finished)
+    state.x = finished->x;
+  else
+    state.x = read_mesh(folder / level_file(state.method, state.level, ".ply")).vertices;
   return state;
 }
 

@@ -51,3 +51,7 @@ TEST_CASE("values within objects have their path as name") {
   CHECK(run.methods[0].levels[0].values.of("height.lowest") == 0.25);
   CHECK(!run.methods[0].levels[0].values.of("height.highest"));
 }
+
+TEST_CASE("results nested a million deep end no process") {
+  CHECK(said_of_level("0, \"snapshots\": " + std::string(1000000, '[') + std::string(1000000, ']')) == "");
+}
