@@ -81,6 +81,7 @@ TEST_CASE("A run goes on where nobody reads its progress") {
           " run e.yaml --levels 1 --method pcs --no-report -v --out out 2>&1; echo $? > code ) | head -c 1",
       folder.path);
   command.wait();
+  CHECK(text_of(folder / "code") == "0\n");
   CHECK(json_in(folder / "out/results.json")["complete"] == true);
 }
 
@@ -147,9 +148,12 @@ namespace {
 
 /// Sends SIGTERM, and again as soon as it has been delivered: whatever the process is at, it must not finish
 /// that.
-Ended ended_by_two_signals(Command& command) {
-  command.send(SIGTERM);
-  command.wait_until("the signal is delivered", [&] { return !command.has_pending(SIGTERM); });
+Ended ended_by_two_signals(Command& command, int between = SIGTERM) {
+  for (const int signal : {SIGTERM, between}) {
+    command.send(signal);
+    command.wait_until("the signal is delivered", [&] { return !command.has_pending(signal); });
+    if (between == SIGTERM) break;
+  }
   command.send(SIGTERM);
   return command.wait({20 * test_slowdown(), 10});
 }
@@ -175,7 +179,8 @@ TEST_CASE("a second signal ends a run at once while metrics and the report are m
       "--set snapshots=0 --set newton.max_steps=2 --set newton.force_tolerance=1e9",
       folder);
   wait_for_lines(command, folder / "out/log.jsonl", 6);  // both levels have ended
-  CHECK(ended_by_two_signals(command).exit_code == 128 + SIGTERM);
+  CHECK(ended_by_two_signals(command, SIGINT).exit_code == 128 + SIGTERM);
+  CHECK(json_in(folder / "out/results.json")["complete"] == false);
 }
 
 TEST_CASE("before a run has begun the first signal ends the process") {

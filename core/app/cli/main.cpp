@@ -19,13 +19,13 @@ namespace drape {
 
 namespace {
 
-volatile std::sig_atomic_t received = 0, latest = 0;
+volatile std::sig_atomic_t received = 0, seen = 0;  // the first signal; a bit for each that came
 
 void on_signal(int number) {
   // Only the same one twice: Slurm and systemd signal a sweep and its runs alike, and the sweep then stops
   // its runs by SIGINT. A terminal that is closed may send SIGHUP twice: its shell does, and then the system.
-  if (number == latest && number != SIGHUP) std::_Exit(exit_by_signal + number);
-  latest = number;
+  if ((seen >> number & 1) && number != SIGHUP) std::_Exit(exit_by_signal + number);
+  seen = seen | 1 << number;
   if (!received) received = number;
 }
 

@@ -19,11 +19,10 @@ struct ExitCode {
 };
 
 constexpr ExitCode exit_codes[] = {
-    {exit_done,
-     "success; of a run: every level of every method converged, or ended as its experiment requests"},
+    {exit_done, "success; of a run: every level of every method converged"},
     {exit_not_converged,
      "completed, but a method failed or did not converge, a row of a table does not pass, a --bound is "
-     "broken, or a fit misses its target"},
+     "broken, a fit misses its target, or an energy fails check-energy"},
     {exit_bad_input, "refused: nothing was run and nothing was written"},
     {exit_aborted,
      "aborted after it had begun, as on a full disk; once the cause is removed, `drape run --resume` resumes "
