@@ -88,6 +88,8 @@ TEST_CASE("A method's result does not rest on its word") {
   const std::pair<std::string, std::string> causes[] = {
       {"no_level", "the method solved no level"},
       {"level_nine", "the method reported level 9; the experiment's finest is level 1"},
+      {"level_zero",
+       "the method reported level 0 after level 0; report levels from coarse to fine, each once"},
       {"no_vertices", "the method reported a state of level 1 with 0 vertices; the level has 121"},
       {"not_a_number", "the method reported a state of level 1 that is not finite"},
       {"to_nobody", "the method returned the results of 2 levels and reported 1 to its observer"}};
@@ -111,6 +113,12 @@ TEST_CASE("A method's result does not rest on its word") {
   write_experiment(folder, "{type: failing, level: 0, reports: moved_pins}");
   CHECK(failed_run(folder, lowest)["methods"]["odd"]["levels"][0]["message"] ==
         "the method says that it converged; a pin is 0.173 m off its target");
+  write_experiment(folder, "{type: failing, level: 9}");
+  folder.write("e.yaml", text_of(folder / "e.yaml") +
+                             "schedule: {steps: 2, keys: [{parameter: energies.gravity.acceleration, "
+                             "times: [0, 1], values: [[0, 0, -9.81], [0, 0, -5]]}]}\n");
+  CHECK(failed_run(folder, "--method odd --overwrite")["methods"]["odd"]["levels"][0]["message"] ==
+        "the method says that it converged; the schedule has not come to its end");
 }
 
 TEST_CASE("An energy that throws fails every method that evaluates it, where it does") {
@@ -158,6 +166,8 @@ TEST_CASE("A folder that is deleted during a run aborts it with its own code, an
     CHECK_THAT(all["aborted"].get<std::string>(), StartsWith("cannot write out/levels/odd_l1.ply"));
     CHECK(all["methods"]["odd"]["status"] == "aborted");
     CHECK(events(folder, "run_aborted").size() == 1);
+    CHECK_THAT(drape_ends("table out --columns method,status", folder, drape::exit_not_converged).out,
+               Contains("| odd | converged, aborted |"));
     drape_ends("report out --width 90", folder);
     CHECK_THAT(page_data(text_of(folder / "out/report.html"))["results"]["aborted"].get<std::string>(),
                StartsWith("cannot write "));

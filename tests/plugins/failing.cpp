@@ -80,6 +80,7 @@ struct FailingSolver final : drape::Solver {
       result.level = l;
       result.x = problem.starts[l];
       if (l == level && reports == "level_nine") result.level = 9;
+      if (l == level && reports == "level_zero") result.level = 0, result.x = problem.starts[0];
       if (l == level && reports == "no_vertices") result.x.resize(0, 3);
       if (l == level && reports == "not_a_number") result.x(0, 0) = std::nan("");
       if (l == level && reports == "moved_pins") result.x.array() += 0.1;

@@ -59,6 +59,10 @@ LevelResult audited(const Scene& scene, LevelResult result, double force_toleran
     result.outcome = outcome;
     result.message = "the method says that it converged; " + fault;
   };
+  if (scene.load_stepping && !scene.load_stepping->finished()) {
+    refuse(Outcome::infeasible, "the schedule has not come to its end");
+    return result;
+  }
   const LevelModel& model = *scene.model(result.level);
   if (const double distance = distance_of_pins(model, result.x);
       !(distance <= max_pin_distance * bounding_box_diagonal(result.x))) {

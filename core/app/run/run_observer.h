@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <stdexcept>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -75,6 +77,10 @@ class RunObserver : public Observer {
     const Stopwatch watch;
     const LevelResult result = audited(scene_, reported, force_tolerance_);
     recorder_.exclude(watch.seconds());
+    if (const auto& before = now_.state.finished; !before.empty() && result.level <= before.back().level)
+      throw std::runtime_error("the method reported level " + std::to_string(result.level) + " after level " +
+                               std::to_string(before.back().level) +
+                               "; report levels from coarse to fine, each once");
     recorder_.level_finished(result);
     now_.state.finished.push_back(result);
     if (resumable_ && result.outcome != Outcome::cancelled) {

@@ -109,6 +109,7 @@ bool run(const Experiment& experiment, const Scene& scene, const RunOptions& opt
     progress.method_started(name);
     if (options.view) options.view->method_started(name);
     if (options.method_started) options.method_started(name);
+    if (scene.load_stepping) scene.load_stepping->begin(0, true);  // another method has left it at its end
     if (interrupted) {
       restore_load_stepping(scene, begun.state);  // that of the levels that are shown
       catch_up(begun.state, progress, options.view);
