@@ -339,6 +339,7 @@ TEST_CASE("an option that does not fit") {
       {"--set 'levels=[1'", "--set levels:1:1: not valid YAML: end of sequence flow not found"},
       {"--method pcs,fast", "--method fast: the experiment's methods are pcs, cascadic, newton"},
       {"--levels 0", "--levels: must be an integer of at least 1, not 0" + see},
+      {"--levels 02", "--levels: must be an integer of at least 1, not 02" + see},
       {"--levels 11", "--levels: \"levels\" must be at most 10, not 11"},
       {"--levels 99999999999", "--levels: must be an integer of at most 2147483647, not 99999999999" + see},
       {"--threads two", "--threads: must be an integer of at least 1, not two" + see},
@@ -387,6 +388,11 @@ TEST_CASE("keys that the shape or the region does not read, and empty items, are
        "\"circle\""},
       {"pins: [{region: border, point: [1, 0, 0]}]",
        "5:32: \"point\" in pins needs \"region: nearest or region: ball\"; here \"region\" is border"},
+      {"schedule: {steps: 40}", "5:11: \"schedule\" has no \"keys\", so that nothing would change"},
+      {"pins: [{region: border, centre: [1, 0, 0]}]",
+       "5:33: \"centre\" is that of \"rotate\", which is not given; leave it out"},
+      {"pins: [{region: border, follow: {vertices: [7]}}]",
+       "5:33: \"vertices\" in follow are those of its \"obstacle\", which is not given"},
       {"pins: [~]", "5:8: an item of \"pins\" is empty; remove it"},
   };
   for (const auto& [written, refusal] : refusals)
@@ -418,6 +424,8 @@ TEST_CASE("an option for what a schedule sets would have no effect") {
       replaced(small_experiment(), "gravity]", "{type: gravity, acceleration: [0, 0, -9]}]");
   for (const char* option : {"energies.2.acceleration=[0,0,-1]", "energies.gravity.acceleration.2=-1"})
     CHECK_THAT(said_of(weighted, acceleration + "--set " + option), Catch::Contains("has no effect"));
+  CHECK_THAT(said_of(small_experiment(), acceleration + "--set energies.gravity.acceleration.2=-1"),
+             Catch::Contains("has no effect"));
   CHECK_THAT(
       said_of(small_experiment(), schedule + "--set friction=0.5"),
       Catch::Contains("--set friction: has no effect, since a schedule sets it; set the schedule's values, "

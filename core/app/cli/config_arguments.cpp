@@ -15,7 +15,11 @@ namespace drape {
 OptionCheck integer_between(int least, int most, const std::string& what) {
   return [=](const std::string& text) {
     const std::optional<int> number = parse_integer(text);
-    return number && *number >= least && *number <= most ? "" : "must be " + what + ", not " + excerpt(text);
+    const std::size_t first = text.find_first_not_of("+-");
+    const bool is_octal = first != text.npos && first + 1 < text.size() && text[first] == '0';  // to CLI11
+    return number && !is_octal && *number >= least && *number <= most
+               ? ""
+               : "must be " + what + ", not " + excerpt(text);
   };
 }
 

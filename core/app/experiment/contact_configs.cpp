@@ -6,6 +6,7 @@
 #include "core/app/files/yaml_file.h"
 #include "core/kernel/files/message_text.h"
 #include "core/kernel/files/string_utils.h"
+#include "core/kernel/plugin/parameters.h"
 
 namespace drape {
 
@@ -86,6 +87,10 @@ void check_names(const std::vector<ConfigNode>& obstacles, ConfigErrors& errors)
   for (std::size_t i = 0; i < obstacles.size(); ++i) {
     const ConfigNode* name = obstacles[i].find("name");
     if (!name || name->kind != NodeKind::scalar || name->scalar.empty()) continue;
+    if (parse_integer(name->scalar))
+      errors.push_back({name->where, "\"" + excerpt(name->scalar) +
+                                         "\" cannot be an obstacle's name: in paths a number is its index; "
+                                         "begin it with a letter"});
     if (const auto [first, is_new] = named.try_emplace(name->scalar, i); !is_new)
       errors.push_back({name->where, "\"" + excerpt(name->scalar) + "\" is also the name of obstacles[" +
                                          std::to_string(first->second) + "]; give each obstacle its own"});

@@ -95,10 +95,17 @@ void check_declarations(const std::vector<DeclaredMetric>& metrics, const Locati
   static const auto of_pair = split("coarse fine fields fields_checksum of_start against not_measured", ' ');
   std::map<std::pair<MetricScope, std::string>, std::string> owners;
   std::map<std::string, std::string> measures = {{energy_gap, "the run itself"}};  // of errors.csv, by whom
+  std::map<std::string, std::string> fields;                                       // likewise
   for (const DeclaredMetric& metric : metrics) {
     const auto refuse = [&](const std::string& what) {
       errors.push_back({where, "metric " + metric.name + ": " + what});
     };
+    for (const MetricColours& colours : metric.declaration.colours)
+      for (const std::string& field : {colours.field, colours.other_field})
+        if (const auto [owner, is_new] = fields.insert({field, metric.name});
+            owner->second != metric.name && !field.empty())
+          refuse("the field \"" + field + "\" needs another name: metric " + owner->second +
+                 " has one of it");
     const std::vector<std::string>& taken = metric.scope == MetricScope::state ? of_level : of_pair;
     for (const MetricColumn& column : metric.declaration.columns) {
       const std::string value = "the value \"" + column.name + "\"",

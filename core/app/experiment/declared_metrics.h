@@ -29,7 +29,8 @@ std::vector<DeclaredMetric> declared_metrics(
     const std::vector<std::pair<std::string, std::shared_ptr<Metric>>>& metrics);
 
 /// Appends an error for every value of a metric whose name is empty, declared twice, taken by results.json
-/// itself or within another value's place there, and for every error whose name errors.csv cannot have.
+/// itself or within another value's place there, for every error whose name errors.csv cannot have, and for
+/// every field that another metric declares too.
 void check_declarations(const std::vector<DeclaredMetric>& metrics, const Location& where,
                         ConfigErrors& errors);
 

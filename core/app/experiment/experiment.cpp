@@ -64,10 +64,16 @@ void check_material(const Experiment& e, ConfigErrors& errors) {
     if (fault && material)
       errors.push_back({material->where_of(key), "\"" + std::string(key) + "\" " + message});
   };
-  refuse(m.warp_stiffness && m.membrane_modulus != plain.membrane_modulus, "membrane_modulus",
-         "is not read beside \"warp_stiffness\"; leave one out");
-  refuse(m.warp_bending && m.bending_modulus != plain.bending_modulus, "bending_modulus",
-         "is not read beside \"warp_bending\"; leave one out");
+  const auto is_set = [&](const char* key, double value,
+                          double initial) {  // by a schedule to its default, too
+    return value != initial || std::ranges::any_of(e.parameters.schedule.keys, [&](const ScheduleKey& k) {
+             return k.parameter == "material." + std::string(key);
+           });
+  };
+  refuse(m.warp_stiffness && is_set("membrane_modulus", m.membrane_modulus, plain.membrane_modulus),
+         "membrane_modulus", "is not read beside \"warp_stiffness\"; leave one out");
+  refuse(m.warp_bending && is_set("bending_modulus", m.bending_modulus, plain.bending_modulus),
+         "bending_modulus", "is not read beside \"warp_bending\"; leave one out");
   refuse(m.weft_stiffness && !m.warp_stiffness, "weft_stiffness", "needs \"warp_stiffness\"");
   refuse(m.weft_bending && !m.warp_bending, "weft_bending", "needs \"warp_bending\"");
   refuse(m.bias_bending && !m.warp_bending, "bias_bending", "needs \"warp_bending\"");
@@ -75,6 +81,30 @@ void check_material(const Experiment& e, ConfigErrors& errors) {
     plate_stiffness(m);
   } catch (const std::exception& error) {
     errors.push_back({e.location_of("material"), error.what()});
+  }
+}
+
+/// A schedule without keys, and what a pin or handle says of a motion that it does not have, would not be
+/// read.
+void check_motions(const Experiment& e, ConfigErrors& errors) {
+  const ExperimentParameters& p = e.parameters;
+  if (const ScheduleParameters& s = p.schedule;
+      s.keys.empty() && (s.duration > 0 || s.steps > 1 || s.equilibrate))
+    errors.push_back(
+        {e.location_of("schedule"), "\"schedule\" has no \"keys\", so that nothing would change"});
+  const auto refuse = [&](const char* list, std::size_t k, const char* key, const std::string& message) {
+    errors.push_back({e.source.find(list)->items[k].where_of(key), message});
+  };
+  const auto check_centre = [&](const char* list, std::size_t k, const VertexSelection& selection) {
+    if (!selection.rotate && !selection.centre.isZero(0))
+      refuse(list, k, "centre", "\"centre\" is that of \"rotate\", which is not given; leave it out");
+  };
+  for (std::size_t k = 0; k < p.handles.size(); ++k) check_centre("handles", k, p.handles[k]);
+  for (std::size_t k = 0; k < p.pins.size(); ++k) {
+    check_centre("pins", k, p.pins[k]);
+    if (const FollowParameters& follow = p.pins[k].follow;
+        follow.obstacle.empty() && !follow.vertices.empty())
+      refuse("pins", k, "follow", "\"vertices\" in follow are those of its \"obstacle\", which is not given");
   }
 }
 
@@ -128,6 +158,7 @@ std::optional<Experiment> read_experiment(ConfigNode source, const Registry& reg
     check_name("name", e.parameters.name, name->where, errors);
   check_cloth_keys(e, errors);
   check_start_coordinates(e, errors);
+  check_motions(e, errors);
   check_material(e, errors);
   make_plugins(e, errors);
   read_keys(e, errors);
@@ -155,6 +186,14 @@ std::string Experiment::solver_type(const std::string& method) const {
   const ConfigNode* node = &resolved;
   for (const char* key : {"methods", method.c_str(), "type"}) node = node ? node->find(key) : nullptr;
   return node ? node->scalar : method;
+}
+
+std::optional<double> newton_number(const ConfigNode& config, const std::string& method, const char* key) {
+  const ConfigNode* own = config.find("methods");
+  for (const char* part : {method.c_str(), "newton", key}) own = own ? own->find(part) : own;
+  const ConfigNode* common = config.find("newton");  // a method has what differs from it alone
+  const ConfigNode* node = own ? own : common ? common->find(key) : nullptr;
+  return node ? number_of(node->scalar) : std::nullopt;
 }
 
 std::vector<std::size_t> Experiment::obstacle_order() const {

@@ -56,6 +56,9 @@ struct Experiment {
   std::vector<std::string> obstacle_names() const;
 };
 
+/// A number of the method's `newton` in a resolved or saved config; empty if there is none.
+std::optional<double> newton_number(const ConfigNode& config, const std::string& method, const char* key);
+
 /// Appends an error unless the name (of an experiment, a method or a sweep) can be part of file names.
 void check_name(const std::string& what, const std::string& name, const Location& where,
                 ConfigErrors& errors);

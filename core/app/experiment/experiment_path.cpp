@@ -123,9 +123,12 @@ void refuse_scheduled(const ConfigNode& experiment, const std::string& path, con
     const ConfigNode* own = keys->items[k].find("parameter");
     const ConfigNode* scheduled = own ? value_at(experiment, own->scalar) : nullptr;
     // By their places: an item of a list has an index and a name, and a number may be one of a list's.
-    if (scheduled && (scheduled == set || std::ranges::any_of(scheduled->items, [&](const ConfigNode& item) {
-                        return &item == set;
-                      })))
+    if (scheduled &&
+        (scheduled == set ||
+         std::ranges::any_of(scheduled->items, [&](const ConfigNode& item) { return &item == set; }) ||
+         std::ranges::any_of(scheduled->entries, [&](const auto& entry) {
+           return &entry.second == set;  // of a list that is not written
+         })))
       errors.push_back({{option, 0, 0},
                         "has no effect, since a schedule sets it; set the schedule's values, as in --set "
                         "schedule.keys." +

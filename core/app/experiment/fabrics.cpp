@@ -264,7 +264,10 @@ ConfigNode fabric_row(const ConfigNode& fabric, std::optional<double> thickness,
 void apply_fabric(ConfigNode& experiment, ConfigErrors& errors) {
   for (auto& [key, material] : experiment.entries) {
     const ConfigNode* written = material.find("fabric");
-    if (key != "material" || !written || written->kind == ConfigNode::Kind::null) continue;
+    const bool is_repeated = std::ranges::count_if(material.entries, [](const auto& entry) {
+                               return entry.first == "fabric";
+                             }) > 1;  // which the material's declaration refuses
+    if (key != "material" || !written || is_repeated || written->kind == ConfigNode::Kind::null) continue;
     const ConfigNode fabric = *written;
     material.remove("fabric");
     material.remove("from_fabric");

@@ -1,4 +1,3 @@
-#include <algorithm>
 #include <set>
 
 #include "core/app/experiment/declared_metrics.h"

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "core/app/experiment/experiment.h"
 #include "core/app/files/json_file.h"
 #include "core/app/files/yaml_file.h"
 #include "core/kernel/files/file.h"
@@ -72,15 +73,6 @@ MethodRecord method_of(const std::string& name, const Json& json, const JsonFile
   std::stable_sort(method.levels.begin(), method.levels.end(),
                    [](const LevelRecord& a, const LevelRecord& b) { return a.level < b.level; });
   return method;
-}
-
-/// A key of the method's `newton`.
-OptionalNumber newton_number(const ConfigNode& config, const std::string& method, const char* key) {
-  const ConfigNode* own = config.find("methods");
-  for (const char* part : {method.c_str(), "newton", key}) own = own ? own->find(part) : own;
-  const ConfigNode* common = config.find("newton");  // a method has what differs from it alone
-  const ConfigNode* node = own ? own : common ? common->find(key) : nullptr;
-  return node ? number_of(node->scalar) : std::nullopt;
 }
 
 }  // namespace

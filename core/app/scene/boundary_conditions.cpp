@@ -229,8 +229,17 @@ std::vector<DirichletVertex> dirichlet_vertices(const ExperimentParameters& p, c
   for (std::size_t k = 0; k < p.pins.size(); ++k) {
     const std::vector<int> selected = selected_vertices(p.pins[k], level, coarsest);
     require_vertices(selected, "pin " + std::to_string(k), level);
-    for (const int v : selected)
+    int compared = -1;  // the last pin that has a vertex in common
+    for (const int v : selected) {
+      if (by_vertex[v].vertex >= 0 && by_vertex[v].pin != compared) {
+        compared = by_vertex[v].pin;
+        if (const std::string why = conflict(p.pins[k], p.pins[compared], level, coarsest, placed);
+            !why.empty())
+          throw std::runtime_error("pin " + std::to_string(k) + " and pin " + std::to_string(compared) + " " +
+                                   why);
+      }
       by_vertex[v] = {v, target_of(p.pins[k], v, level, placed), static_cast<int>(k)};
+    }
   }
   std::vector<DirichletVertex> dirichlet;
   for (const DirichletVertex& d : by_vertex)

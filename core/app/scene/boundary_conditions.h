@@ -27,7 +27,7 @@ void check_shared_vertices(const ExperimentParameters& parameters, LoadPart part
                            const std::vector<Positions>& placed, ConfigErrors& errors);
 
 /// The Dirichlet vertices of a level with their targets [m]. Of several pins that select a vertex the last
-/// one counts; they agree on its target (check_shared_vertices). Throws std::runtime_error naming a pin that
+/// one counts. Throws std::runtime_error naming two pins that want it at different places, or a pin that
 /// selects no vertex.
 std::vector<DirichletVertex> dirichlet_vertices(const ExperimentParameters& parameters, const Level& level,
                                                 const Level& coarsest, const Positions& placed);

@@ -115,6 +115,8 @@ void check_named_constants(const ConfigNode& node, const Parameter& p, ConfigErr
       if (const std::string& key = number.entries[k].first; key != "value" && key != "unit")
         errors.push_back({number.key_locations[k],
                           "unknown key \"" + excerpt(key) + "\" of " + label + "; known are value, unit"});
+      else if (number.find(key) != &number.entries[k].second)
+        errors.push_back({number.key_locations[k], "repeated key \"" + key + "\" of " + label});
     const ConfigNode *value = number.find("value"), *unit = number.find("unit");
     if (!value)
       errors.push_back({number.where, label + " has no \"value\""});
@@ -161,9 +163,23 @@ ConfigNode relative_path(const ConfigNode& node) {
   return path;
 }
 
+/// The list of which a path has set single items, as in {2: -1}: the others are the object's own.
+ConfigNode completed(const ConfigNode& node, const Parameter& p, const void* object) {
+  if (node.kind != NodeKind::map || node.entries.empty() || p.size == 0) return node;
+  ConfigNode list = p.write(object);
+  for (const auto& [key, item] : node.entries) {
+    const auto index = parse_integer(key) ? list.index_of(key) : std::nullopt;
+    if (!index || node.find(key) != &item) return node;
+    list.items[*index] = item;
+  }
+  list.where = node.where;
+  return list;
+}
+
 }  // namespace
 
-void read_parameter(const Parameter& p, void* object, const ConfigNode& value, ConfigErrors& errors) {
+void read_parameter(const Parameter& p, void* object, const ConfigNode& written, ConfigErrors& errors) {
+  const ConfigNode value = completed(written, p, object);
   if (check(value, p, errors))
     p.read(object, p.path ? relative_path(value) : expand_shorthand(value, p), errors);
 }

@@ -47,8 +47,10 @@ ObstacleMeshes load_meshes(const std::vector<std::string>& files, const FileCoor
     coordinates.convert(frames.back().vertices);
     refuse(file, strict ? check_mesh(frames.back()) : check_coordinates(frames.back().vertices));
     if (const std::string what = difference(frames[0], frames.back()); !what.empty())
-      throw std::runtime_error(file + " " + what + " as " + files[0] +
-                               " has; all files of an animation must have the same triangles");
+      throw std::runtime_error(
+          file + " " + what + " as " + files[0] +
+          " has; all files of an animation must have the same triangles: cut faces of more "
+          "corners into triangles before they move, since each file's are cut by their shape");
   }
   ObstacleMeshes loaded;
   try {
@@ -137,6 +139,8 @@ ObstacleMeshes ObstacleMeshes::of(const ObstacleParameters& p, int number) {
   try {
     ObstacleMeshes meshes = frames_of(p);
     if (!meshes.repair.empty()) meshes.repair = "obstacle " + name_of(p, number) + ": " + meshes.repair;
+    if (p.cages.count == 0 && p.cages != CageParameters())
+      throw std::runtime_error("\"cages\" needs a \"count\" of at least 1");
     if (p.cages.count > 0) meshes.cages = make_cages(*meshes.frames[0], p.cages);
     return meshes;
   } catch (const RefusedParameters& refused) {

@@ -153,3 +153,8 @@ TEST_CASE("describe lists what formulas may use") {
                            "expm1", "if(condition, a, b)"})
     CHECK_THAT(page, Catch::Contains(word));
 }
+
+TEST_CASE("A constant's value is given once") {
+  CHECK_THROWS_WITH(experiment_from(replaced(experiment_text, "nu12: 0.2", "nu12: {value: 0.2, value: 0.3}")),
+                    Catch::Contains("repeated key \"value\" of \"nu12\""));
+}

@@ -64,6 +64,8 @@ TEST_CASE("Two obstacles of one name are refused, whichever model takes them") {
   CHECK_THROWS_WITH(
       experiment_from(replaced(mixed, "name: shell", "name: ball")),
       Contains(":11:12: \"ball\" is also the name of obstacles[1]; give each obstacle its own"));
+  CHECK_THROWS_WITH(experiment_from(replaced(mixed, "name: shell", "name: 1")),
+                    Contains(":11:12: \"1\" cannot be an obstacle's name"));
 }
 
 TEST_CASE("Without the key, or with an empty list, there is no contact") {

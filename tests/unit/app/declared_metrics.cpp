@@ -85,6 +85,9 @@ TEST_CASE("values that have no place of their own in results.json are refused be
              Contains("errors.csv has one of metric a"));
   CHECK_THAT(refused({error("a", "x", energy_gap)}), Contains("errors.csv has one of the run itself"));
   CHECK_THAT(refused({error("a", "x", "a,b")}), Contains("without commas"));
+  DeclaredMetric first{"a", pair, {}}, second{"b", pair, {}};
+  first.declaration.colours = second.declaration.colours = {{.field = "H"}};
+  CHECK(refused({first, second}) == "metric b: the field \"H\" needs another name: metric a has one of it\n");
 }
 
 TEST_CASE("declarations that someone edited are read as far as they can be") {

@@ -3,6 +3,7 @@
 #include <catch2/catch.hpp>
 
 #include "core/app/files/yaml_file.h"
+#include "tests/support/solve.h"
 
 using namespace drape;
 
@@ -62,4 +63,10 @@ TEST_CASE("What a path needs and the experiment does not have is named") {
         "--set: the experiment has no \"contact\"; name its plugin first");
   CHECK(after_setting("name: e", "pins", "[{radius: 2}]") == "{name: e, pins: [{radius: 2}]}");
   CHECK(after_setting("name: e", "start.scale", "2") == "{name: e, start: {scale: 2}}");
+}
+
+TEST_CASE("A path sets one number of a list that is not written") {
+  const Experiment e = experiment_from("name: e\nenergies: [gravity]\nmethods: {newton: {}}\n",
+                                       {{"energies.gravity.acceleration.2", "-1"}});
+  CHECK(e.resolved.find("energies")->items[0].find("acceleration")->one_line() == "[0, 0, -1]");
 }

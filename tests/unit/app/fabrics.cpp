@@ -224,7 +224,16 @@ TEST_CASE("fabrics: numbers that hide each other, or that no cloth has, are refu
   check_refused("warp_bending: 1e-5, bending_modulus: 1e5", "\"bending_modulus\" is not read beside");
   check_refused("warp_stiffness: 100, membrane_modulus: 1e5", "\"membrane_modulus\" is not read beside");
   check_refused("weft_bending: 1e-5", "\"weft_bending\" needs \"warp_bending\"");
+  check_refused("fabric: cotton, fabric: wool-lycra", "repeated key \"fabric\"");
   check_refused("warp_bending: 1e-5, bias_bending: 1e-3", "not positive definite: with \"bias_bending\"");
+}
+
+TEST_CASE("fabrics: a schedule of a modulus that a stiffness by direction hides is refused") {
+  const std::string keys =
+      "schedule: {keys: [{parameter: material.bending_modulus, times: [0, 1], values: [8e4, 8e3]}]}\n";
+  CHECK_THROWS_WITH(experiment_from(experiment("warp_bending: 1e-5") + keys),
+                    Contains("\"bending_modulus\" is not read beside"));
+  CHECK_NOTHROW(experiment_from(experiment("fabric: gray-interlock") + keys));
 }
 
 TEST_CASE("drape fabric prints what a laboratory measures, and lists the table") {

@@ -266,3 +266,27 @@ TEST_CASE("A load at which a pin has no vertex is refused between the keys' time
   CHECK(model(0)->dirichlet().size() == model(1)->dirichlet().size());
   CHECK_THROWS_WITH(model(0.5), "pin 0 selects no vertex of level 0");
 }
+
+TEST_CASE("Two pins that meet with different targets between the keys' times are refused there") {
+  // A lifted box passes over a row that the other pin holds.
+  const Solved s = scene_from(R"(name: crossing
+cloth: {shape: square, side: 1, triangulation: one_way, columns: 11, rows: 11}
+levels: 1
+pins:
+  - {region: box, lower: [0.45, -1, -1], upper: [0.55, 2, 1]}
+  - {region: box, lower: [-0.05, -1, -1], upper: [0.05, 2, 1], translate: [0, 0, 0.1]}
+energies: [neo_hookean, gravity]
+methods: {newton: {}}
+schedule:
+  steps: 10
+  keys:
+    - {parameter: pins.1.lower.0, times: [0, 1], values: [-0.05, 0.95]}
+    - {parameter: pins.1.upper.0, times: [0, 1], values: [0.05, 1.05]}
+)");
+  const LoadSchedule schedule(s.experiment, *s.scene);
+  const auto model = [&](double time) {
+    return schedule.model(*schedule.at(schedule.keys().values_at(time)), 0, *s.scene->models[0]);
+  };
+  CHECK(model(0.4)->dirichlet().size() == 22);
+  CHECK_THROWS_WITH(model(0.5), Catch::Contains("pin 1 and pin 0 both select vertex"));
+}
