@@ -24,7 +24,7 @@ function markPath(mark, x, y, r) {
 
 /// {place: value → 0 … 1, ticks: [value, text]}.
 function scale(values, logarithmic, categories, most) {
-  if (categories) return {place: v => (categories.indexOf(v) + .5) / categories.length, ticks: categories.map(c => [c, String(c)])};
+  if (categories) return {place: v => (categories.indexOf(v) + .5) / categories.length, ticks: categories.map(c => [c, String(c ?? '–')])};
   let low = Math.min(...values), high = Math.max(...values);
   if (logarithmic) {
     [low, high] = [Math.log10(low), Math.log10(high)];
@@ -99,8 +99,10 @@ export class Chart {
     const {x, y, series} = this.plot;
     this.element.querySelector('.saving').hidden = !series.length;
     if (!series.length) return this.box.replaceChildren(h('p', {class: 'absent'}, this.plot.absent || 'Nothing was recorded for this plot.'));
-    const W = this.width, H = this.height, left = 62, right = W - 14, top = 10;
-    const legend = this.legend(series, left, right), bottom = H - 46 - legend.height;
+    const W = this.width, left = 62, right = W - 14, top = 10, legend = this.legend(series, left, right);
+    const longest = 6.6 * Math.max(0, ...(x.categories ?? []).map(c => String(c ?? '–').length));  // [px]
+    const tilted = longest > (right - left) / (x.categories?.length ?? 1) ? Math.min(.7 * longest, 110) : 0;  // height of names that do not fit beside each other
+    const H = Math.max(this.height, legend.height + tilted + 240), bottom = H - 46 - tilted - legend.height;
     const shown = series.filter(line => !this.hidden.has(line.label)), of = shown.length ? shown : series;
     const points = of.flatMap(line => line.points), ends = p => [p.y, p.low, p.high].filter(v => known(v) && (!y.log || v > 0));
     const sx = scale(points.map(p => p.x), x.log, x.categories, Math.max(2, Math.floor((right - left) / 80)));
@@ -112,17 +114,18 @@ export class Chart {
     const text = (at, value, anchor = 'middle', more = {}) => grid.append(s('text', {x: at[0], y: at[1], 'text-anchor': anchor, stroke: 'none', ...more}, value));
     for (const [value, label] of sx.ticks) {
       if (!x.categories) grid.append(s('line', {x1: r2(px(value)), x2: r2(px(value)), y1: top, y2: bottom}));
-      text([r2(px(value)), bottom + 16], label);
+      if (tilted) text([0, 0], label, 'end', {transform: `translate(${r2(px(value))} ${bottom + 14}) rotate(-40)`});
+      else text([r2(px(value)), bottom + 16], label);
     }
     for (const [value, label] of sy.ticks) {
       grid.append(s('line', {x1: left, x2: right, y1: r2(py(value)), y2: r2(py(value))}));
       text([left - 6, r2(py(value)) + 4], label, 'end');
     }
-    text([(left + right) / 2, bottom + 33], x.title);
+    text([(left + right) / 2, bottom + 33 + tilted], x.title);
     text([0, 0], y.title, 'middle', {transform: `translate(13 ${(top + bottom) / 2}) rotate(-90)`});
     svg.append(grid);
     shown.forEach((line, k) => svg.append(this.line(line, k, p => [r2(px(p.x)), r2(py(p.y))], v => r2(py(v)), x)));
-    svg.append(legend.group(bottom + 55));
+    svg.append(legend.group(bottom + 55 + tilted));
     const hint = s('g', {class: 'hint', 'pointer-events': 'none'});
     svg.append(hint);
     svg.addEventListener('pointermove', event => this.hint(hint, event, shown, p => [px(p.x), py(p.y)], W));

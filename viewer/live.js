@@ -1,6 +1,6 @@
 /// The page of a run that goes on: polls for news four times a second, and sends button presses.
 import {Chart, methodLook} from './charts.js';
-import {h} from './text.js';
+import {h, unique} from './text.js';
 import {View} from './view.js';
 
 export function livePage({title}) {
@@ -36,7 +36,8 @@ export function livePage({title}) {
     const styles = Object.fromEntries(news.methods.map(method => [method.name, method.style])), ends = [...lines.values()].map(points => points.at(-1).x);
     chart.draw({x: {title: 'time [s]', name: 'seconds'}, y: {title: 'force residual', name: 'force_residual', log: true}, series: [
       ...[...lines].map(([label, points]) => ({label, ...methodLook(styles, label), mark: null, points})),
-      ...(ends.length ? [{label: 'tolerance', colour: 'var(--soft)', dash: '5 4', width: 1, points: [0, Math.max(...ends)].map(x => ({x, y: news.tolerance}))}] : [])]});
+      ...unique(ends.length ? news.methods.map(method => method.tolerance) : []).map(y =>
+        ({label: 'tolerance', colour: 'var(--soft)', dash: '5 4', width: 1, points: [0, Math.max(...ends)].map(x => ({x, y}))}))]});
     status.textContent = news.outcome ? `The run has ended: ${news.outcome}.`
       : news.method ? `Running: ${news.method}, level ${news.level} of ${news.finest}.` : 'Waiting for the run.';
     stop.disabled = !news.method || !!news.outcome;
@@ -52,6 +53,7 @@ export function livePage({title}) {
     let pause = 250;
     try {
       const response = await fetch(`news?version=${version}&rows=${rows}`);
+      if (!response.ok) throw new Error(response.statusText);  // of another run's server
       misses = 0;
       if (response.status === 200) {
         await take(await response.json());

@@ -107,10 +107,11 @@ function levelTable(run) {
 /// How close coarse levels are to finer ones, with the scene's start in place of the coarse level as a rival.
 function consistency(run) {
   const columns = metricColumns(run.results.metrics, 'pair').filter(column => column.shown !== 'stored');
+  const ended = (method, l) => converged(run.results.methods[method].levels?.find(each => each.level === l)?.status ?? '');
   const pairs = run.order.flatMap(method => (run.results.methods[method].consistency || []).map(pair => ({method, levels: `${pair.coarse} → ${pair.fine}`,
-    ...flat(pair, ['of_start']), of_start: flat(pair.of_start ?? {}, [])})));
+    comparable: ended(method, pair.coarse) && ended(method, pair.fine), ...flat(pair, ['of_start']), of_start: flat(pair.of_start ?? {}, [])})));
   if (!pairs.length || !columns.length) return null;
-  const starts = unique(pairs.map(pair => pair.levels)).map(levels => ({levels, method: 'flat start', ...Object.fromEntries(columns.map(({name, better}) => {
+  const starts = unique(pairs.map(pair => pair.levels)).map(levels => ({levels, method: 'flat start', yardstick: true, ...Object.fromEntries(columns.map(({name, better}) => {
     const values = pairs.filter(pair => pair.levels === levels).map(pair => pair.of_start?.[name]).filter(known);
     return [name, values.length ? Math[better === 'higher' ? 'max' : 'min'](...values) : null];
   }))}));

@@ -84,7 +84,7 @@ function errors(all) {
 
 function table(all) {
   const measure = ranking(all.measures), keys = all.keys.filter(key => key !== 'run'), state = {medians: all.seeds.length > 1, table: {}};
-  const names = all.columns.filter(name => !['sweep', 'pass'].includes(name)), frame = h('div');
+  const names = all.columns.filter(name => name !== 'pass' && (name !== 'sweep' || keys.includes(name))), frame = h('div');
   const few = ['run', ...keys, 'seed', 'method', 'status', 'converged', 'preview_seconds', 'seconds', 'preview_' + measure, 'error_' + measure, 'energy_released', 'intersections'];
   if (keys.length) few.shift();  // the keys tell the runs apart
   const medians = () => [...grouped(all.shownRows, row => JSON.stringify([row.variation, row.method])).values()].map(rows => {
@@ -122,7 +122,7 @@ export function sweepPage(data) {
     return {...run, errors: rowsOf(run.errors), rows: own.filter(row => row.method), settings: {...own[0], run: run.variation}};
   });
   const values = key => unique(runs.map(run => run.settings[key] ?? null)).sort((a, b) => typeof a === 'number' && typeof b === 'number' ? a - b : 0);
-  const keys = varied.filter(key => values(key).length > 1), all = {...data, runs, columns, values, rows: runs.flatMap(run => run.rows), redraw: [],
+  const keys = ['sweep', ...varied].filter(key => values(key).length > 1), all = {...data, runs, columns, values, rows: runs.flatMap(run => run.rows), redraw: [],
     methods: unique(runs.flatMap(run => run.rows.map(row => row.method))), seeds: unique(runs.map(run => run.seed ?? null)), of: data};
   all.keys = keys.length ? keys : ['run'];
   const numeric = columns.filter(name => !varied.includes(name) && name !== 'seed' && all.rows.some(row => typeof row[name] === 'number'));
@@ -134,7 +134,7 @@ export function sweepPage(data) {
   const matching = h('output', {id: 'matching'}), filter = text => {
     const fits = matcher(text, columns);
     runs.forEach(run => { run.shown = run.rows.filter(fits); });
-    all.shown = runs.filter(run => run.shown.length || !run.rows.length && fits({...run.settings, status: run.status}));
+    all.shown = runs.filter(run => run.shown.length || !run.rows.length && fits({status: run.status, ...run.settings}));
     all.shownRows = runs.flatMap(run => run.shown);
     matching.textContent = all.shown.length < runs.length ? `${all.shown.length} of ${counted(runs.length, 'run')}` : '';
     all.redraw.forEach(draw => draw());

@@ -38,7 +38,7 @@ const plain = (row, columns) => Object.fromEntries(columns.flatMap(({name}) => {
 }));
 
 /// A column is {name, title (text or nodes), few: whether it is among the first ones, better: 'lower' or 'higher', show};
-/// `rivals` gives the key of the rows among which the best value is bold. The name is the column's in files;
+/// `rivals` gives the key of the rows among which the best value is bold; a method that is no better than a yardstick is not. The name is the column's in files;
 /// `state` keeps order and columns for another table of these columns.
 export function dataTable(name, what, columns, rows, rivals = () => '', state = {}) {
   const filled = columns.filter(column => rows.some(row => row[column.name] !== null && row[column.name] !== undefined && row[column.name] !== ''));
@@ -51,7 +51,8 @@ export function dataTable(name, what, columns, rows, rivals = () => '', state = 
       if (new Set(known.map(text)).size < 2) continue;  // equal as shown
       // Where lower is better, what is nearer to zero is: a difference of energies may be negative.
       const rank = row => column.better === 'higher' ? -value(row[column.name]) : Math.abs(value(row[column.name])), first = known.reduce((a, b) => rank(b) < rank(a) ? b : a);
-      known.filter(row => text(row) === text(first)).forEach(row => best.set(row, (best.get(row) || new Set()).add(column.name)));
+      const tied = known.filter(row => text(row) === text(first)), yardsticks = tied.filter(row => row.yardstick);
+      (yardsticks.length ? yardsticks : tied).forEach(row => best.set(row, (best.get(row) || new Set()).add(column.name)));
     }
   }
   const chosen = state.chosen ??= new Set(filled.filter(column => column.few).map(column => column.name));
@@ -81,6 +82,6 @@ export function dataTable(name, what, columns, rows, rivals = () => '', state = 
     draw();
   }}), ' ' + (column.text ?? column.name)));
   const all = h('button', {type: 'button', click: () => ticks.forEach(tick => { if (!tick.firstChild.checked) tick.firstChild.click(); })}, 'All');
-  return h('div', {class: 'table', id: name}, filled.length > chosen.size ? fold('Columns', h('p', {class: 'controls'}, all, ticks)) : '', frame,
+  return h('div', {class: 'table', id: name}, filled.some(column => !column.few) ? fold('Columns', h('p', {class: 'controls'}, all, ticks)) : '', frame,
     saving(name, 'the table ' + what, () => shownRows().map(row => plain(row, filled))));
 }

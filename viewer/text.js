@@ -33,7 +33,8 @@ export const seconds = value => value === null || value === undefined ? '–'
 export const words = value => value === null || value === undefined || value === '' ? '–' : typeof value === 'string' ? value
   : typeof value === 'boolean' ? (value ? 'yes' : 'no') : Number.isInteger(value) && Math.abs(value) < 1e7 ? count(value) : number(value);
 
-export const converged = status => status.startsWith('converged');
+/// A method whose levels ended differently has the word of each: "converged, max_steps_reached".
+export const converged = status => status.split(', ').every(word => word.startsWith('converged'));
 /// A status with a dot in the colour of its kind.
 export const badge = status => h('span', {class: 'status ' + (converged(status) ? 'good' : 'poor')}, status.replace(/_/g, ' '));
 /// "1 run" or "3 runs".

@@ -101,6 +101,13 @@ methods: {newton: {}}
   assert.deepEqual(heard.errors, []);
 });
 
+test('a page whose run is gone says so, even if another server answers', async () => {
+  const running = await startViewed(contactConfig, 'left', ...endless), {page} = await openPage(running.url);
+  await page.route('**/news*', route => route.fulfill({status: 404}));
+  await until('the page says so', async () => /no longer answers/.test(await page.locator('#live-status').textContent()));
+  running.kill('SIGTERM');
+});
+
 test('others can neither look nor stop the run', async () => {
   const running = await startViewed(contactConfig, 'guarded', ...endless);
   const {origin, host, port} = new URL(running.url);

@@ -307,6 +307,17 @@ test('a method has its own tolerance, and one that asks for no balance is not ca
   assert.match(said, /cascadic: [^:]* ended at force residual [0-9.e-]+\./);
 });
 
+test('a method with a level that did not converge is neither good nor the best', async () => {
+  const {page} = await edited('early', methods => {
+    methods.newton.status = methods.newton.levels[1].status = 'max_steps_reached';
+    methods.newton.levels[1].seconds = 1e-3;
+    methods.newton.consistency[0].distance_rms = 1e-9;
+  });
+  assert.deepEqual(await page.locator('#methods .status.poor').allTextContents(), ['converged, max steps reached']);
+  assert.equal(await page.locator('#methods tr:has(.poor) strong').count(), 0);
+  assert.equal(await page.locator('#consistency tbody tr:has-text("newton") strong').count(), 0);
+});
+
 /// Writes four snapshots of pcs's level 0 into the run, as a recorded run has them: the sheet sinking to its last state.
 function addFrames() {
   const ply = fs.readFileSync(path.join(folder, 'out/levels/pcs_l0.ply')), marker = 'end_header\n';

@@ -69,6 +69,29 @@ test('distance against time is the median over starts at equal cost, between the
   assert.equal(curve.at(-1).iterations, Math.max(...ends));
 });
 
+test('two sweeps stay apart, and what has no results is found by its status', async () => {
+  fs.cpSync(path.join(folder, 'sweep'), path.join(folder, 'again'), {recursive: true});
+  const file = path.join(folder, 'again/sweep.json'), sweep = JSON.parse(fs.readFileSync(file));
+  Object.assign(sweep.runs[0], {status: 'failed', exit_code: 124});
+  fs.writeFileSync(file, JSON.stringify({...sweep, sweep: 'again'}));
+  await run(folder, 'report', 'sweep', 'again', '-o', 'both.html');
+  const {page} = await open('both.html');
+  const rows = JSON.parse((await downloaded(page, '#parameter button:text-is("JSON")')).bytes);
+  assert.ok(rows.length > 0 && rows.every(row => row.runs <= 3));
+  await page.locator('#filter').fill('status=timeout');
+  assert.equal(await page.locator('#matching').textContent(), '1 of 48 runs');
+});
+
+test('plots keep their height above a long legend, and tables their chooser of columns', async () => {
+  const {page} = await open('sweep/report.html', screens[1]);
+  await page.evaluate(() => document.querySelectorAll('details').forEach(part => { part.open = true; }));
+  await until('the plot', () => page.locator('#errors .grid line').count());
+  assert.ok(await page.locator('#errors .grid line').evaluateAll(all => Math.max(...all.map(l => l.y2.baseVal.value - l.y1.baseVal.value))) > 150);
+  await page.locator('#table details button').click();
+  await page.locator('#filter').fill('pcs');
+  assert.equal(await page.locator('#table summary').count(), 1);
+});
+
 test('the table sorts and filters, by medians or by run, and compares within one physics only', async () => {
   const {page} = await open('sweep/report.html');
   assert.equal(await page.locator('#table tbody tr').count(), 16);

@@ -94,6 +94,7 @@ TEST_CASE("a run writes snapshots and errors, against its own end and a tighter 
         CHECK(number("vertices") == vertices);
         CHECK(number("seconds") >= seconds);
         seconds = number("seconds");
+        CHECK(seconds == Approx(snapshots["seconds"][k].get<double>()).epsilon(1e-7));
         for (const char* column :
              {"own_rms", "own_hausdorff", "own_d_H_fit", "own_silhouette_mismatch", "own_energy_gap",
               "reference_rms", "reference_hausdorff", "reference_d_H_fit"})
@@ -200,7 +201,7 @@ TEST_CASE("the lowest of the states that have converged may be the reference, wh
     if (method["levels"][1]["energy"] < energy) energy = method["levels"][1]["energy"], lowest = name;
   CHECK(all["reference"]["method"] == lowest);
   CHECK(all["reference"]["chosen"] == "lowest");
-  CHECK(all["reference"]["force_residual"] <= 1e-6);
+  CHECK(all["reference"]["force_residual"].get<double>() <= 1e-6);
   for (const auto& [name, method] : all["methods"].items()) {
     CHECK(method["reference"]["against"] == lowest);
     CHECK(method["reference"]["energy_above_end"] > 0);  // of the method's state, above the reference

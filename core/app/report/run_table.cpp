@@ -61,14 +61,12 @@ OptionalNumber last_error(const RunData& run, const MethodRecord& method, bool p
 
 std::string error_name(const ErrorMeasure& m) { return m.name == energy_gap ? m.name : "error_" + m.name; }
 
-/// Whether the method is under way, or was when its run was interrupted.
-bool is_running(const MethodRecord& method) { return method.status == "running"; }
-
-/// The statuses of the levels, or the one that all have.
+/// The statuses of the levels, or the one that all have; then the method's own if no level has it, as in an
+/// aborted run.
 std::string statuses(const MethodRecord& method) {
   std::vector<std::string> words;
   for (const LevelRecord& level : method.levels) words.push_back(level.status);
-  if (is_running(method)) words.push_back(method.status);
+  if (!method.status.empty() && !is_one_of(method.status, words)) words.push_back(method.status);
   const bool same =
       std::all_of(words.begin(), words.end(), [&](const auto& w) { return w == method.status; });
   return same ? method.status : joined(words);
@@ -133,7 +131,7 @@ TableRow row_of(const RunData& run, const MethodRecord& method) {
   const Values none, &first = several ? method.levels.front().values : none,
                      &last = method.levels.empty() ? none : method.levels.back().values;
   std::string fault, remark;
-  if (is_running(method))
+  if (method.status == "running")
     fault = "if the run has ended, drape run --resume " + run.folder.string() + " goes on with it\n";
   for (const LevelRecord& level : method.levels)
     if (!level.message.empty())

@@ -23,7 +23,6 @@ LiveView::LiveView(const Experiment& experiment, const Scene& scene, const std::
                    int port)
     : scene_(scene),
       title_(experiment.parameters.name),
-      tolerance_(experiment.parameters.newton.force_tolerance),
       finest_(static_cast<int>(scene.models.size()) - 1),
       first_obstacles_(obstacles_of(scene.finest_model().contacts())),
       document_(scene.hierarchy.levels, first_obstacles_, !scene.finest_model().contacts().empty(),
@@ -31,8 +30,11 @@ LiveView::LiveView(const Experiment& experiment, const Scene& scene, const std::
                   blocks_[name] = std::make_shared<const std::string>(std::move(bytes));
                 }) {
   for (const auto& [name, solver] : experiment.methods)
-    if (methods.empty() || is_one_of(name, methods))
+    if (methods.empty() || is_one_of(name, methods)) {
       methods_.push_back(name), styles_.push_back(solver_style(experiment.solver_type(name)));
+      tolerances_.push_back(newton_number(experiment.resolved, name, "force_tolerance")
+                                .value_or(experiment.parameters.newton.force_tolerance));
+    }
   server_ = std::make_unique<LiveServer>(
       port, LiveAnswers{page(title_ + ", live", {{"kind", "live"}, {"title", title_}}),
                         [this](long version, std::size_t rows) { return news(version, rows); },
@@ -139,16 +141,18 @@ std::string LiveView::news(long version, std::size_t rows) {
     Json levels = Json::array();
     for (auto& [key, view] : levels_) {
       if (key.first != static_cast<int>(m) || view.state.is_null()) continue;
-      levels.push_back(
-          {{"level", key.second}, {"status", view.status}, {"states", Json::array({view.state})}});
+      const bool ended = !outcome_.empty() || key != std::pair(method_, level_);
+      levels.push_back({{"level", key.second},
+                        {"status", ended && view.status == "running" ? "failed" : view.status},
+                        {"states", Json::array({view.state})}});
       if (view.sent == view.name) continue;
       forget_blocks(std::exchange(view.sent_before, std::exchange(view.sent, view.name)));
     }
-    methods.push_back({{"name", methods_[m]}, {"style", styles_[m]}, {"levels", levels}});
+    methods.push_back(
+        {{"name", methods_[m]}, {"style", styles_[m]}, {"tolerance", tolerances_[m]}, {"levels", levels}});
   }
   Json news = document_.document(title_, methods);
   news["version"] = version_;
-  news["tolerance"] = tolerance_;
   news["outcome"] = outcome_;
   news["method"] = method_ < 0 ? "" : methods_[method_];
   news["level"] = level_;

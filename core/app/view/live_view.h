@@ -53,9 +53,9 @@ class LiveView : public Observer {
 
   const Scene& scene_;
   const std::string title_;
-  const double tolerance_;
   std::vector<std::string> methods_;
-  std::vector<int> styles_;  // of the methods
+  std::vector<int> styles_;         // of the methods
+  std::vector<double> tolerances_;  // of the force residual, of the methods
   int finest_ = 0;
 
   std::atomic<bool> stop_ = false, refine_ = false;
