@@ -77,6 +77,12 @@ TEST_CASE("What the compiler refuses is shown with the file's lines, and nothing
                         Contains("error: --plugin ") && Contains("rubber.cpp: does not compile"));
   }
   CHECK_FALSE(std::filesystem::exists(folder / "results"));
+  folder.write("fold.cpp", R"(#include "core/numerics/formulas/energy_formula.h"
+DRAPE_PARAMETERS(Crease, (rest, 0.3, "rad", -3, 3, "angle at rest"));
+DRAPE_FOLD(fold, "A crease.", Crease) { return k * square(theta - rest); }
+)");
+  CHECK_THAT(folder.refused("list energy --plugin fold.cpp"),
+             Contains("a parameter has the name of a symbol of the formula"));
 }
 
 TEST_CASE("What a plugin throws or fails to return ends a command with a message") {

@@ -45,6 +45,7 @@ template <class S>
 struct AreaRatio : S {
   S logarithm;
   friend S log(const AreaRatio& j) { return j.logarithm; }
+  friend S square(const AreaRatio& j) { return static_cast<const S&>(j) * static_cast<const S&>(j); }
 };
 
 /// From the strains, which are the first three of the N variables (none, for a value, if there are fewer),

@@ -3,6 +3,8 @@
 #include <array>
 #include <memory>
 #include <optional>
+#include <stdexcept>
+#include <string>
 #include <vector>
 
 #include "core/numerics/elements/element_energy.h"
@@ -98,23 +100,31 @@ class ElementFormula final : public Energy {
   using Parameters = typename Law::Parameters;
 
   explicit ElementFormula(const Parameters& parameters) : p_(parameters) {}
-  EnergyRole role() const override {
-    if constexpr (requires { Parameters::role; }) return Parameters::role;
-    return Elements::role;
-  }
+  EnergyRole role() const override { return role_or<Parameters>(Elements::role); }
 
   std::optional<double> midpoint_factor() const override {
-    return sampled_midpoint_factor([&](const Level& level) { return bind(level, Material()); });
+    try {
+      return sampled_midpoint_factor([&](const Level& level) { return bind(level, Material()); });
+    } catch (const std::runtime_error&) {  // the sampled meshes lack vertices that the elements name
+      return std::nullopt;
+    }
   }
 
   double plate_stiffness(const Material& material) const override {
     if (role() != EnergyRole::bending) return 0;
-    return fold_plate_stiffness([&](const Level& level) { return bind(level, material); });
+    try {
+      return fold_plate_stiffness([&](const Level& level) { return bind(level, material); });
+    } catch (const std::runtime_error&) {  // likewise
+      return 0;
+    }
   }
 
   std::unique_ptr<BoundEnergy> bind(const Level& level, const Material& material) const override {
     using Kernel = ElementFormulaKernel<Law, Elements>;
     const Stencils stencils = Elements::of(level);
+    if (stencils.size() > 0 && (stencils.minCoeff() < 0 || stencils.maxCoeff() >= level.vertex_count()))
+      throw std::runtime_error("an element has a vertex that level " + std::to_string(level.index) +
+                               " does not have");
     const Positions& x = level.rest.vertices;
     std::vector<typename Kernel::Rest> rest(static_cast<std::size_t>(stencils.rows()));
     for (Eigen::Index e = 0; e < stencils.rows(); ++e)

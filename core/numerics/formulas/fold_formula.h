@@ -67,14 +67,15 @@ struct FoldFormulaKernel {
   }
 };
 
-/// The energy that DRAPE_FOLD registers.
+/// The energy that DRAPE_FOLD registers: a bending energy, unless its parameters have a static `role`.
 template <class Law>
 class FoldFormula final : public Energy {
  public:
   using Parameters = typename Law::Parameters;
+  DRAPE_SYMBOLS((theta), (bend), (rest), (length), (h1), (h2), (area), (u), (v), (w));
 
   explicit FoldFormula(const Parameters& parameters) : p_(parameters) {}
-  EnergyRole role() const override { return EnergyRole::bending; }
+  EnergyRole role() const override { return role_or<Parameters>(EnergyRole::bending); }
 
   std::optional<double> midpoint_factor() const override {
     const Law law(p_, Material());
@@ -83,6 +84,7 @@ class FoldFormula final : public Energy {
   }
 
   double plate_stiffness(const Material& material) const override {
+    if (role() != EnergyRole::bending) return 0;
     return fold_plate_stiffness([&](const Level& level) { return bind(level, material); });
   }
 

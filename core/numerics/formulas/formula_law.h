@@ -4,6 +4,7 @@
 #include <numbers>
 
 #include "core/kernel/interfaces/material.h"
+#include "core/kernel/plugin/number_parameters.h"
 #include "core/kernel/plugin/parameters.h"
 #include "core/numerics/elements/orthotropic_stiffness.h"
 #include "core/numerics/linear_algebra/pack_functions.h"
@@ -41,6 +42,13 @@ struct FormulaLaw : Own, MaterialSymbols {
   explicit FormulaLaw(const Own& own = {}, const Material& material = Material())
       : Own(own), MaterialSymbols(material) {}
 };
+
+/// For a class with `Parameters`: none may have the name of a symbol, which would hide it in the formula.
+#define DRAPE_IS_PARAMETER(symbol) \
+  || requires(const Parameters& p) { p.symbol; }
+#define DRAPE_SYMBOLS(...)                                                \
+  static_assert(!(false DRAPE_FOR_EACH(DRAPE_IS_PARAMETER, __VA_ARGS__)), \
+                "a parameter has the name of a symbol of the formula, which hides it: rename it")
 
 /// What a formula depends on: evaluated on traces in place of numbers, it returns one. A comparison is a
 /// trace too.

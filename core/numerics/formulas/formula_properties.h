@@ -21,6 +21,13 @@ bool is_isotropic(const std::vector<MaterialTriangle>& triangles, bool size_or_p
 /// Green strains of a triangle with these principal stretches, at an angle in the material's frame.
 Eigen::Vector3d green_strains(double s1, double s2, double angle);
 
+/// The static `role` of an energy's parameters, or the usual one of its kind.
+template <class Parameters>
+constexpr EnergyRole role_or(EnergyRole usual) {
+  if constexpr (requires { Parameters::role; }) return Parameters::role;
+  return usual;
+}
+
 /// How an energy is bound to a level.
 using BindEnergy = std::function<std::unique_ptr<BoundEnergy>(const Level&)>;
 

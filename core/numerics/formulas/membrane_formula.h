@@ -92,11 +92,12 @@ struct PrincipalFormula {
   }
 };
 
-/// The energy that DRAPE_MEMBRANE registers.
+/// The energy that DRAPE_MEMBRANE registers: a membrane, unless its parameters have a static `role`.
 template <class Law>
 class MembraneFormula final : public Energy {
  public:
   using Parameters = typename Law::Parameters;
+  DRAPE_SYMBOLS((g11), (g22), (g12), (s1), (s2), (J), (area), (u), (v), (w));
 
   /// Throws std::runtime_error for a law by strains and stretches at once.
   explicit MembraneFormula(const Parameters& parameters) : p_(parameters) {
@@ -106,7 +107,7 @@ class MembraneFormula final : public Energy {
           "the formula uses Green strains (g11, g22, g12) and principal stretches (s1, s2): use either, in "
           "two energies if need be");
   }
-  EnergyRole role() const override { return EnergyRole::membrane; }
+  EnergyRole role() const override { return role_or<Parameters>(EnergyRole::membrane); }
 
   // The four triangles have the strains of the whole, and a quarter of its area each.
   std::optional<double> midpoint_factor() const override {

@@ -29,6 +29,7 @@
 #define DRAPE_METRIC_FORMULA(measured, name, summary, unit, better, symbols, ...)                       \
   namespace drape::formulas {                                                                           \
   struct name final : MetricFormula<__VA_ARGS__> {                                                      \
+    using MetricFormula<__VA_ARGS__>::MetricFormula;                                                    \
     MetricScope scope() const override { return MetricScope::measured; }                                \
     MetricDeclaration declaration() const override { return of(#name, summary, unit, Better::better); } \
     MetricResult measure(const MetricInput& input) const override {                                     \
@@ -45,6 +46,9 @@ namespace drape::formulas {
 /// The base of the metrics that DRAPE_METRIC and DRAPE_PAIR_METRIC make.
 template <class Own = NoParameters>
 struct MetricFormula : Metric, Own {
+  using Parameters = Own;
+  explicit MetricFormula(const Own& own = {}) : Own(own) {}
+
  protected:
   static MetricDeclaration of(const char* name, const char* summary, const char* unit, Better better) {
     return {.columns = {{.name = name, .unit = unit, .better = better}}, .text = summary};

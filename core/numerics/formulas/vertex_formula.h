@@ -47,12 +47,10 @@ template <class Law>
 class VertexFormula final : public Energy {
  public:
   using Parameters = typename Law::Parameters;
+  DRAPE_SYMBOLS((x), (y), (z), (u), (v), (w), (area), (mass));
 
   explicit VertexFormula(const Parameters& parameters) : p_(parameters) {}
-  EnergyRole role() const override {
-    if constexpr (requires { Parameters::role; }) return Parameters::role;
-    return EnergyRole::external;
-  }
+  EnergyRole role() const override { return role_or<Parameters>(EnergyRole::external); }
 
   std::optional<double> midpoint_factor() const override {
     const Trace all = trace(Law(p_, Material()));

@@ -79,6 +79,9 @@ struct Pack {
     v /= b.v;
     return *this;
   }
+  /// As std::min and std::max in each lane: the first argument if either is NaN.
+  friend Pack min(Pack a, Pack b) { return of((b < a).v ? b.v : a.v); }
+  friend Pack max(Pack a, Pack b) { return of((a < b).v ? b.v : a.v); }
   friend Mask operator<(Pack a, Pack b) { return {a.v < b.v}; }
   friend Mask operator<=(Pack a, Pack b) { return {a.v <= b.v}; }
   friend Mask operator>(Pack a, Pack b) { return {a.v > b.v}; }
@@ -130,16 +133,6 @@ Pack<W> rounded(Pack<W> product) {
 }
 #undef DRAPE_VECTOR_REGISTER
 #endif
-
-/// As std::min and std::max in each lane: the first argument if either is NaN.
-template <int W>
-Pack<W> min(Pack<W> a, Pack<W> b) {
-  return select(b < a, b, a);
-}
-template <int W>
-Pack<W> max(Pack<W> a, Pack<W> b) {
-  return select(a < b, b, a);
-}
 
 template <int W>
 Pack<W> sqrt(Pack<W> a) {  // masked, since g++ 12 takes the plain intrinsic's operand for uninitialised

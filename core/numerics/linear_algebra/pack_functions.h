@@ -90,7 +90,7 @@ DRAPE_STANDARD_FUNCTIONS(DRAPE_IN_LANES)
 #undef DRAPE_IN_LANES
 
 template <int W>
-Pack<W> pow(Pack<W> a, const Pack<W>& b) {
+Pack<W> pow(Pack<W> a, const std::type_identity_t<Pack<W>>& b) {
   for (int i = 0; i < W; ++i) a.v[i] = std::pow(a.v[i], b.v[i]);
   return a;
 }

@@ -3,6 +3,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
+#include "core/numerics/formulas/metric_formula.h"
 #include "core/numerics/patterns/generate.h"
 #include "tests/support/evaluate.h"
 #include "tests/support/kernel_check.h"
@@ -27,6 +28,9 @@ DRAPE_MEMBRANE(every_function, "Isotropic.") {
 }
 DRAPE_MEMBRANE(seam, "Stiffer on one side.") { return select(u > 0.5, 2.0, 1.0) * g11 * g11; }
 DRAPE_MEMBRANE(sized, "Depends on the mesh.") { return sqrt(area) * g11 * g11; }
+DRAPE_MEMBRANE(at_rest, "With functions of numbers at rest.") {
+  return mu * (1 + max(u - 0.5, 0.0)) * pow(area, 2) * (square(J) - 1 - 2 * log(J));
+}
 DRAPE_FOLD(crease, "A plastic rest angle.") { return 3 * k * length * length / area * square(bend - 0.3); }
 DRAPE_FOLD(fold, "As hinge.") { return 3 * k * length * length / area * square(bend); }
 DRAPE_FOLD(late, "Begins at 3.1 rad.") {
@@ -77,7 +81,15 @@ struct every_second {
   }
   static ElementOrder order(const Level& level) { return ElementOrder::of(of(level), level.rest.vertices); }
 };
+/// Two vertices by their numbers.
+struct tied {
+  static constexpr int vertices = 2;
+  static constexpr EnergyRole role = EnergyRole::bending;
+  static Stencils of(const Level&) { return Stencils{{0, 60}}; }
+  static ElementOrder order(const Level& level) { return ElementOrder::of(of(level), level.rest.vertices); }
+};
 }  // namespace drape::elements
+DRAPE_ELEMENT(tie, tied, "Pulled together.") { return 5 * d[0].squaredNorm(); }
 DRAPE_ELEMENT(seams, every_second, "Pulled together.") { return 5 * d[0].squaredNorm(); }
 DRAPE_ELEMENT(stvk_by_edges, triangles, "As strains_of_stvk.") {
   const T a = rest[0].squaredNorm(), b = rest[0].dot(rest[1]), c = rest[1].squaredNorm(), det = a * c - b * b;
@@ -93,7 +105,14 @@ DRAPE_ELEMENT(quadratic, hinges, "As quadratic_bending.") {
   const Vector<S> curvature = d[0] * at_e - d[1] * at_u - d[2] * at_v;
   return 6 * k * squared / (u + v) * curvature.squaredNorm();
 }
+DRAPE_MEMBRANE(tension, "A load.", Loaded) { return pressure * J; }
 DRAPE_ELEMENT(volume, triangles, "A load.", Loaded) { return pressure * d[0].cross(d[1]).norm(); }
+
+struct Ground {
+  double ground = 0;
+  static void declare(drape::Declaration<Ground>& d) { d.add("ground", &Ground::ground); }
+};
+DRAPE_METRIC(above, "Height above the ground.", "m", neither, Ground) { return x.col(2).minCoeff() - ground; }
 
 using namespace drape;
 
@@ -136,6 +155,8 @@ TEST_CASE("energy_formula: derivatives of membranes, folds and loads follow from
   check_derivatives(MembraneFormula<formulas::ogden>({}));
   check_derivatives(ElementFormula<formulas::springs, elements::edges>({}));
   check_derivatives(ElementFormula<formulas::seams, elements::every_second>({}));
+  check_derivatives(ElementFormula<formulas::tie, elements::tied>({}));
+  check_derivatives(MembraneFormula<formulas::at_rest>({}));
   check_derivatives(ElementFormula<formulas::stvk_by_edges, elements::triangles>({}));
   check_derivatives(ElementFormula<formulas::quadratic, elements::hinges>({}));
   check_derivatives(ElementFormula<formulas::volume, elements::triangles>({}));
@@ -155,6 +176,7 @@ TEST_CASE("energy_formula: role and midpoint factor follow from the kind and the
   CHECK_FALSE(ElementFormula<formulas::springs, elements::edges>({}).midpoint_factor());
   CHECK(ElementFormula<formulas::stvk_by_edges, elements::triangles>({}).midpoint_factor() == 1);
   CHECK(ElementFormula<formulas::seams, elements::every_second>({}).role() == EnergyRole::position);
+  CHECK(MembraneFormula<formulas::tension>({}).role() == EnergyRole::external);
   CHECK(ElementFormula<formulas::volume, elements::triangles>({}).role() == EnergyRole::external);
   CHECK(ElementFormula<formulas::quadratic, elements::hinges>({}).role() == EnergyRole::bending);
   CHECK(ElementFormula<formulas::quadratic, elements::hinges>({}).midpoint_factor() == 2);
@@ -238,4 +260,18 @@ TEST_CASE("energy_formula: log(J) keeps the digits of small strains") {
   const double det = 2 * 1.4 - 0.04;
   CHECK(log(area_ratio<1>(0.5, 0.2, 0.1, det)).value == Approx(std::log(det) / 2));
   CHECK(J(area_ratio<1>(0.5, 0.2, 0.1, det)).value == Approx(std::sqrt(det)));
+}
+
+TEST_CASE("energy_formula: elements of vertices that a level does not have are refused") {
+  const ElementFormula<formulas::tie, elements::tied> tie({});
+  CHECK_FALSE(tie.midpoint_factor());
+  CHECK(tie.plate_stiffness(Material()) == 0);
+  CHECK_THROWS_WITH(tie.bind(Level::of(0, grid({1, 1}, 3, 3, Diagonals::one_way)), Material()),
+                    Catch::Contains("has a vertex that level 0"));
+}
+
+TEST_CASE("metric_formula: a metric has the parameters of its struct") {
+  Registry registry;
+  registry.add<Metric, formulas::above>("above", "A.");
+  CHECK(registry.find("metric", "above")->schema.parameters.size() == 1);
 }
