@@ -94,6 +94,13 @@ def test_check_energy(capsys):
             h[0, 1, 2] = numpy.nan
             return h
 
+    class OneSided(prototypes.Springs):
+        def hessian(self, x, rest):
+            h = super().hessian(x, rest)
+            h[:, 3:, :3] = 0
+            return h
+
+    assert not drape.check_energy(OneSided())
     assert not drape.check_energy(Broken())
     assert "hessian: NOT FINITE at vertices " in capsys.readouterr().out
     assert not drape.check_energy({"type": "formula", "density": "100*(g11^2 + g22^2 + g12^2) + 5*abs(g11)"})
@@ -110,6 +117,21 @@ def test_an_experiment_uses_a_prototype_by_name(small):
         assert [level.status for level in own.levels] == [level.status for level in twin.levels]
         assert own.levels[-1].energy == pytest.approx(twin.levels[-1].energy, rel=1e-5)
         assert "numpy_stvk" in own.levels[-1].energy_parts
+
+
+def test_bending_keeps_coarse_membranes_of_pcs_from_buckling(small):
+    energies = set()
+    for stiffness in (0.0, 1e-3):
+        class Plate(prototypes.Springs):
+            role = "bending"
+
+            def plate_stiffness(self, material, stiffness=stiffness):
+                return stiffness
+
+        drape.register("plate", Plate)
+        result = drape.Experiment({**small, "energies": ["neo_hookean", "plate", "gravity"]}).run(methods=["pcs"], progress=False)
+        energies.add(result["pcs"].levels[0].energy)
+    assert len(energies) == 2
 
 
 def test_parameters_are_checked_like_a_plugins(small):

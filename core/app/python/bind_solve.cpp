@@ -16,6 +16,8 @@ struct Checkpoint {
   MethodState state;
   std::string method;
   std::string experiment;  ///< resolved, as text
+  int level = -1;          ///< of the last change of it; -1 without one
+  Positions start;         ///< from which the solve then went on
 };
 
 /// A method that Python advances, one iteration at a time. While one thread of Python waits for the solver,
@@ -54,6 +56,12 @@ class Solve {
       throw std::runtime_error(
           "the checkpoint is one of an experiment with other values; set them back, or use "
           "Solve.set to change them during a solve");
+    if (start && start->level >= 0) {
+      ConfigErrors errors;
+      without_gil([&] { scene_ = warm_started(scene_.experiment, start->level, start->start, errors); });
+      throw_errors(errors);
+      level_ = start->level;
+    }
     solve_ = begin(scene_, start ? start->state : MethodState());
     all().insert(this);
   }
@@ -90,7 +98,10 @@ class Solve {
     return levels;
   }
 
-  Checkpoint checkpoint() { return {idle().checkpoint(), method_, scene_.experiment->resolved.one_line()}; }
+  Checkpoint checkpoint() {
+    return {idle().checkpoint(), method_, scene_.experiment->resolved.one_line(), level_,
+            level_ < 0 ? Positions() : scene_.scene->starts[level_]};
+  }
 
   /// Goes on from the present state on its level: Dirichlet vertices move from there to their targets.
   /// Several changes in a row go on from the same state.
@@ -105,12 +116,10 @@ class Solve {
       const Positions& x = iterated ? solve_->x() : scene_.scene->starts[level];
       refuse_other_cloth(*scene_.experiment, *changed, level, errors);
       if (!errors.empty()) return;
-      std::shared_ptr<Scene> scene = build_scene(*changed, errors, IntersectingStart::allowed);
-      if (scene) warm_start_scene(*changed, *scene, level, x, errors);
+      const SceneHandle next = warm_started(changed, level, x, errors);
       if (!errors.empty()) return;
       MethodState from;
       from.level = level;
-      const SceneHandle next{changed, scene};
       solve_ = begin(next, std::move(from));
       level_ = level;
       scene_ = next;
@@ -126,6 +135,14 @@ class Solve {
   }
 
  private:
+  /// The experiment's scene, which begins at x on that level.
+  static SceneHandle warm_started(const std::shared_ptr<const Experiment>& experiment, int level,
+                                  const Positions& x, ConfigErrors& errors) {
+    std::shared_ptr<Scene> scene = build_scene(*experiment, errors, IntersectingStart::allowed);
+    if (scene) warm_start_scene(*experiment, *scene, level, x, errors);
+    return {experiment, scene};
+  }
+
   std::unique_ptr<SteppedSolve> begin(const SceneHandle& s, MethodState from) const {
     return std::make_unique<SteppedSolve>(s.experiment->solver_of(method_), *s.scene, std::move(from));
   }

@@ -101,7 +101,8 @@ class BoundPythonEnergy final : public BoundEnergy {
         for (int i = 0; i < size; ++i)
           for (int j = 0; j < size; ++j)
             for (int e = begin; e < end; ++e)
-              hessians[(static_cast<std::ptrdiff_t>(e) * size + i) * size + j] = hessian(e, i, j);
+              hessians[(static_cast<std::ptrdiff_t>(e) * size + i) * size + j] =
+                  0.5 * (hessian(e, i, j) + hessian(e, j, i));  // of a triangle alone check_energy finds half
       });
     });
     using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
@@ -180,6 +181,12 @@ class PythonEnergy final : public Energy {
 
   EnergyRole role() const override { return role_; }
   std::optional<double> midpoint_factor() const override { return midpoint_factor_; }
+  double plate_stiffness(const Material& material) const override {
+    return with_python([&] {
+      return cast_to<double>(prototype_->attr("plate_stiffness")(material),
+                             answer_of(*prototype_, "plate_stiffness"), "a number");
+    });
+  }
   std::unique_ptr<BoundEnergy> bind(const Level& level, const Material& material) const override {
     return with_python([&]() -> std::unique_ptr<BoundEnergy> {
       const auto kept = std::make_shared<Level>(level);  // Python may store it

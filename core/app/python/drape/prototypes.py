@@ -103,6 +103,11 @@ class Energy(_Prototype):
         """What the evaluation needs beside x: computed once for a level, passed to each call."""
         return None
 
+    def plate_stiffness(self, material: _core.Material) -> float:
+        """Of a bending energy: D [J], if a sheet rolled to a radius r has the energy D/(2 r²) for each unit of rest area. On coarse
+        levels of pcs membranes of which no bending energy has one resist no compression."""
+        return 0.0
+
     def value(self, x: numpy.ndarray, rest: Any) -> numpy.ndarray:
         """m energies [J]; inf outside the domain."""
         raise self._undefined("value(self, x, rest)")
