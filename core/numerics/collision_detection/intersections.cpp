@@ -85,10 +85,13 @@ int share_first(std::array<int, 3>& a, std::array<int, 3>& b) {
   return shared;
 }
 
-Box box_of(const TriangleMesh& mesh, int t) {
+/// Relative to `origin`: a box has floats, which are fine near it alone.
+Box box_of(const TriangleMesh& mesh, int t, const Vector& origin) {
   Box box;
-  for (const int v : vertices(mesh, t))
-    box.include(Box::around(mesh.vertices.row(v), mesh.vertices.row(v), 0));
+  for (const int v : vertices(mesh, t)) {
+    const Vector at = mesh.vertices.row(v).transpose() - origin;
+    box.include(Box::around(at, at, 0));
+  }
   return box;
 }
 
@@ -99,10 +102,10 @@ Vector middle_of_both(const Box& a, const Box& b) {
   return p;
 }
 
-std::vector<Box> boxes_of(const TriangleMesh& mesh) {
+std::vector<Box> boxes_of(const TriangleMesh& mesh, const Vector& origin) {
   std::vector<Box> boxes(mesh.triangles.rows());
   parallel_for(static_cast<int>(boxes.size()), triangles_per_task, [&](int begin, int end) {
-    for (int t = begin; t < end; ++t) boxes[t] = box_of(mesh, t);
+    for (int t = begin; t < end; ++t) boxes[t] = box_of(mesh, t, origin);
   });
   return boxes;
 }
@@ -115,16 +118,19 @@ std::vector<TrianglePair> meeting(const TriangleMesh& mesh, const TriangleMesh& 
       for (const int* t = candidates.begin(s); t != candidates.end(s); ++t) {
         std::array<int, 3> a = vertices(mesh, s), b = vertices(other, *t);
         const int shared = same ? share_first(a, b) : 0;
-        if (meet(corners(mesh.vertices, a), corners(other.vertices, b), shared))
-          found.push_back({s, *t, middle_of_both(box_of(mesh, s), box_of(other, *t))});
+        if (!meet(corners(mesh.vertices, a), corners(other.vertices, b), shared)) continue;
+        const Vector near = mesh.vertices.row(a[0]);
+        found.push_back({s, *t, near + middle_of_both(box_of(mesh, s, near), box_of(other, *t, near))});
       }
   };
   return parallel_collect<TrianglePair>(count, triangles_per_task, test);
 }
 
-std::unique_ptr<BroadPhase> broad_phase_of(const TriangleMesh& mesh) {
+/// Its boxes are relative to the first vertex of `from`.
+std::unique_ptr<BroadPhase> broad_phase_of(const TriangleMesh& mesh, const TriangleMesh& from) {
   auto phase = make_broad_phase(BroadPhaseKind::bvh);
-  phase->update(boxes_of(mesh));
+  const Vector origin = from.vertices.rows() > 0 ? Vector(from.vertices.row(0)) : Vector(Vector::Zero());
+  phase->update(boxes_of(mesh, origin));
   return phase;
 }
 
@@ -160,14 +166,14 @@ Eigen::Vector3d from_vertices(const TriangleMesh& from, const TriangleMesh& to, 
 
 std::vector<TrianglePair> self_intersections(const TriangleMesh& mesh) {
   AdjacencyList candidates;
-  const auto phase = broad_phase_of(mesh);
+  const auto phase = broad_phase_of(mesh, mesh);
   phase->overlaps(*phase, unlimited, candidates);
   return meeting(mesh, mesh, true, candidates);
 }
 
 std::vector<TrianglePair> intersections(const TriangleMesh& mesh, const TriangleMesh& other) {
   AdjacencyList candidates;
-  broad_phase_of(mesh)->overlaps(*broad_phase_of(other), unlimited, candidates);
+  broad_phase_of(mesh, mesh)->overlaps(*broad_phase_of(other, mesh), unlimited, candidates);
   return meeting(mesh, other, false, candidates);
 }
 

@@ -58,12 +58,14 @@ void Surface::append(const Surface& other) {
   append_rows(edge_length_squared, other.edge_length_squared);
 }
 
-void SweptBoxes::update(const Surface& surface, const Positions& x0, const Positions& x1, double margin) {
+void SweptBoxes::update(const Surface& surface, const Positions& x0, const Positions& x1, double margin,
+                        const Eigen::RowVector3d& origin) {
   vertices.resize(x0.rows());
   edges.resize(surface.edges.rows());
   triangles.resize(surface.triangle_count());
   parallel_for(static_cast<int>(vertices.size()), 4096, [&](int begin, int end) {
-    for (int v = begin; v < end; ++v) vertices[v] = Box::around(x0.row(v), x1.row(v), margin);
+    for (int v = begin; v < end; ++v)
+      vertices[v] = Box::around(x0.row(v) - origin, x1.row(v) - origin, margin);
   });
   parallel_for(static_cast<int>(edges.size()), 4096, [&](int begin, int end) {
     for (int e = begin; e < end; ++e) {

@@ -33,8 +33,10 @@ struct Surface {
 struct SweptBoxes {
   std::vector<Box> vertices, edges, triangles;
 
-  /// Bounds the motion of `surface` from x0 to x1 (n×3) [m].
-  void update(const Surface& surface, const Positions& x0, const Positions& x1, double margin);
+  /// Bounds the motion of `surface` from x0 to x1 (n×3) [m], relative to `origin` [m]: a box has floats,
+  /// which are fine near it alone.
+  void update(const Surface& surface, const Positions& x0, const Positions& x1, double margin,
+              const Eigen::RowVector3d& origin);
 };
 
 }  // namespace drape

@@ -118,7 +118,7 @@ bool SelfPairSearch::find(const LinearMotion& motion, double friction, const Pai
                           PairCounts& counts, std::vector<ContactPair>& found) {
   // A translation of the whole cloth changes no distance within it.
   boxes_.update(cloth_, motion.x0, motion.x1.rowwise() - (motion.x1 - motion.x0).colwise().mean(),
-                0.5 * motion.dhat);
+                0.5 * motion.dhat, motion.x0.row(0));
   vertices_->update(boxes_.vertices);
   edges_->update(boxes_.edges);
   triangles_->update(boxes_.triangles);

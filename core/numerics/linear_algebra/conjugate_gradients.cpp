@@ -36,7 +36,7 @@ ConjugateGradients::End ConjugateGradients::solve(const BlockMatrix& matrix, con
   x.setZero(b.rows(), 3);
   double norm = std::sqrt(dot(r_, r_)), rz = 0;
   const double whole = norm;
-  for (int k = 0; norm > accuracy.tolerance * whole; ++k) {
+  for (int k = 0; !(norm <= accuracy.tolerance * whole) || std::isinf(norm); ++k) {
     if (!std::isfinite(norm)) return End::not_converged;
     if (k == accuracy.max_iterations)
       return norm <= accuracy.sufficient * whole ? End::converged : End::not_converged;

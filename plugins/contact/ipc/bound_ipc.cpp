@@ -119,9 +119,11 @@ RestCloth::RestCloth(const Level& level, double dhat_in, bool self_contact_in)
 
 ObstacleTree::ObstacleTree(std::shared_ptr<const Obstacles> all, double dhat, BroadPhaseKind kind)
     : obstacles(std::move(all)),
+      origin(Eigen::RowVector3d::Zero()),
       coefficients(OperatorCoefficients::of(obstacles->surface, obstacles->dihedrals, dhat)),
       tree(make_broad_phase(kind)) {
-  boxes.update(obstacles->surface, obstacles->vertices, obstacles->vertices, 0.5 * dhat);
+  if (obstacles->vertices.rows() > 0) origin = obstacles->vertices.colwise().mean();
+  boxes.update(obstacles->surface, obstacles->vertices, obstacles->vertices, 0.5 * dhat, origin);
   tree->update(boxes.triangles);
 }
 
@@ -151,7 +153,7 @@ bool BoundIpc::search(const Positions& x0, const Positions& x1, const PairCounts
   counts = {};
   if (self_search_ && !self_search_->find(motion, p_.friction, limits, counts, found)) return false;
   if (obstacles_.bodies.empty()) return true;
-  boxes_.update(cloth_, x0, x1, 0.5 * barrier_.dhat);
+  boxes_.update(cloth_, x0, x1, 0.5 * barrier_.dhat, obstacle_tree_->origin);
   cloth_tree_->update(boxes_.triangles);
   if (!cloth_tree_->overlaps(*obstacle_tree_->tree, limits.boxes - counts.boxes, rows_)) return false;
   counts.boxes += static_cast<long>(rows_.items.size());

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <array>
 #include <memory>
 #include <mutex>
 #include <vector>
@@ -29,6 +28,7 @@ struct RestCloth {
 /// the improved maximum operator.
 struct ObstacleTree {
   std::shared_ptr<const Obstacles> obstacles;
+  Eigen::RowVector3d origin;  // of the boxes, and of those that are compared with them
   SweptBoxes boxes;
   OperatorCoefficients coefficients;
   std::unique_ptr<BroadPhase> tree;

@@ -71,7 +71,7 @@ class ObstacleTrajectory {
         dhat_(dhat),
         cloth_tree_(make_broad_phase(kind)),
         tree_(make_broad_phase(kind)) {
-    cloth_boxes_.update(cloth, x, x, 0.5 * dhat);
+    cloth_boxes_.update(cloth, x, x, 0.5 * dhat, x.row(0));
     cloth_tree_->update(cloth_boxes_.triangles);
   }
 
@@ -162,7 +162,7 @@ class ObstacleTrajectory {
 
   /// Finds the pairs that may come within d̂ on a segment. Returns false if there are more than `limit`.
   bool find(const TrajectorySegment& segment, long limit) {
-    boxes_.update(after_.surface, segment.begin, segment.end, 0.5 * dhat_ + segment.chord_error);
+    boxes_.update(after_.surface, segment.begin, segment.end, 0.5 * dhat_ + segment.chord_error, x_.row(0));
     tree_->update(boxes_.triangles);
     found_.clear();
     if (!cloth_tree_->overlaps(*tree_, limit, rows_)) return false;

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <catch2/catch.hpp>
+#include <cmath>
+#include <limits>
 
 #include "core/numerics/step/factor_cache.h"
 #include "tests/support/any_threads.h"
@@ -86,7 +88,7 @@ TEST_CASE("Cycles of multigrid solve a cloth's system, and leave fixed vertices 
 }
 
 TEST_CASE("Conjugate gradients that run out of iterations end with what suffices, or not converged") {
-  const Hanging h;
+  Hanging h;
   ConjugateGradients gradients;
   Positions x;
   const auto end = [&](double sufficient) {
@@ -100,6 +102,10 @@ TEST_CASE("Conjugate gradients that run out of iterations end with what suffices
   REQUIRE(reached > 1e-6);
   CHECK(end(1.01 * reached) == End::converged);
   CHECK(end(0.99 * reached) == End::not_converged);
+  for (const double bad : {std::nan(""), std::numeric_limits<double>::infinity()}) {
+    h.b(5, 0) = bad;
+    CHECK(end(1e9) == End::not_converged);
+  }
 }
 
 TEST_CASE("Multigrid has the same bits with any number of threads") {
