@@ -3,6 +3,7 @@
 #include <catch2/catch.hpp>
 
 #include "core/numerics/mesh_files/io.h"
+#include "core/numerics/patterns/generate.h"
 #include "tests/support/command.h"
 #include "tests/support/solve.h"
 
@@ -116,6 +117,18 @@ TEST_CASE("a start is not moved into a closed mesh") {
   const std::string shell =
       "ipc\nobstacles: [{name: shell, meshed_shape: sphere, radius: 1, translate: [0, 0, 0.98]}]";
   const Eigen::Vector3d way = moved(experiment(shell, "[-0.2, -0.2, 0]"));
+  CHECK(way.z() == 0);
+  CHECK(way.head<2>().norm() > 0.1);
+}
+
+TEST_CASE("a start is not moved into a closed mesh that faces inwards") {
+  const Scratch folder;
+  drape::TriangleMesh shell = drape::unit_sphere(4);
+  shell.triangles.col(1).swap(shell.triangles.col(2));
+  write_mesh(folder / "shell.ply", shell);
+  const std::string mesh = (folder / "shell.ply").string();
+  const Eigen::Vector3d way = moved(experiment(
+      "ipc\nobstacles: [{name: shell, mesh: " + mesh + ", translate: [0, 0, 0.98]}]", "[-0.2, -0.2, 0]"));
   CHECK(way.z() == 0);
   CHECK(way.head<2>().norm() > 0.1);
 }

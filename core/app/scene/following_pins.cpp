@@ -124,8 +124,8 @@ std::string attach(const Experiment& e, int pin, const Scene& scene, const Level
   if (frames && !frames->items.empty()) file = &frames->items[0];
   if (!follow.vertices.empty() && file && !file->scalar.empty() &&
       read_mesh(file->scalar).vertices.rows() != mesh.vertices.rows())
-    return "loses vertices of its file that are in no triangle, so \"vertices\" would name others; remove "
-           "those from the file";
+    return "loses vertices of its file that are in no triangle, or at the place of others, so \"vertices\" "
+           "would name others; remove those from the file";
   for (const int v : follow.vertices)
     if (v >= mesh.vertices.rows())
       return "has no vertex " + std::to_string(v) + "; they go from 0 to " +

@@ -30,8 +30,8 @@ struct Clearance {
   double smallest_gap = std::numeric_limits<double>::infinity();
 };
 
-/// The generalised winding number of the mesh around p: 1 inside a closed mesh that faces outwards, 0 outside
-/// (solid angles: van Oosterom and Strackee 1983).
+/// The generalised winding number of the mesh around p: 1 inside a closed mesh that faces outwards, -1 in one
+/// that faces inwards, 0 outside (solid angles: van Oosterom and Strackee 1983).
 double winding_number(const TriangleMesh& mesh, const Vector3d& p) {
   double angle = 0;
   for (Eigen::Index t = 0; t < mesh.triangles.rows(); ++t) {
@@ -52,7 +52,8 @@ bool is_inside(const Positions& points, const TriangleMesh& mesh) {
   const bool open = !border_half_edges(mesh.triangles, static_cast<int>(mesh.vertices.rows())).empty();
   const double enclosed = open ? 0.9 : 0.5;
   for (Eigen::Index i = 0; i < points.rows(); ++i)
-    if (winding_number(mesh, points.row(i).transpose()) > enclosed) return true;
+    if (std::abs(winding_number(mesh, points.row(i).transpose())) > enclosed)
+      return true;  // facing either way
   return false;
 }
 

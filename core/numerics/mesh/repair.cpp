@@ -6,6 +6,7 @@
 
 #include "core/kernel/files/string_utils.h"
 #include "core/numerics/mesh/mesh_faults.h"
+#include "core/numerics/mesh/unjoined_borders.h"
 
 namespace drape {
 namespace {
@@ -76,9 +77,24 @@ std::vector<TriangleMesh> reduced(const std::vector<TriangleMesh>& frames,
   return result;
 }
 
+/// Has triangles name the first of the vertices that are at one place in every frame; returns how many others
+/// are named no more.
+std::size_t weld(std::vector<TriangleMesh>& frames) {
+  const std::vector<int> first = first_at_place(frames);
+  std::vector<char> welded(first.size(), 0);
+  Triangles triangles = frames[0].triangles;
+  for (int& v : triangles.reshaped()) {
+    if (first[v] != v) welded[v] = 1;
+    v = first[v];
+  }
+  for (TriangleMesh& frame : frames) frame.triangles = triangles;
+  return static_cast<std::size_t>(std::ranges::count(welded, 1));
+}
+
 }  // namespace
 
 RepairedMesh repair_mesh(std::vector<TriangleMesh> frames) {
+  const std::size_t welded = weld(frames);
   const MeshFaults elements = MeshFaults::of_elements(frames[0]);
   std::vector<char> dropped(frames[0].triangles.rows(), 0);
   std::size_t doubled = 0;
@@ -93,7 +109,7 @@ RepairedMesh repair_mesh(std::vector<TriangleMesh> frames) {
   MeshFaults left;
   left.find_connectivity(frames[0].triangles, static_cast<int>(frames[0].vertices.rows()), {});
   const std::string lost =
-      counted("dropped", {{elements.loose_vertices.size(), "loose vertex", "loose vertices"},
+      counted("dropped", {{elements.loose_vertices.size() - welded, "loose vertex", "loose vertices"},
                           {doubled, "doubled triangle", "doubled triangles"},
                           {empty, "triangle without area", "triangles without area"}});
   const std::string kept = counted(
@@ -103,7 +119,11 @@ RepairedMesh repair_mesh(std::vector<TriangleMesh> frames) {
         "edges between triangles that face opposite ways"},
        {left.shared_vertices.size(), "vertex with separate fans of triangles",
         "vertices with separate fans of triangles"}});
-  return {std::move(frames), lost + (lost.empty() || kept.empty() ? "" : "; ") + kept};
+  std::vector<std::string> parts = {
+      counted("joined", {{welded, "vertex at the place of another", "vertices at the places of others"}}),
+      lost, kept};
+  std::erase(parts, "");
+  return {std::move(frames), joined(parts, "; ", "; ")};
 }
 
 }  // namespace drape

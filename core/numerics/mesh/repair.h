@@ -15,10 +15,10 @@ struct RepairedMesh {
   std::string remark;
 };
 
-/// Drops the vertices of no triangle, the triangles that repeat another or have no area, and numbers the rest
-/// anew in their order. `frames` are one mesh or several with the same triangles, which lose the same
-/// elements; indices are in range, as in what read_mesh reads. Throws std::runtime_error if no triangle is
-/// left or a triangle has an area in some frames only.
+/// Joins the vertices that are at one place, drops the vertices of no triangle, the triangles that repeat
+/// another or have no area, and numbers the rest anew in their order. `frames` are one mesh or several with
+/// the same triangles, which lose the same elements; indices are in range, as in what read_mesh reads. Throws
+/// std::runtime_error if no triangle is left or a triangle has an area in some frames only.
 RepairedMesh repair_mesh(std::vector<TriangleMesh> frames);
 
 /// A closed surface, free of self-intersections, at a distance of `offset` [m] around a mesh. It closes holes

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <numeric>
 #include <utility>
 
 #include "core/kernel/interfaces/topology.h"
@@ -16,18 +17,7 @@ namespace {
 using Eigen::RowVector3d;
 
 /// Distances from a line below this part of an edge's length are the rounding of a file's numbers.
-constexpr double on_line = 1e-6;
-
-/// The first vertex at each vertex's position.
-std::vector<int> first_at_position(const Positions& x) {
-  std::vector<int> order(x.rows()), first(x.rows());
-  for (int v = 0; v < static_cast<int>(order.size()); ++v) order[v] = v;
-  const auto key = [&](int v) { return std::array{x(v, 0), x(v, 1), x(v, 2)}; };
-  std::ranges::stable_sort(order, {}, key);
-  for (std::size_t i = 0; i < order.size(); ++i)
-    first[order[i]] = i > 0 && key(order[i]) == key(order[i - 1]) ? first[order[i - 1]] : order[i];
-  return first;
-}
+constexpr double on_line = 1e-4;
 
 /// Whether no triangle shares more than one of its edges.
 bool has_only_pieces(const Triangles& triangles, const std::vector<int>& border) {
@@ -113,10 +103,25 @@ class JunctionSearch {
 
 }  // namespace
 
+std::vector<int> first_at_place(const std::vector<TriangleMesh>& frames) {
+  std::vector<int> order(frames[0].vertices.rows()), first(order.size());
+  std::iota(order.begin(), order.end(), 0);
+  const auto difference = [&](int a, int b) {
+    for (const TriangleMesh& frame : frames)
+      for (int c = 0; c < 3; ++c)
+        if (frame.vertices(a, c) != frame.vertices(b, c)) return frame.vertices(a, c) - frame.vertices(b, c);
+    return 0.0;
+  };
+  std::ranges::stable_sort(order, [&](int a, int b) { return difference(a, b) < 0; });
+  for (std::size_t i = 0; i < order.size(); ++i)
+    first[order[i]] = i > 0 && difference(order[i - 1], order[i]) == 0 ? first[order[i - 1]] : order[i];
+  return first;
+}
+
 bool is_soup(const TriangleMesh& mesh) {
   const std::vector<int> border = border_half_edges(mesh.triangles, static_cast<int>(mesh.vertices.rows()));
   if (!has_only_pieces(mesh.triangles, border)) return false;
-  const std::vector<int> first = first_at_position(mesh.vertices);
+  const std::vector<int> first = first_at_place({mesh});
   std::vector<std::pair<int, int>> edges;
   for (const int h : border) {
     const HalfEdge e = HalfEdge::of(mesh.triangles, h);

@@ -7,6 +7,9 @@
 
 namespace drape {
 
+/// For each vertex of one mesh in several frames the first one that is at its place in all of them.
+std::vector<int> first_at_place(const std::vector<TriangleMesh>& frames);
+
 /// Whether a mesh has lost the joints of its faces: it falls into pieces of one or two triangles, and most of
 /// their edges coincide with others, bit for bit.
 bool is_soup(const TriangleMesh& mesh);

@@ -140,6 +140,10 @@ TEST_CASE("ipc: the frames of an animation are repaired together") {
   ObstacleParameters p;
   p.animation = {(folder / "a.obj").string(), (folder / "b.obj").string()};
   CHECK_THROWS_WITH(ObstacleMeshes::of(p, 0), Contains("must have the same triangles"));
+  folder.write("c.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n");
+  folder.write("d.obj", "v 0 0 0\nv 0.3 0.4 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n");
+  p.animation = {(folder / "c.obj").string(), (folder / "d.obj").string()};
+  CHECK_THROWS_WITH(ObstacleMeshes::of(p, 0), Contains("into triangles before they move"));
 }
 
 TEST_CASE("ipc: a flat sheet acts as its plane where a wall joins it from below") {
@@ -171,6 +175,18 @@ TEST_CASE("ipc: a vertex at which two triangles meet that share no edge counts o
   mesh.triangles.resize(2, 3);
   mesh.triangles << 0, 1, 2, 0, 3, 4;
   CHECK(NearSurface(mesh).value({0, 0, 0.5 * dhat}) == Approx(barrier(0.5).value));
+}
+
+TEST_CASE("ipc: triangles with vertices of their own act as those that share them") {
+  const TriangleMesh whole = sheet();
+  TriangleMesh apart = whole;
+  apart.vertices = whole.vertices(whole.triangles.reshaped<Eigen::RowMajor>(), Eigen::all);
+  for (int i = 0; i < apart.triangles.size(); ++i) apart.triangles(i / 3, i % 3) = i;
+  const RepairedMesh repaired = repair_mesh({apart});
+  CHECK(repaired.remark == "joined " + std::to_string(apart.vertices.rows() - whole.vertices.rows()) +
+                               " vertices at the places of others");
+  REQUIRE(repaired.frames[0].vertices.rows() == whole.vertices.rows());
+  CHECK(NearSurface(repaired.frames[0]).value({0, 0, 0.5 * dhat}) == Approx(barrier(0.5).value));
 }
 
 TEST_CASE("ipc: the nearest feature of any triangles counts at least once, and the barrier has no hole") {

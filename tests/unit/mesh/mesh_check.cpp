@@ -178,6 +178,13 @@ TEST_CASE("a cloth whose triangles are not joined is to be welded", "[check]") {
   CHECK(check_mesh(flat_cover(sheet, {})).empty());
 }
 
+TEST_CASE("a T-junction is found in a file of six decimals", "[check]") {
+  const TriangleMesh mesh =
+      mesh_of({{0, 0, 0}, {0.02, 0, 0}, {0.02, 0.013333, 0}, {0, 0.013333, 0}, {0.01, 0.006667, 0}},
+              {{0, 1, 4}, {1, 2, 4}, {0, 2, 3}});
+  CHECK_THAT(check_mesh(mesh).back(), Catch::Contains("T-junctions"));
+}
+
 TEST_CASE("a vertex within an edge of the triangle beside it is a T-junction", "[check]") {
   // A square whose lower half has a vertex in the middle of the diagonal.
   TriangleMesh mesh =
