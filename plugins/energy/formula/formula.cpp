@@ -145,7 +145,9 @@ class Formula final : public Energy {
     const auto bound = [&](const Level& level) { return bind_unchecked(level, Material()); };
     const bool linear = bound(checked_level())->stencils().rows() == 0;
     if (law_.kind == ElementKind::vertex && !linear) return std::nullopt;
-    return sampled_midpoint_factor(bound);
+    const std::optional<double> factor = sampled_midpoint_factor(bound);
+    // Another factor of a membrane would also multiply the stress at which it buckles below the mesh.
+    return law_.kind == ElementKind::triangle && factor != 1.0 ? std::nullopt : factor;
   }
 
   double plate_stiffness(const Material& material) const override {

@@ -1,9 +1,7 @@
 // Formulas of the compiled plugins have their values and derivatives, and formulas run under every method.
 
-#include <Eigen/Geometry>
 #include <catch2/catch.hpp>
 #include <cmath>
-#include <filesystem>
 #include <fstream>
 #include <regex>
 
@@ -251,4 +249,27 @@ TEST_CASE("every law converges under pcs, cascadic and newton") {
       CHECK((solved.x() - solved.rest()).norm() > 0.01);
     }
   }
+}
+
+TEST_CASE("a wind by the position z lifts, one by the rest shape does not") {
+  const Level level = Level::of(0, grid({0.6, 0.6}, 4, 4, Diagonals::one_way));
+  const auto lift = [&](const std::string& height) {
+    const auto wind = make_plugin_from<Energy>(
+        "{type: formula, per: vertex, constants: {p: {value: 10, unit: Pa}, h: {value: 0.7, unit: m}}, "
+        "energy: \"-p*area*x*exp(" +
+        height + "/h)\"}");
+    return -gradient_of(*wind->bind(level, Material()), level.rest.vertices).col(2).sum();
+  };
+  CHECK(lift("z") == Approx(10 * 0.36 * 0.3 / 0.7));
+  CHECK(lift("v") == 0);
+}
+
+TEST_CASE("a triangle's law that depends on its size has no midpoint factor") {
+  const auto factor = [](const std::string& law) {
+    return make_plugin_from<Energy>("{type: formula, constants: {c: {value: 1, unit: J}}, " + law + "}")
+        ->midpoint_factor();
+  };
+  CHECK_FALSE(factor("energy: \"c*(J - 1)^2\""));
+  CHECK_FALSE(factor("density: \"c/area*g11^2\""));
+  CHECK(*factor("energy: \"E*thickness*area*(J - 1)^2\"") == Approx(1));
 }

@@ -98,9 +98,12 @@ std::optional<Dimension> dimension_of(const std::string& unit) {
   Dimension whole;
   double sign = 1;      // -1 behind "/"
   bool expects = true;  // a unit, at the begin or behind an operator
+  bool inside = false;  // parentheses
   for (std::size_t at = 0; at < text.size();) {
     const char c = text[at];
     if (c == '/' && (sign < 0 || at == 0)) return std::nullopt;  // a/b/c: ambiguous to readers
+    if (c == '*' && sign < 0 && !inside) return std::nullopt;    // so is a/b*c
+    if (c == '(' || c == ')') inside = c == '(';
     if (c == '/') sign = -1;
     if (c == '/' || c == '*') expects = true;
     if (std::string_view(" */()").find(c) != std::string_view::npos) {

@@ -113,3 +113,13 @@ TEST_CASE("pressure: inner vertices of an open cloth carry a third of the area a
   }
   REQUIRE(inner > 10);
 }
+
+TEST_CASE(
+    "pressure: a flat cloth in one plane with the centre is pushed across it, by a third of p A in all") {
+  const Level level = Level::of(0, grid({1, 1}, 5, 4, Diagonals::one_way));
+  for (const Eigen::Vector3d& centre : {Eigen::Vector3d(0, 0, 0), Eigen::Vector3d(0.3, 0.7, 0)}) {
+    const Positions force = -gradient_of(*bound(level, 6, centre), level.rest.vertices);
+    CHECK(force.leftCols<2>().norm() <= 1e-14);
+    CHECK(force.col(2).sum() == Approx(2));
+  }
+}
