@@ -360,6 +360,16 @@ TEST_CASE("bounds on negative energies and on counts that were zero") {
   });
   CHECK(run.compare(" --bound energy_released=1.05").exit_code == 1);
   CHECK(run.compare(" --bound energy_released=2").exit_code == 0);
+  const auto write = [&](const std::string& side, double released, int intersections) {
+    OrderedJson all = OrderedJson::parse(text_of(run.folder / side / "results.json"));
+    OrderedJson& level = all["methods"]["pcs"]["levels"][1];
+    level["energy_released"] = released, level["intersections"] = intersections;
+    run.folder.write(side + "/results.json", all.dump());
+  };
+  write("a", -1, 0), write("b", -1.03, 1);
+  CHECK(run.compare(" --bound energy_released=1.02").exit_code == 1);
+  CHECK(run.compare(" --bound energy_released=1.05").exit_code == 0);
+  CHECK(run.compare(" --bound intersections=100").exit_code == 1);
 }
 
 TEST_CASE("a folder stands for the runs in it") {

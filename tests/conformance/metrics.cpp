@@ -19,7 +19,7 @@ namespace {
 struct Fixture {
   Solved s = scene_from(R"(
 name: metrics
-cloth: {shape: rectangle, size: [1, 0.75], triangulation: random, vertices: 60}
+cloth: {shape: rectangle, size: [1, 0.75], triangulation: random, vertices: 400}
 levels: 2
 energies: [neo_hookean, hinge, gravity]
 pins: [{point: [0, 0, 0]}]

@@ -33,7 +33,7 @@ DRAGGED = {"cloth": {"shape": "disc", "radius": 0.15, "vertices": 40},
 PULLED = {"cloth": {"shape": "polygon", "vertices": 40,
                     "loops": [{"points": [0, 0, 0.3, 0, 0.3, 0.3, 0, 0.3]},
                               {"points": [0.1, 0.1, 0.2, 0.1, 0.2, 0.2, 0.1, 0.2]}]},
-          "handles": [{"region": "border"}, {"region": "vertices", "vertices": [0], "translate": [0, 0, 0.05], "stiffness": 1e3}],
+          "handles": [{"region": "border", "translate": [0, 0, 0.05]}, {"region": "vertices", "vertices": [0], "translate": [0, 0, 0.05], "stiffness": 1e3}],
           "energies": ["neo_hookean", "hinge", {"type": "pressure", "pressure": 5}, "gravity"],
           "contact": ["ipc"],
           "obstacles": [{"meshed_shape": "box", "size": [0.1, 0.1, 0.1], "translate": [0.15, 0.15, -0.1]}]}

@@ -1,6 +1,8 @@
 #include <catch2/catch.hpp>
 
 #include "tests/support/command.h"
+#include "tests/support/metric_check.h"
+#include "tests/support/solve.h"
 
 TEST_CASE("cloth at rest on a plate has neither forces nor a decrement", "[residuals]") {
   const Scratch folder(R"(name: resting
@@ -15,6 +17,11 @@ methods: {newton: {}}
 )");
   drape_ends("run e.yaml --out out --quiet --no-report", folder);
   const auto level = json_in(folder / "out/results.json")["methods"]["newton"]["levels"][0];
-  CHECK(level["force_residual_plain"] < 1e-5);
-  CHECK(level["decrement_plain"] < 1e-4);  // without the plate it would fall, by g h
+  CHECK(level["force_residual_plain"].get<double>() < 1e-5);  // null is below any number
+  CHECK(level["decrement_plain"].get<double>() < 1e-4);
+  const Solved falling = scene_from(replaced(text_of(folder / "e.yaml"), "0.0009", "1"));
+  const auto in_air = make_plugin_from<drape::Metric>("residuals")
+                          ->evaluate({falling.level(), falling.model(), falling.scene->starts.back()});
+  CHECK(value(in_air, "force_residual_plain") == Approx(1));
+  CHECK(value(in_air, "decrement_plain") == Approx(9.81 * 0.1));  // g h
 }
