@@ -2,6 +2,7 @@
 
 import json
 import pathlib
+import signal
 import sys
 import tempfile
 import time
@@ -79,6 +80,7 @@ def drape_end(scene, vertices, seed):
 
 def measure_all(out, about, cases, measure):
     """Measures each case that `out` does not have, and stores it. A case: the values that name it; `measure` gets them, and a folder."""
+    signal.signal(signal.SIGTERM, lambda *_: sys.exit(143))  # an exception, on which the other program ends too
     done = json.loads(out.read_text())["runs"] if out.exists() else []
     for case in cases:
         if any(case.items() <= run.items() for run in done):

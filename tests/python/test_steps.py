@@ -5,6 +5,7 @@ import importlib
 import json
 import os
 import pathlib
+import subprocess
 import sys
 from concurrent.futures import ThreadPoolExecutor
 
@@ -58,9 +59,24 @@ def test_a_comparison_goes_on_where_it_was_cut(two_drapes, tmp_path):
         two_drapes.measure_all(tmp_path / "record.json", {"benchmark": "test"},
                                [{"scene": "hanging", "vertices": 81, "seed": seed} for seed in seeds], measure)
     assert measured == [1, 2]
+    # Told to end, it ends what it has started.
+    ended = "import os, pathlib, two_drapes; " \
+            "two_drapes.measure_all(pathlib.Path('cut.json'), {}, [{'seed': 1}], lambda **_: os.kill(os.getpid(), 15))"
+    assert subprocess.run([sys.executable, "-c", ended], cwd=tmp_path, env={**os.environ, "PYTHONPATH": os.pathsep.join(sys.path)}).returncode == 143
     runs = json.loads((tmp_path / "record.json").read_text())["runs"]
     assert [run["seed"] for run in runs] == [1, 2]
     assert all(run["drape"]["intersections"] == 0 and run["drape"]["force_residual"] < 1e-3 < run["drape"]["seconds"] for run in runs)
+
+
+def test_a_checkpoint_after_a_change_goes_on_from_the_same_state(experiment, small):
+    whole = experiment.solver("newton")
+    next(whole)
+    whole.set("material.density", 900.0)
+    checkpoint = whole.checkpoint()
+    changed = drape.Experiment(small)
+    changed.set("material.density", 900.0)
+    resumed = changed.solver("newton", start=checkpoint)
+    assert [i.x.tobytes() for i in resumed] == [i.x.tobytes() for i in whole]
 
 
 def test_stop_and_refine(experiment):
