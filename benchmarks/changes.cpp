@@ -7,18 +7,13 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <fstream>
 #include <iostream>
 #include <nlohmann/json.hpp>
 #include <string>
 
 #include "benchmarks/measure.h"
-#include "core/app/files/machine.h"
-#include "core/app/scene/scene.h"
 #include "core/kernel/plugin/loader.h"
-#include "core/kernel/threads/parallel.h"
 #include "core/kernel/threads/stopwatch.h"
-#include "core/kernel/version.h"
 
 using namespace drape;
 
@@ -58,12 +53,18 @@ std::string schedule() {
   return "{steps: " + std::to_string(std::size(changes)) + ", equilibrate: true, keys: [" + keys + "]}";
 }
 
+struct TimedRow : IncrementRow {
+  double seconds = 0;
+};
+
 /// Keeps what level 0 came to, and ends the method with it.
 class LevelZero : public Observer {
  public:
-  std::vector<IncrementRow> rows;
+  std::vector<TimedRow> rows;
+  void level_started(int) override { watch_ = Stopwatch(); }
   void increment_finished(const IncrementRow& row, const Positions&) override {
-    if (row.level == 0) rows.push_back(row);
+    if (row.level == 0) rows.push_back({row, watch_.seconds()});
+    watch_ = Stopwatch();
   }
   void level_finished(const LevelResult& result) override {
     ended_ = true;
@@ -73,6 +74,7 @@ class LevelZero : public Observer {
 
  private:
   bool ended_ = false;
+  Stopwatch watch_;  // since the increment before
 };
 
 /// Milliseconds of each increment before any step, on level 0 at the scene's start: the new load and its
@@ -93,27 +95,24 @@ std::vector<double> load_milliseconds(const Scene& scene) {
 int run(const char* result_file, const std::string& side) {
   Registry registry;
   load_plugins(registry, plugin_directories());
-  ConfigErrors errors;
-  const auto e = read_experiment(std::string(DRAPE_BENCHMARKS_DIR) + "/../configs/sphere.yaml",
-                                 {{"schedule", schedule()}, {"cloth.columns", side}, {"cloth.rows", side}},
-                                 registry, errors);
-  const auto scene = e ? build_scene(*e, errors) : nullptr;
-  for (const ConfigError& error : errors) std::cerr << "error: " << error.text() << "\n";
-  if (!scene) return 2;
+  const Loaded loaded(registry, "../configs/sphere.yaml",
+                      {{"schedule", schedule()}, {"cloth.columns", side}, {"cloth.rows", side}});
+  const Experiment& e = *loaded.experiment;
+  const Scene& scene = *loaded.scene;
   nlohmann::ordered_json rows = nlohmann::ordered_json::array();
   std::printf("%-28s %-9s %8s %12s %10s %14s\n", "change", "method", "steps", "ms a step", "seconds",
               "energy [J]");
   for (std::size_t k = 0; k <= std::size(changes); ++k) rows.push_back({});
   const char* methods[] = {"pcs", "newton"};
   // In turn, several times: the machine's speed drifts. Everything but the seconds is the same each time.
-  std::vector<std::vector<IncrementRow>> all[repeats];
+  std::vector<std::vector<TimedRow>> all[repeats];
   for (auto& once : all)
     for (const char* name : methods) {
       LevelZero level;
-      method(*e, name).solve(*scene, level);
+      method(e, name).solve(scene, level);
       once.push_back(level.rows);
     }
-  const std::vector<double> load = load_milliseconds(*scene);
+  const std::vector<double> load = load_milliseconds(scene);
   for (std::size_t k = 0; k <= std::size(changes); ++k) {
     const char* what = k == 0 ? "from the start" : changes[k - 1].what;
     rows[k]["change"] = what;
@@ -135,27 +134,16 @@ int run(const char* result_file, const std::string& side) {
     }
   }
   if (result_file)
-    std::ofstream(result_file) << nlohmann::ordered_json(
-                                      {{"commit", commit()},
-                                       {"cpu", cpu_name()},
-                                       {"cores", core_count()},
-                                       {"threads", thread_count()},
-                                       {"repeats", repeats},
-                                       {"vertices", scene->hierarchy.levels[0].vertex_count()},
-                                       {"levels", e->parameters.levels},
-                                       {"rows", rows}})
-                                      .dump(1)
-                               << "\n";
+    write_record(result_file, "changes", repeats, rows,
+                 {{"vertices", scene.hierarchy.levels[0].vertex_count()}, {"levels", e.parameters.levels}});
   return 0;
 }
 
 }  // namespace
 
-int main(int argc, char** argv) {
-  try {
-    return run(argc > 1 ? argv[1] : nullptr, argc > 2 ? argv[2] : "40");
-  } catch (const std::exception& error) {
-    std::cerr << "error: " << error.what() << "\n";
-    return 2;
-  }
+int main(int argc, char** argv) try {
+  return run(argc > 1 ? argv[1] : nullptr, argc > 2 ? argv[2] : "40");
+} catch (const std::exception& error) {
+  std::cerr << "error: " << error.what() << "\n";
+  return 2;
 }

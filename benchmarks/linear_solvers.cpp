@@ -14,16 +14,13 @@
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
-#include <fstream>
 #include <nlohmann/json.hpp>
 #include <set>
 
 #include "benchmarks/measure.h"
-#include "core/app/files/machine.h"
 #include "core/kernel/plugin/loader.h"
 #include "core/kernel/threads/parallel.h"
 #include "core/kernel/threads/stopwatch.h"
-#include "core/kernel/version.h"
 #include "core/numerics/linear_algebra/block_cholesky.h"
 #include "core/numerics/model/objective.h"
 
@@ -71,17 +68,6 @@ int set_blas_threads(int threads) {
   reinterpret_cast<void (*)(int)>(symbol)(threads);
   return threads;
 }
-
-/// Stops a method after three iterations of the finest level.
-class FinestReached : public Observer {
- public:
-  explicit FinestReached(int finest) : finest_(finest) {}
-  void iteration(const IterationRow& row, const Positions&) override { seen_ += row.level == finest_; }
-  bool stop_requested() override { return seen_ >= 3; }
-
- private:
-  int finest_, seen_ = 0;
-};
 
 /// The system of one Newton iteration.
 struct System {
@@ -217,7 +203,7 @@ void measure(const Registry& registry, const std::string& scene_name, int levels
                        {"levels", std::to_string(levels)},
                        {"newton.force_tolerance", "1e-2"}});
   const LevelModel& model = *loaded.scene->models.back();
-  FinestReached some(levels - 1);
+  FirstIterations some(3, levels - 1);
   const LevelResult reached = method(*loaded.experiment, "cascadic").solve(*loaded.scene, some).back();
   if (reached.level != levels - 1) throw std::runtime_error(scene_name + ": " + reached.message);
 
@@ -242,18 +228,9 @@ int main(int argc, char** argv) try {
   ordered_json rows = ordered_json::array();
   for (const char* scene : {"pinned_square", "sphere"})
     for (const int levels : {3, 4}) measure(registry, scene, levels, rows);
-  if (argc > 1) {
-    const ordered_json result = {{"benchmark", "linear_solvers"},
-                                 {"version", version()},
-                                 {"commit", commit()},
-                                 {"cpu", cpu_name()},
-                                 {"cores", core_count()},
-                                 {"blas", blas()},
-                                 {"blas_kernels", openblas_kernels()},
-                                 {"repeats", repeats},
-                                 {"rows", rows}};
-    std::ofstream(argv[1]) << result.dump(1) << "\n";
-  }
+  if (argc > 1)
+    write_record(argv[1], "linear_solvers", repeats, rows,
+                 {{"blas", blas()}, {"blas_kernels", openblas_kernels()}});
   return 0;
 } catch (const std::exception& error) {
   std::cerr << "error: " << error.what() << "\n";

@@ -7,16 +7,11 @@
 // are other studies, configs/sweeps/sphere.yaml and previews.yaml.
 
 #include <cstdio>
-#include <fstream>
 #include <iostream>
 #include <nlohmann/json.hpp>
-#include <stdexcept>
 
 #include "benchmarks/measure.h"
-#include "core/app/files/machine.h"
 #include "core/kernel/plugin/loader.h"
-#include "core/kernel/threads/parallel.h"
-#include "core/kernel/version.h"
 #include "core/numerics/linear_algebra/block_cholesky.h"
 #include "core/numerics/solve/newton.h"
 
@@ -37,28 +32,6 @@ double median_seconds(const Body& body) {
   }
   return median(seconds);
 }
-
-/// Stops a method after some iterations of one level and keeps the time of each.
-class FirstIterations : public Observer {
- public:
-  explicit FirstIterations(int count, int level = 0) : count_(count), level_(level) {}
-  void iteration(const IterationRow& row, const Positions&) override {
-    if (row.level == level_) times_.push_back(row.seconds);
-    contacts = row.contacts.value_or(0);
-  }
-  bool stop_requested() override { return static_cast<int>(times_.size()) >= count_; }
-  int contacts = 0;  ///< at the last iteration
-  /// Median time between iterations, the first ones left out.
-  double seconds_per_iteration(std::size_t left_out = 4) const {
-    std::vector<double> between;
-    for (std::size_t i = left_out; i < times_.size(); ++i) between.push_back(times_[i] - times_[i - 1]);
-    return median(between);
-  }
-
- private:
-  int count_, level_;
-  std::vector<double> times_;
-};
 
 /// Rows of what is printed and stored: a ratio, its two times and the figure aimed at.
 class Table {
@@ -173,12 +146,7 @@ int main(int argc, char** argv) try {
     draped_level(*contact.experiment, *contact.scene, table);
     if (levels == std::string("4")) coarsest_level(*contact.experiment, *contact.scene, 50, table);
   }
-  if (argc > 1) {
-    nlohmann::ordered_json result = {
-        {"benchmark", "ratios"}, {"version", version()},      {"commit", commit()}, {"cpu", cpu_name()},
-        {"cores", core_count()}, {"threads", thread_count()}, {"repeats", repeats}, {"rows", table.rows()}};
-    std::ofstream(argv[1]) << result.dump(1) << "\n";
-  }
+  if (argc > 1) write_record(argv[1], "ratios", repeats, table.rows());
   return 0;
 } catch (const std::exception& error) {
   std::cerr << "error: " << error.what() << "\n";

@@ -2,11 +2,11 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
-#include <random>
 
 #include "core/kernel/interfaces/contact_model.h"
 #include "core/numerics/contact_forces/friction.h"
 #include "core/numerics/mesh/check.h"
+#include "core/numerics/model/required.h"
 #include "core/numerics/patterns/generate.h"
 #include "tests/support/any_threads.h"
 #include "tests/support/conformance.h"
@@ -38,10 +38,6 @@ Positions stacked(const Level& level, double gap, unsigned seed) {
   x.bottomRows(n - lower).col(0).array() -= 1;
   x.bottomRows(n - lower).col(2).array() += gap;
   return x;
-}
-
-std::unique_ptr<Collisions> contacts_at(const BoundContact& contact, const Positions& x) {
-  return contact.build_candidates(x, x)->build_collisions(x);
 }
 
 /// Pushes the cloth down with noise, as far as gaps stay above 3 mm.
@@ -127,7 +123,7 @@ void for_each_state(const std::vector<NamedModel>& models, const Body& body) {
       INFO(named.name << ", state " << seed);
       const Positions x = pressed(*contact, stacked(level, *contact, 0.015, seed), seed);
       REQUIRE(contact->intersections(x).empty());
-      REQUIRE(contacts_at(*contact, x)->contact_count() >= 20);
+      REQUIRE(collisions_at(*contact, x)->contact_count() >= 20);
       body(*contact, x);
     }
   }
@@ -161,7 +157,7 @@ std::vector<Positions> adversarial(const Positions& x, unsigned seed) {
 TEST_CASE("A contact energy's gradient is that of its value, its Hessian that of its gradient",
           "[conformance]") {
   for_each_state(all_models(), [](const BoundContact& contact, const Positions& x) {
-    const auto set = contacts_at(contact, x);
+    const auto set = collisions_at(contact, x);
     const Positions g = gradient_of(*set, x);
     const Eigen::MatrixXd h = dense(hessian_of(*set, x, Projection::none));
     REQUIRE(set->value(x) > 0);
@@ -171,8 +167,8 @@ TEST_CASE("A contact energy's gradient is that of its value, its Hessian that of
     const Positions before = sum;
     CHECK(set->add_gradient(x, sum) == Approx(set->value(x)).epsilon(1e-13));
     CHECK((sum - before - g).norm() <= 1e-13 * (g.norm() + before.norm()));
-    const auto value = [&](const Positions& y) { return contacts_at(contact, y)->value(y); };
-    const auto gradient = [&](const Positions& y) { return gradient_of(*contacts_at(contact, y), y); };
+    const auto value = [&](const Positions& y) { return collisions_at(contact, y)->value(y); };
+    const auto gradient = [&](const Positions& y) { return gradient_of(*collisions_at(contact, y), y); };
     CHECK((differences(value, x, 1e-6) - flat(g).transpose()).norm() <= 1e-7 * g.norm());
     // The Hessian jumps where a pair's nearest features change: so small a step meets no such place.
     CHECK((differences(gradient, x, 3e-8) - h).norm() <= 1e-8 * h.norm());
@@ -183,7 +179,7 @@ TEST_CASE("A contact energy's gradient is that of its value, its Hessian that of
 TEST_CASE("Projected Hessians of contacts are positive semidefinite", "[conformance]") {
   int indefinite = 0;
   for_each_state(all_models(), [&](const BoundContact& contact, const Positions& x) {
-    indefinite += check_projections(*contacts_at(contact, x), x);
+    indefinite += check_projections(*collisions_at(contact, x), x);
   });
   REQUIRE(indefinite > 0);  // else nothing was projected
 }
@@ -191,7 +187,7 @@ TEST_CASE("Projected Hessians of contacts are positive semidefinite", "[conforma
 TEST_CASE("Contact acts within dhat and not beyond", "[conformance]") {
   int tell_gaps = 0, silent = 0;
   for_each_state(all_models(), [&](const BoundContact& contact, const Positions& x) {
-    const auto here = contacts_at(contact, x);
+    const auto here = collisions_at(contact, x);
     std::vector<double> gaps;
     here->append_gaps(gaps);
     (gaps.empty() ? silent : tell_gaps) += 1;
@@ -205,7 +201,7 @@ TEST_CASE("Contact acts within dhat and not beyond", "[conformance]") {
       Positions y = x;
       y.col(2).array() += lift;
       y.bottomRows(n - n / 2).col(2).array() += lift;
-      const auto set = contacts_at(contact, y);
+      const auto set = collisions_at(contact, y);
       const bool any = set->contact_count() > 0;
       (any ? with : without) += 1;
       CHECK(std::isfinite(set->smallest_gap()) == any);
@@ -218,7 +214,7 @@ TEST_CASE("Contact acts within dhat and not beyond", "[conformance]") {
     Positions far = x;
     far.col(2).array() += 10;
     far.bottomRows(n - n / 2).col(2).array() += 10;
-    CHECK(contacts_at(contact, far)->contact_count() == 0);
+    CHECK(collisions_at(contact, far)->contact_count() == 0);
     CHECK(contact.build_candidates(far, far)->max_step().fraction == 1);
   });
   CHECK(tell_gaps >= 2 * silent);  // the documents' example leaves gaps out, ipc and shapes do not
@@ -229,7 +225,7 @@ TEST_CASE("Self-contact is invariant under rigid motions", "[conformance]") {
       Eigen::AngleAxisd(1.1, Eigen::Vector3d(1, -2, 0.5).normalized()).toRotationMatrix();
   for_each_state(self_contact_models(), [&](const BoundContact& contact, const Positions& x) {
     const Positions moved = (x * turn.transpose()).rowwise() + Eigen::RowVector3d(0.3, -0.2, 0.7);
-    const auto set = contacts_at(contact, x), turned = contacts_at(contact, moved);
+    const auto set = collisions_at(contact, x), turned = collisions_at(contact, moved);
     CHECK(turned->contact_count() == set->contact_count());
     CHECK(turned->smallest_gap() == Approx(set->smallest_gap()).epsilon(1e-10));
     CHECK(turned->value(moved) == Approx(set->value(x)).epsilon(1e-9));
@@ -339,7 +335,7 @@ TEST_CASE("Intersections are named, with a point near them", "[conformance]") {
 TEST_CASE("Contacts keep unique keys and their tangential displacements between states", "[conformance]") {
   for_each_state(models_with_friction(), [](const BoundContact& contact, const Positions& x) {
     const Positions from = x - noise(x.rows(), 1e-4, 3), above = x.rowwise() + Eigen::RowVector3d(0, 0, 1e-3);
-    const auto before = lagged_friction(*contacts_at(contact, x), from, {});
+    const auto before = lagged_friction(*collisions_at(contact, x), from, {});
     REQUIRE(before);
     const TangentialDisplacements displacements = before->tangential_displacements(x);
     CHECK(std::ranges::adjacent_find(displacements, {}, &TangentialDisplacement::contact) ==
@@ -354,7 +350,7 @@ TEST_CASE("Contacts keep unique keys and their tangential displacements between 
 
 TEST_CASE("Friction opposes motion and is zero without it", "[conformance]") {
   for_each_state(models_with_friction(), [](const BoundContact& contact, const Positions& x) {
-    const auto set = contacts_at(contact, x);
+    const auto set = collisions_at(contact, x);
     const auto friction = lagged_friction(*set, x, {});
     REQUIRE(friction);
     CHECK(friction->value(x) == 0);
@@ -375,7 +371,7 @@ TEST_CASE("Friction opposes motion and is zero without it", "[conformance]") {
     CHECK(force.x() < 0);
   });
   for_each_state(self_contact_models(), [](const BoundContact& contact, const Positions& x) {
-    const auto friction = lagged_friction(*contacts_at(contact, x), x, {});
+    const auto friction = lagged_friction(*collisions_at(contact, x), x, {});
     REQUIRE(friction);
     const Positions slid = x.rowwise() + Eigen::RowVector3d(0.05, 0, 0);
     Positions apart = x;

@@ -1,7 +1,6 @@
 #include <Eigen/Geometry>
 #include <catch2/catch.hpp>
 #include <cmath>
-#include <random>
 
 #include "core/kernel/interfaces/energy.h"
 #include "core/kernel/interfaces/refiner.h"
@@ -374,13 +373,7 @@ TEST_CASE("plate_stiffness is that of a sheet rolled along its grid", "[conforma
     const auto energy = [&](int columns, int rows) {
       const Level level =
           Level::of(0, grid({columns * cell, rows * cell}, columns + 1, rows + 1, Diagonals::one_way));
-      Positions x = level.rest.vertices;
-      for (Eigen::Index i = 0; i < x.rows(); ++i) {
-        const double angle = x(i, 0) / radius;
-        x(i, 0) = radius * std::sin(angle);
-        x(i, 2) = radius * (1 - std::cos(angle));
-      }
-      return candidate.energy->bind(level, material)->value(x);
+      return candidate.energy->bind(level, material)->value(rolled(level.rest.vertices, radius));
     };
     const int n = 5;  // n × n cells far from the border: what borders have cancels
     const double inner = energy(2 * n, 2 * n) - energy(n, 2 * n) - energy(2 * n, n) + energy(n, n);

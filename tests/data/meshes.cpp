@@ -1,13 +1,11 @@
 #include "tests/support/meshes.h"
 
-#include <Eigen/Geometry>
 #include <catch2/catch.hpp>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <iostream>
 #include <nlohmann/json.hpp>
-#include <sstream>
 
 #include "core/kernel/interfaces/topology.h"
 #include "core/numerics/collision_detection/intersections.h"

@@ -8,42 +8,20 @@
 #include <iostream>
 #include <stdexcept>
 
+#include "tests/support/full_checkpoint.h"
+
 namespace {
 
 using namespace drape;
 
 std::string body(const Checkpoint& checkpoint) { return encode(checkpoint).substr(checkpoint_header_size); }
 
-/// A small one, for the fuzzer to begin with.
-Checkpoint small() {
-  Checkpoint c;
-  c.program = "drape";
-  c.config = "name: x\n";
-  c.files = {{"/a.obj", 17, 99}};
-  c.methods = {"pcs", "newton"};
-  LevelResult coarse;
-  coarse.message = "no descent";
-  coarse.x = Positions::Ones(4, 3);
-  coarse.seconds_by_phase = {{"solve", 0.5}};
-  coarse.smallest_gap = 1e-4;
-  c.state.finished = {coarse};
-  NewtonState& s = c.state.under_way.emplace();
-  s.so_far.x = Positions::Ones(4, 3);
-  s.iterate.limited_by = "ball";
-  s.contacts.tangential_displacements = {{{{1, 2, 3, 4, 0}, {1e-5, 0, 2e-5}}}, {}};
-  s.step.factor.pattern.extra = {{{0, 4}, {2, 7}}, {0, 3}};
-  s.step.factor.analysis = {{0, 1, 0}, {2, 0}, {0, 2}, 123, 4};
-  c.start = Positions::Ones(4, 3);
-  c.recorder.results = "{}";
-  return c;
-}
-
 }  // namespace
 
 /// `fuzz_checkpoint --seed FILE` writes that: made of this build's fields, it never gets old.
 extern "C" int LLVMFuzzerInitialize(int* count, char*** words) {
   if (*count != 3 || std::string_view((*words)[1]) != "--seed") return 0;
-  std::ofstream((*words)[2], std::ios::binary) << body(small());
+  std::ofstream((*words)[2], std::ios::binary) << body(full_checkpoint());
   std::exit(0);
 }
 

@@ -1,7 +1,6 @@
 // What inflation owes: a sphere in closed form, and the mylar balloon.
 
 #include <Eigen/Cholesky>
-#include <Eigen/Geometry>
 #include <catch2/catch.hpp>
 
 #include "core/numerics/mesh_files/io.h"

@@ -5,6 +5,7 @@
 #include "core/numerics/hierarchy/hierarchy.h"
 #include "core/numerics/patterns/generate.h"
 #include "tests/support/equilibrium.h"
+#include "tests/support/meshes.h"
 #include "tests/support/strip.h"
 
 using namespace drape;
@@ -76,17 +77,6 @@ struct ClampedStrip {
   }
 };
 
-/// Vertices of a square sheet of `cells` cells, rolled to a cylinder of radius R.
-Positions rolled(const TriangleMesh& flat, double radius) {
-  Positions x = flat.vertices;
-  for (Eigen::Index i = 0; i < x.rows(); ++i) {
-    const double angle = flat.vertices(i, 0) / radius;
-    x(i, 0) = radius * std::sin(angle);
-    x(i, 2) = radius * (1 - std::cos(angle));
-  }
-  return x;
-}
-
 }  // namespace
 
 TEST_CASE("A coarse strip between clamps has about the energy of the buckled cloth", "[physics]") {
@@ -146,7 +136,7 @@ TEST_CASE("The membrane energy of a rolled sheet falls with h as of chords, up t
     const double h = side / cells;
     const TriangleMesh flat = grid({side, side}, cells + 1, cells + 1, Diagonals::criss_cross);
     const Level level = Level::of(0, flat);
-    const Positions x = rolled(flat, radius);
+    const Positions x = rolled(flat.vertices, radius);
     const double chord = 2 * radius * std::sin(h / (2 * radius)) / h, strain = (1 - chord * chord) / 2;
     const double stiffness = fabric.membrane_modulus * fabric.thickness;
     const double bound = 4 * pi * pi * plate_stiffness / (h * h * (1 - std::pow(4.0, -levels_below)));

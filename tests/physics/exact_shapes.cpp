@@ -1,7 +1,6 @@
 // Bending energies of shapes that a flat or curved rest shape takes without stretching, by every bending
 // model on every triangulation, beside the energy of a Kirchhoff–Love plate.
 
-#include <Eigen/Geometry>
 #include <catch2/catch.hpp>
 #include <cmath>
 

@@ -5,7 +5,6 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "core/numerics/patterns/generate.h"
 #include "tests/support/decompositions.h"
 #include "tests/support/evaluate.h"
 #include "tests/support/free_stiffness.h"

@@ -1,13 +1,11 @@
 // Woven cloth: strips that are pulled and strips that bend along warp, weft and the bias, and one on its edge
 // that buckles sideways.
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/SparseCholesky>
 #include <catch2/catch.hpp>
 #include <cmath>
 
 #include "core/numerics/elements/orthotropic_stiffness.h"
-#include "core/numerics/patterns/generate.h"
 #include "tests/support/cut_strip.h"
 #include "tests/support/elastica.h"
 #include "tests/support/evaluate.h"

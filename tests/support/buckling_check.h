@@ -3,7 +3,6 @@
 #include <Eigen/Geometry>
 #include <catch2/catch.hpp>
 #include <cmath>
-#include <string>
 #include <vector>
 
 #include "core/numerics/formulas/membrane_formula.h"

@@ -1,9 +1,7 @@
 #pragma once
 
-#include <Eigen/Geometry>
 #include <algorithm>
 #include <catch2/catch.hpp>
-#include <cmath>
 #include <functional>
 #include <vector>
 

@@ -17,6 +17,16 @@ inline void append(drape::TriangleMesh& mesh, const std::vector<Eigen::Vector3d>
   for (const Eigen::Vector3i& corners : triangles) mesh.triangles.row(t++) = corners;
 }
 
+/// The vertices of a flat mesh, rolled to a cylinder of this radius along one of its axes.
+inline drape::Positions rolled(drape::Positions x, double radius, int axis = 0) {
+  for (auto vertex : x.rowwise()) {
+    const double angle = vertex[axis] / radius;
+    vertex[axis] = radius * std::sin(angle);
+    vertex[2] = radius * (1 - std::cos(angle));
+  }
+  return x;
+}
+
 inline drape::TriangleMesh mesh_of(const std::vector<Eigen::Vector3d>& vertices,
                                    const std::vector<Eigen::Vector3i>& triangles) {
   drape::TriangleMesh mesh;

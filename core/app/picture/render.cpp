@@ -7,7 +7,6 @@
 #include <cstdlib>
 #include <thread>
 #include <utility>
-#include <vector>
 
 #include "core/app/picture/lighting.h"
 #include "core/kernel/threads/parallel.h"

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <map>
-#include <stdexcept>
 
 #include "core/app/view/view_document.h"
 #include "core/kernel/files/message_text.h"

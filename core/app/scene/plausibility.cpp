@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
-#include <tuple>
 
 #include "core/app/scene/boundary_conditions.h"
 #include "core/app/scene/scene_summary.h"

@@ -1,6 +1,5 @@
 #include "core/kernel/interfaces/metric.h"
 
-#include <algorithm>
 #include <stdexcept>
 
 namespace drape {

@@ -1,7 +1,6 @@
 #include "core/numerics/contact/pair_contacts.h"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 
 #include "core/kernel/threads/parallel.h"

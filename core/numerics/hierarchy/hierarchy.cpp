@@ -1,6 +1,5 @@
 #include "core/numerics/hierarchy/hierarchy.h"
 
-#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 #include <string>

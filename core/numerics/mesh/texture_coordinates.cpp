@@ -1,7 +1,6 @@
 #include "core/numerics/mesh/texture_coordinates.h"
 
 #include <Eigen/Geometry>
-#include <algorithm>
 #include <cmath>
 #include <numeric>
 

@@ -1,7 +1,6 @@
 // PLY in: text, binary little endian and binary big endian.
 #include <algorithm>
 #include <cmath>
-#include <stdexcept>
 
 #include "core/kernel/files/file.h"
 #include "core/kernel/files/message_text.h"

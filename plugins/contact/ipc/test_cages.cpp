@@ -1,6 +1,5 @@
 #include <catch2/catch.hpp>
 
-#include "core/numerics/collision_detection/intersections.h"
 #include "core/numerics/mesh_files/io.h"
 #include "core/numerics/patterns/generate.h"
 #include "plugins/contact/ipc/bound_ipc.h"
@@ -9,7 +8,6 @@
 
 using namespace drape;
 using namespace drape::ipc;
-using Vector = Eigen::Vector3d;
 using Catch::Contains;
 
 namespace {

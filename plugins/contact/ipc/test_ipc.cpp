@@ -1,4 +1,3 @@
-#include <Eigen/Geometry>
 #include <catch2/catch.hpp>
 #include <random>
 #include <set>
@@ -19,8 +18,6 @@ using namespace drape;
 using namespace drape::ipc;
 
 namespace {
-
-using Vector = Eigen::Vector3d;
 
 /// A square cloth of side 1 folded like a letter, unstretched: straight layers `gap` apart, half circles
 /// between them; with noise.

@@ -1,6 +1,7 @@
 #include <catch2/catch.hpp>
 
 #include "core/numerics/contact_forces/barrier.h"
+#include "core/numerics/model/required.h"
 #include "core/numerics/patterns/generate.h"
 #include "plugins/contact/ipc/ipc.h"
 #include "tests/support/evaluate.h"
@@ -18,10 +19,6 @@ std::unique_ptr<BoundContact> bound(const Level& level) {
   p.stiffness = stiffness;
   p.dhat = dhat;
   return Ipc(p).bind(level, Material());
-}
-
-std::unique_ptr<Collisions> collisions(const BoundContact& contact, const Positions& x) {
-  return contact.build_candidates(x, x)->build_collisions(x);
 }
 
 /// Two sheets of side 0.1, one `gap` above the other, that nothing connects.
@@ -62,9 +59,9 @@ TEST_CASE("ipc: layers that are near at rest are in equilibrium there, and resis
     for (const double gap : {0.9e-3, 0.5e-3, 0.3e-3}) {
       const Level sheets = two_sheets(gap, columns);
       const auto contact = bound(sheets);
-      CHECK(collisions(*contact, sheets.rest.vertices)->value(sheets.rest.vertices) == 0);
+      CHECK(collisions_at(*contact, sheets.rest.vertices)->value(sheets.rest.vertices) == 0);
       const Positions x = with_gap(sheets, gap / 2);
-      const auto set = collisions(*contact, x);
+      const auto set = collisions_at(*contact, x);
       REQUIRE(set->contact_count() > 0);
       CHECK(set->smallest_gap() == Approx(gap / 2));
       const Positions g = gradient_of(*set, x);
@@ -83,10 +80,10 @@ TEST_CASE("ipc: layers that touch at rest are pushed apart by up to a quarter of
   const auto contact = bound(sheets);
   for (const double gap : {1e-6, 0.24e-3}) {
     const Positions x = with_gap(sheets, gap);
-    CHECK(collisions(*contact, x)->contact_count() > 0);
+    CHECK(collisions_at(*contact, x)->contact_count() > 0);
   }
   const Positions apart = with_gap(sheets, 0.26e-3);
-  CHECK(collisions(*contact, apart)->contact_count() == 0);
+  CHECK(collisions_at(*contact, apart)->contact_count() == 0);
 }
 
 TEST_CASE("ipc: the leaves of a book that is shut at rest have a barrier, but for its spine") {
@@ -95,7 +92,7 @@ TEST_CASE("ipc: the leaves of a book that is shut at rest have a barrier, but fo
     const Level book = shut_book(columns, side);
     const auto contact = bound(book);
     const Positions x = opened(book, columns, side, 2e-4 / side);
-    const auto set = collisions(*contact, x);
+    const auto set = collisions_at(*contact, x);
     CAPTURE(columns);
     REQUIRE(set->contact_count() > 0);
     const Positions g = gradient_of(*set, x);
@@ -111,13 +108,13 @@ TEST_CASE("ipc: the leaves of a book that is shut at rest have a barrier, but fo
 TEST_CASE("ipc: neighbours along the cloth have no barrier, and the model's remark says so") {
   Level fine = Level::of(0, grid({0.02, 0.02}, 41, 41, Diagonals::criss_cross));  // edges of half of d̂
   const auto contact = bound(fine);
-  CHECK(collisions(*contact, fine.rest.vertices)->contact_count() == 0);
+  CHECK(collisions_at(*contact, fine.rest.vertices)->contact_count() == 0);
   CHECK_THAT(contact->remark(), Catch::Contains("have no barrier") && Catch::Contains("0.001 m"));
   // Slivers whose long edges are far above d̂.
   const Level level =
       Level::of(0, mesh_of({{0, 0, 0}, {0.1, 0, 0}, {0.05, 3e-4, 0}, {0.05, 0.1, 0}, {0.05, -3e-4, 0}},
                            {{0, 1, 2}, {0, 2, 3}, {2, 1, 3}, {1, 0, 4}}));
-  CHECK(collisions(*bound(level), level.rest.vertices)->contact_count() == 0);
+  CHECK(collisions_at(*bound(level), level.rest.vertices)->contact_count() == 0);
   CHECK(bound(Level::of(0, grid({0.1, 0.1}, 21, 21, Diagonals::one_way)))->remark().empty());
 }
 
@@ -125,7 +122,7 @@ TEST_CASE("ipc: layers of a cloth that is smaller than dhat have a barrier, and 
   Level sheets = two_sheets(0.05, 6);
   sheets = Level::of(0, {0.01 * sheets.rest.vertices, sheets.rest.triangles});  // 1 mm wide, 0.5 mm apart
   const auto contact = bound(sheets);
-  const auto forces = [&](const Positions& x) { return gradient_of(*collisions(*contact, x), x); };
+  const auto forces = [&](const Positions& x) { return gradient_of(*collisions_at(*contact, x), x); };
   const Positions g = forces(with_gap(sheets, 0.2e-3));
   CHECK(forces(sheets.rest.vertices).cwiseAbs().maxCoeff() < 1e-9 * g.cwiseAbs().maxCoeff());
   const Eigen::Index n = g.rows() / 2;
@@ -139,10 +136,10 @@ TEST_CASE("ipc: two edges have not the gap at rest of a vertex and a triangle of
       0, mesh_of({{0.05, 0, 0.5e-3}, {0, 0, 0}, {0.1, -0.05, 0}, {0.1, 0.05, 0}, {0.05, 0.05, 0.05}},
                  {{0, 1, 4}, {4, 1, 3}, {1, 2, 3}}));
   const auto contact = bound(level);
-  CHECK(collisions(*contact, level.rest.vertices)->value(level.rest.vertices) == 0);
+  CHECK(collisions_at(*contact, level.rest.vertices)->value(level.rest.vertices) == 0);
   Positions x = level.rest.vertices;
   x.row(0) << 0.12, 0, 0.96e-3;  // edge 0-1 passes 0.8 d̂ above edge 2-3
-  const auto set = collisions(*contact, x);
+  const auto set = collisions_at(*contact, x);
   CHECK(set->contact_count() == 1);
   CHECK(set->smallest_gap() == Approx(0.8e-3).epsilon(1e-3));
 }

@@ -1,6 +1,5 @@
 // The barrier between vertices and a surface of triangles.
 
-#include <Eigen/Geometry>
 #include <catch2/catch.hpp>
 
 #include "core/numerics/contact/pair_geometry.h"

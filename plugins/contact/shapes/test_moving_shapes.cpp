@@ -2,8 +2,6 @@
 
 #include "core/numerics/contact_forces/friction.h"
 #include "core/numerics/model/active_contacts.h"
-#include "core/numerics/patterns/generate.h"
-#include "plugins/contact/shapes/separation.h"
 #include "plugins/contact/shapes/shapes.h"
 #include "tests/support/meshes.h"
 #include "tests/support/random.h"

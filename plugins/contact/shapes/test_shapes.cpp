@@ -5,7 +5,6 @@
 #include <limits>
 
 #include "core/numerics/contact_forces/barrier.h"
-#include "core/numerics/patterns/generate.h"
 #include "plugins/contact/shapes/features.h"
 #include "plugins/contact/shapes/separation.h"
 #include "plugins/contact/shapes/shapes.h"

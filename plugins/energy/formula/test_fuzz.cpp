@@ -2,7 +2,6 @@
 // number of formulas is 10 000, or DRAPE_FUZZ_FORMULAS.
 
 #include <catch2/catch.hpp>
-#include <cmath>
 #include <cstdlib>
 #include <random>
 

@@ -128,17 +128,6 @@ Positions wavy(const TriangleMesh& mesh, double height) {
   return x;
 }
 
-/// A flat mesh that is rolled up along one of its axes.
-Positions rolled(const TriangleMesh& mesh, double radius, int axis) {
-  Positions x = mesh.vertices;
-  for (auto vertex : x.rowwise()) {
-    const double angle = vertex[axis] / radius;
-    vertex[axis] = radius * std::sin(angle);
-    vertex[2] = radius * std::cos(angle);
-  }
-  return x;
-}
-
 }  // namespace
 
 TEST_CASE(
@@ -261,7 +250,7 @@ TEST_CASE(
     for (const int n : {11, 21, 41}) {
       const auto meshes = triangulations(n);
       for (std::size_t m = 0; m < meshes.size(); ++m) {
-        const Positions x = rolled(meshes[m].mesh, radius, axis);
+        const Positions x = rolled(meshes[m].mesh.vertices, radius, axis);
         const double mean = mean_of(inner_densities(Level::of(0, meshes[m].mesh), x, default_tolerance));
         errors[m].push_back(std::abs(mean / (k / (radius * radius)) - 1));
       }

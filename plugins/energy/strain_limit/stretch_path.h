@@ -1,7 +1,6 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <cmath>
 
 #include "core/numerics/elements/stretch.h"
 

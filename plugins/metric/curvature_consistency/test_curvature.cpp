@@ -4,7 +4,6 @@
 #include <functional>
 #include <limits>
 #include <numbers>
-#include <string>
 #include <vector>
 
 #include "plugins/metric/curvature_consistency/curvature.h"

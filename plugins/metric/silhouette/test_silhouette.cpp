@@ -1,4 +1,3 @@
-#include <Eigen/Geometry>
 #include <cmath>
 
 #include "core/numerics/hierarchy/midpoint.h"

@@ -1,6 +1,5 @@
 #include "core/numerics/multigrid/smoother.h"
 
-#include <Eigen/Core>
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>

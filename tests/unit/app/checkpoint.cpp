@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "tests/support/command.h"
+#include "tests/support/full_checkpoint.h"
 #include "tests/support/refusal.h"
 
 using namespace drape;
@@ -13,64 +14,6 @@ using Catch::Contains;
 using Catch::EndsWith;
 
 namespace {
-
-/// One with something in every field.
-Checkpoint full() {
-  std::srand(3);
-  Checkpoint c;
-  c.program = "drape";
-  c.config = "name: x\n";
-  c.files = {{"/a.obj", 17, 99}};
-  c.methods = {"pcs", "newton"};
-  c.method = 1;
-  c.all_converged = false;
-  LevelResult coarse;
-  coarse.outcome = Outcome::stalled;
-  coarse.message = "no descent";
-  coarse.x = Positions::Random(4, 3);
-  coarse.from_initial_state = true;
-  coarse.steps = 7;
-  coarse.seconds_by_phase = {{"solve", 0.5}, {"gradient", 0.25}};
-  coarse.smallest_gap = 1e-4;
-  c.state.finished = {coarse};
-  c.state.level = 1;
-  c.state.seconds = 3;
-  NewtonState& s = c.state.under_way.emplace();
-  s.so_far.x = Positions::Random(9, 3);
-  s.so_far.force_residual = std::nan("");
-  s.check = {{1, 2, 3}, {7, 8, 9}, {3, -0.5, 1e-6}, {6, {1, 2, 3, 4, 5}, {6, 7, 8, 9, 10}, {1, 0, 2}},
-             0.02,      4};
-  s.iterate = {2, "ball"};
-  s.step.max_iterations = 30;
-  s.step.controller = {0.25, -4, 3e3, true, 0.5};
-  s.step.step_length = 0.125;
-  s.switched_to_plain = true;
-  s.dirichlet = {{3}, 1e4, 0.5, 2, false, true, "post"};
-  s.load_stepper = {{4, 5, 6}, {Positions::Random(9, 3), Positions::Random(9, 3), 0.5}, 2};
-  s.so_far.load_stepping = {3, {0.5, 0.25}};
-  s.contacts = {Positions::Random(9, 3),
-                {{{{1, 2, 3, 4, 0}, {1e-5, 0, 2e-5}}}, {}},
-                Positions::Random(9, 3),
-                Positions::Random(9, 3),
-                2,
-                {14.7, 240},
-                {0.25, {{{{{1, 2, 3, 4, 0}, {1, 2, -1, -1}, {1, 0, 0, 0}, {0, 0, 1}, 0.75, {3}}}}, {}}}};
-  FactorCache::State& factor = s.step.factor;
-  factor.blend = 3;
-  factor.pattern.extra = {{{0, 4}, {2, 7}}, {0, 3}};
-  factor.pattern.smooth_only = false;
-  factor.analysis = {{0, 1, 0}, {2, 0}, {0, 2}, 123, 4};
-  factor.fallback = LinearSolver::supernodal;
-  factor.fallback_solves = 7;
-  c.first_level = 1;
-  c.start = Positions::Random(4, 3);
-  c.recorder.results = "{}";
-  c.recorder.states = {{"pcs", 1, Positions::Random(9, 3), {}, {{{1, 2, 3}}, {4}, {5}, true, 7}}};
-  c.recorder.snapshots = {2, 5, {{{1, 2, 3}, Positions::Random(9, 3)}}};
-  c.recorder.iterations_bytes = 12345;
-  c.recorder.last_load = {2, {0.5, 0.75}};
-  return c;
-}
 
 std::string error_of(const std::string& bytes) {
   return refusal_of([&] { decode(bytes); });
@@ -102,12 +45,12 @@ std::string error_in(const std::filesystem::path& folder) {
 }  // namespace
 
 TEST_CASE("A checkpoint is read as it was written") {
-  const std::string bytes = encode(full());
+  const std::string bytes = encode(full_checkpoint());
   const Checkpoint c = decode(bytes);
   CHECK(encode(c) == bytes);
   // The archive passes every member of a struct: here one of each kind of value.
   CHECK(c.methods == std::vector<std::string>{"pcs", "newton"});
-  CHECK(c.state.finished.at(0).x == full().state.finished.at(0).x);
+  CHECK(c.state.finished.at(0).x == full_checkpoint().state.finished.at(0).x);
   CHECK(c.state.finished.at(0).seconds_by_phase.at("solve") == 0.5);
   const NewtonState& s = c.state.under_way.value();
   CHECK(std::isnan(s.so_far.force_residual));
@@ -127,14 +70,14 @@ TEST_CASE("A checkpoint is read as it was written") {
   CHECK(s.contacts.tangential_displacements.at(0).at(0).contact == ContactKey{1, 2, 3, 4, 0});
   CHECK(s.contacts.damping.lag.at(0).at(0).at(0).touched.obstacle == 3);
   CHECK(s.switched_to_plain);
-  CHECK(c.recorder.states.at(0).x == full().recorder.states.at(0).x);
+  CHECK(c.recorder.states.at(0).x == full_checkpoint().recorder.states.at(0).x);
   CHECK(c.recorder.states.at(0).snapshots.checksum == 7);
   CHECK(c.recorder.iterations_bytes == 12345);
   CHECK(encode(decode(encode(Checkpoint()))) == encode(Checkpoint()));
 }
 
 TEST_CASE("Any changed, missing or additional byte of a checkpoint is detected") {
-  const std::string bytes = encode(full());
+  const std::string bytes = encode(full_checkpoint());
   REQUIRE(bytes.size() > 1000);
   for (std::size_t k = 0; k < bytes.size(); ++k) {
     std::string other = bytes;
@@ -158,7 +101,7 @@ TEST_CASE("Any changed, missing or additional byte of a checkpoint is detected")
 }
 
 TEST_CASE("A value that its type does not have is refused") {
-  const Checkpoint whole = full();
+  const Checkpoint whole = full_checkpoint();
   std::string bytes = body_of(whole);
   Checkpoint other = whole;
   other.all_converged = !whole.all_converged;
@@ -190,7 +133,7 @@ TEST_CASE("A count of more than there are bytes is refused before memory is take
 }
 
 TEST_CASE("Whatever bytes a body has, it is refused or read as what would be written so") {
-  const std::string bytes = body_of(full());
+  const std::string bytes = body_of(full_checkpoint());
   int read = 0;
   for (std::size_t k = 0; k < bytes.size(); ++k)
     for (const int value : {0, 1, 2, 127, 255}) {
@@ -210,7 +153,7 @@ TEST_CASE("The newest complete checkpoint is used, and a damaged one is named") 
   CHECK_THAT(error_in(folder.path), Contains("holds no checkpoint of a run"));
   std::vector<std::string> warnings;
   for (int method = 0; method < 3; ++method) {
-    Checkpoint c = full();
+    Checkpoint c = full_checkpoint();
     c.method = method;
     save_checkpoint(folder.path, c);
     CHECK(load_checkpoint(folder.path, warnings).method == method);

@@ -2,7 +2,6 @@
 
 #include <catch2/catch.hpp>
 #include <cmath>
-#include <set>
 
 #include "core/app/sweep/fit.h"
 

@@ -3,7 +3,6 @@
 #include <Eigen/Geometry>
 #include <catch2/catch.hpp>
 
-#include "core/app/scene/boundary_conditions.h"
 #include "core/numerics/mesh_files/io.h"
 #include "core/numerics/patterns/generate.h"
 #include "tests/support/command.h"

@@ -1,10 +1,8 @@
 #include "core/app/report/report.h"
 
-#include <Eigen/Geometry>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <filesystem>
-#include <limits>
 #include <nlohmann/json.hpp>
 #include <optional>
 

@@ -2,7 +2,6 @@
 
 #include <catch2/catch.hpp>
 #include <cmath>
-#include <limits>
 
 #include "core/numerics/contact_forces/barrier.h"
 #include "core/numerics/contact_forces/contact_stiffness.h"

@@ -1,6 +1,5 @@
 #include "core/numerics/contact_forces/friction.h"
 
-#include <algorithm>
 #include <random>
 
 #include "tests/support/kernel_check.h"

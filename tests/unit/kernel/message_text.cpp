@@ -8,7 +8,6 @@
 #include <cstdio>
 #include <limits>
 #include <new>
-#include <system_error>
 
 #include "core/app/files/yaml_file.h"
 #include "core/kernel/files/file.h"

@@ -2,7 +2,6 @@
 
 #include <catch2/catch.hpp>
 #include <set>
-#include <utility>
 
 #include "core/kernel/interfaces/level.h"
 #include "core/numerics/mesh/same_entries.h"

@@ -4,7 +4,6 @@
 
 #include "core/numerics/buckling/buckling_membrane.h"
 #include "core/numerics/elements/jet_functions.h"
-#include "core/numerics/patterns/generate.h"
 #include "tests/support/evaluate.h"
 
 using namespace drape;
