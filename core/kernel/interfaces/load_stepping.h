@@ -61,7 +61,6 @@ struct IncrementRow {
   double time = 0;                      ///< pseudo-time
   int steps = 0;                        ///< of this increment
   int iterations = 0;                   ///< likewise
-  double seconds = 0;                   ///< likewise
   double energy = 0;                    ///< of the objective, without friction [J]
   double force_residual = 0;            ///< [1]
   double max_constraint_violation = 0;  ///< largest distance of a Dirichlet vertex from its target [m]

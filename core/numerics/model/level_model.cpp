@@ -17,6 +17,8 @@ namespace {
 constexpr const char* contact_part = "contact";
 /// Without a load the residual scale is at least this fraction of the cloth's weight under gravity.
 constexpr double min_weight_fraction = 1e-3;
+/// A load counts as at least this fraction of it: a load may vanish where the cloth rests.
+constexpr double min_load_fraction = 1e-6;
 
 double norm_where(const Positions& g, const std::vector<char>& flags, char flag) {
   double sum = 0;
@@ -212,13 +214,13 @@ double LevelModel::external_force_norm(const Positions& x) const {
 }
 
 double LevelModel::residual_scale(const Positions& x, const Positions& gradient) const {
-  if (const double load = load_norm(x); load > 0) return load;
-  double weight = 0;
+  double squares = 0;
   for (int i = 0; i < masses_.size(); ++i)
-    if (!fixed_[i]) weight += masses_[i] * masses_[i];
-  return std::max({norm_where(gradient, fixed_, 1),
-                   min_weight_fraction * standard_gravity * std::sqrt(weight),
-                   std::numeric_limits<double>::min()});
+    if (!fixed_[i]) squares += masses_[i] * masses_[i];
+  const double weight = standard_gravity * std::sqrt(squares);
+  if (const double load = load_norm(x); load > 0) return std::max(load, min_load_fraction * weight);
+  return std::max(
+      {norm_where(gradient, fixed_, 1), min_weight_fraction * weight, std::numeric_limits<double>::min()});
 }
 
 double LevelModel::force_residual(const Positions& x) const {

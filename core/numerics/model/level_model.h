@@ -105,8 +105,8 @@ class LevelModel {
   /// residual_scale.
   double force_residual(const Positions& x) const;
 
-  /// Scale of the force residual [N]: the external load; without a load the reaction forces at fixed
-  /// vertices, but at least a thousandth of the cloth's weight.
+  /// Scale of the force residual [N]: the external load, but at least a millionth of the cloth's weight;
+  /// without a load the reaction forces at fixed vertices, but at least a thousandth of that weight.
   double residual_scale(const Positions& x, const Positions& gradient) const;
 
  private:

@@ -32,14 +32,8 @@ constexpr const char* load_phase = "load stepping";
 }  // namespace
 
 LoadStepper::LoadStepper(LoadStepping* load_stepping, Iterate& iterate, DirichletEnforcer& dirichlet,
-                         const Stopwatch& clock, Observer& observer)
-    : load_stepping_(load_stepping),
-      iterate_(iterate),
-      dirichlet_(dirichlet),
-      clock_(clock),
-      observer_(observer) {
-  s_.start.seconds = clock.seconds();
-}
+                         Observer& observer)
+    : load_stepping_(load_stepping), iterate_(iterate), dirichlet_(dirichlet), observer_(observer) {}
 
 void LoadStepper::store_progress(LevelResult& result) const {
   if (load_stepping_) result.load_stepping = load_stepping_->state();
@@ -51,7 +45,7 @@ void LoadStepper::advance(bool at_equilibrium) {
   const LevelResult& result = iterate_.result();
   const bool begins = load_stepping_->complete();
   if (begins && (at_equilibrium || load_stepping_->increment() > 0)) report_increment();
-  if (begins) s_.start = {result.steps, result.iterations, clock_.seconds()};
+  if (begins) s_.start = {result.steps, result.iterations};
   const Positions from = iterate_.x();
   double applied = at_equilibrium && !begins ? extrapolate() : 0;
   Positions predicted = iterate_.x();
@@ -164,7 +158,6 @@ void LoadStepper::report_increment() {
   row.time = load_stepping_->time();
   row.steps = result.steps - s_.start.steps;
   row.iterations = result.iterations - s_.start.iterations;
-  row.seconds = clock_.seconds() - s_.start.seconds;
   row.energy = iterate_.energy_without_friction();
   row.force_residual = result.force_residual;
   row.max_constraint_violation = dirichlet_.max_violation(result.x);

@@ -3,7 +3,6 @@
 #include <optional>
 #include <string>
 
-#include "core/kernel/threads/stopwatch.h"
 #include "core/numerics/solve/dirichlet_enforcer.h"
 #include "core/numerics/step/iterate.h"
 
@@ -12,7 +11,6 @@ namespace drape {
 /// When the current increment began.
 struct IncrementStart {
   int steps = 0, iterations = 0;  ///< of the level
-  double seconds = 0;             ///< of the method
 };
 
 /// Motion of the cloth in answer to a partly applied increment; the predictor extrapolates it.
@@ -35,9 +33,9 @@ class LoadStepper {
   State state() const { return s_; }
   void restore(const State& state) { s_ = state; }
 
-  /// Refers to all arguments; without load stepping (null) there are no increments. `clock` is the method's.
+  /// Refers to all arguments; without load stepping (null) there are no increments.
   LoadStepper(LoadStepping* load_stepping, Iterate& iterate, DirichletEnforcer& dirichlet,
-              const Stopwatch& clock, Observer& observer);
+              Observer& observer);
 
   /// Whether increments remain.
   bool loading() const { return load_stepping_ && !load_stepping_->finished(); }
@@ -76,7 +74,6 @@ class LoadStepper {
   LoadStepping* load_stepping_;
   Iterate& iterate_;
   DirichletEnforcer& dirichlet_;
-  const Stopwatch& clock_;
   Observer& observer_;
   State s_;
   std::string limit_text_;

@@ -15,8 +15,7 @@ namespace {
 
 /// The Dirichlet penalty doubles when the force residual falls to this multiple of the tolerance.
 constexpr double near_equilibrium = 10;
-/// Pins that contact or limits stopped move on after a full step once forces are within this multiple of the
-/// load …
+/// Pins that were stopped move on after a full step once forces are within this multiple of the load …
 constexpr double relaxed_residual = 1;
 /// … and after every so many steps of an increment in any case.
 constexpr int max_steps_between_moves = 5;
@@ -46,7 +45,7 @@ class Newton {
             run.hierarchy),
         dirichlet_(objective.model()),
         predictor_(dirichlet_, iterate_, step_, run.load_stepping != nullptr),
-        load_(run.load_stepping, iterate_, dirichlet_, run.clock, run.observer) {
+        load_(run.load_stepping, iterate_, dirichlet_, run.observer) {
     result_.x = std::move(x);
     result_.level = f_.model().level().index;
     result_.message = run.remark;
@@ -203,10 +202,12 @@ class Newton {
 
   End end_at_equilibrium(bool in_tolerance) {
     load_.report_increment();
-    if (dirichlet_.infeasible()) return {Outcome::infeasible, "", "the rest of the cloth is at equilibrium"};
+    const bool is_balanced = in_tolerance || iterate_.force_residual() < balanced;
+    const std::string rounding = in_tolerance ? "" : rounding_text(result_, p_, check_.rounding_residual());
+    if (dirichlet_.infeasible())
+      return {Outcome::infeasible, "", is_balanced ? "the rest of the cloth is at equilibrium" : rounding};
     if (in_tolerance) return {Outcome::converged};
-    return {iterate_.force_residual() < balanced ? Outcome::converged_to_rounding : Outcome::stalled,
-            rounding_text(result_, p_, check_.rounding_residual())};
+    return {is_balanced ? Outcome::converged_to_rounding : Outcome::stalled, rounding};
   }
 
   /// Steps repeat each other: damps the lag of friction, which such steps mostly come from, or h.
@@ -278,7 +279,6 @@ class Newton {
   const NewtonParameters& p_;
   const LevelRun& run_;
   const Stopwatch watch_;
-
   LevelResult result_;
   Iterate iterate_;
   EquilibriumCheck check_;

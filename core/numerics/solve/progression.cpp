@@ -1,5 +1,7 @@
 #include "core/numerics/solve/progression.h"
 
+#include <cmath>
+
 #include "core/numerics/solve/newton_state.h"
 #include "core/numerics/solve/safe_refinement.h"
 
@@ -27,9 +29,13 @@ std::vector<LevelResult> Progression::resume(const Problem& problem, const Metho
     Refined start;
     if (anew)
       start.x = problem.starts[l];
-    else if (!state)
+    else if (!state) {
       start = refine_safely(problem, l - 1, results.back().x,
                             problem.hierarchy.weights(interpolation())[l - 1], clock, observer);
+      if (start.fault.empty() && !start.cancelled &&
+          !std::isfinite(problem.model(l)->energy_without_contact(start.x)))
+        start.fault = "the refined state is outside the domain of an energy";
+    }
     LevelResult result;
     result.level = l;
     if (!state) observer.level_started(l);

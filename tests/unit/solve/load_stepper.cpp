@@ -60,9 +60,8 @@ struct StepperCase {
   NewtonProblem problem{{energy_of(Wells(NewtonProblem::rest().array() + 0.3, 10, 0))}};
   FakeLoads loads;
   IncrementRecorder observer;
-  Stopwatch clock;
   DirichletEnforcer dirichlet{problem.model};
-  LoadStepper stepper{&loads, problem.iterate, dirichlet, clock, observer};
+  LoadStepper stepper{&loads, problem.iterate, dirichlet, observer};
 
   StepperCase() { loads.unchanged = &problem.model; }
 
@@ -100,16 +99,6 @@ TEST_CASE("Each increment that ends is reported with its own counts") {
   CHECK(*c.stepper.time() == 30);
   c.stepper.store_progress(c.problem.result);
   CHECK(c.problem.result.load_stepping.increment == 3);
-}
-
-TEST_CASE("The seconds of a level's first increment are without those of coarser levels") {
-  StepperCase c;
-  const Stopwatch method(1000);
-  LoadStepper stepper(&c.loads, c.problem.iterate, c.dirichlet, method, c.observer);
-  stepper.report_increment();
-  REQUIRE(c.observer.rows.size() == 1);
-  CHECK(c.observer.rows[0].seconds >= 0);
-  CHECK(c.observer.rows[0].seconds < 500);
 }
 
 TEST_CASE("The rest of an increment takes the cloth along by its response to the first part") {

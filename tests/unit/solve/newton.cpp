@@ -338,3 +338,14 @@ TEST_CASE("A step without descent is no equilibrium although the pins reach thei
   CHECK(r.outcome == Outcome::stalled);
   CHECK_THAT(r.message, Catch::StartsWith("the line search found no descent"));
 }
+
+TEST_CASE("A cloth that rests where its load vanishes is at equilibrium") {
+  NewtonCase c;
+  c.centres = c.level.rest.vertices;
+  c.centres.bottomRows(15).array() += 0.01;
+  const LevelResult r =
+      c.solve({.max_steps = 300}, {{"well", energy_of(Wells(c.centres, 10, 0), EnergyRole::external)}},
+              {{0, c.level.rest.vertices.row(0), 0}});
+  INFO(r.message);
+  CHECK(r.outcome == Outcome::converged);
+}

@@ -194,6 +194,24 @@ TEST_CASE("Round-off beyond the load leaves no equilibrium") {
   CHECK_THAT(r.message, Catch::Contains("round-off alone accounts for up to "));
 }
 
+TEST_CASE("A pin out of reach where round-off exceeds the load does not leave the rest at equilibrium") {
+  HangingStrip strip(1e18);
+  std::vector<DirichletVertex> pins = HangingStrip::dirichlet(strip.level);
+  const int last = 40;
+  pins.push_back({last, strip.level.rest.vertices.row(last).transpose() + Vector3(0, 0, 0.1), 1});
+  const LevelModel model(
+      strip.level, Material(),
+      {{"springs", energy_of(strip.springs)}, {"limit", energy_of(Limiter(0), EnergyRole::limit)}}, pins);
+  PlainObjective objective(model);
+  Observer silent;
+  const LevelResult r = minimise(objective, strip.level.rest.vertices, far_too_tight(NewtonForm::quasistatic),
+                                 {Stopwatch(), silent});
+  CAPTURE(r.message);
+  CHECK(r.outcome == Outcome::infeasible);
+  CHECK(r.force_residual > 1);
+  CHECK_THAT(r.message, Catch::Contains("pin 1 stopped 0.1 m short") && !Catch::Contains("at equilibrium"));
+}
+
 TEST_CASE("A level whose decrement alone is above its tolerance says so") {
   for (const int max_steps : {3, 400}) {
     HangingStrip strip(1e6);

@@ -346,3 +346,22 @@ TEST_CASE("A pin that cannot reach its target moves there as far as contact allo
   CHECK(refined.x(12, 2) < 0.31 - 1e-3);
   CHECK(cloth.intersections(1, refined.x) == 0);
 }
+
+TEST_CASE("A level whose prolonged state an energy does not allow starts from the scene's start") {
+  TwoLevels cloth(
+      grid({1, 1}, 9, 9, Diagonals::one_way), {},
+      {"neo_hookean", "hinge", "gravity",
+       "{type: formula, density: \"-log(1 - max(s1-1,0)^2/0.36) - log(1 - max(s2-1,0)^2/0.36)\"}"},
+      {0});
+  const Positions& fine = cloth.starts[1];
+  int midpoint = 0;
+  while (fine.row(midpoint) != Eigen::RowVector3d(1.0 / 16, 0, 0)) REQUIRE(++midpoint < fine.rows());
+  cloth.prescribe({{0, fine.row(0), 0}, {midpoint, fine.row(midpoint), 0}});
+  Progression cascade;
+  cascade.newton.max_steps = 50;
+  Observer silent;
+  const LevelResult finer = cascade.solve(cloth, silent).at(1);
+  CHECK(finer.outcome != Outcome::infeasible);
+  CHECK_THAT(finer.message,
+             Catch::StartsWith("the refined state is outside the domain of an energy; the level starts"));
+}
