@@ -12,11 +12,10 @@ MEASURED = ["cotton-broad", "wool-tropical", "polyester-tropical", "polyester-fa
 FABRICS = [*MEASURED, *(f"{fabric} elastic" for fabric in MEASURED), "11oz-black-denim", "gray-interlock", "tango-red-jet-set", "cotton"]
 
 
-def table(head, rows, record, right=""):
-    """A Markdown table below the comment that tests/unit/pages/docs_figures.cpp reads; `right` has an r for each column of numbers."""
+def table(head, rows, right):
+    """A Markdown table; `right` has an r for each column of numbers."""
     rule = "|".join("---:" if k < len(right) and right[k] == "r" else "---" for k in range(len(head)))
-    lines = [f"<!-- record: {' '.join('benchmarks/results/' + name for name in record)} -->"]
-    return lines + ["| " + " | ".join(head) + " |", f"|{rule}|"] + ["| " + " | ".join(row) + " |" for row in rows]
+    return ["| " + " | ".join(head) + " |", f"|{rule}|"] + ["| " + " | ".join(row) + " |" for row in rows]
 
 
 def runs(study, method, scene=None, variant=None):
@@ -76,7 +75,7 @@ def sphere(columns):
         "level 1: RMS distance": lambda r: with_range([x["level_1"]["distance_rms"] for x in r], lambda v: figure(v, 2))}
     rows = [[m] + [cells[c](finished("sphere", m)) for c in columns] for m in METHODS]
     return table(["method"] + ["Newton iterations by level" if c == "iterations" else c for c in columns], rows,
-                 ["sphere.md", "sphere.json"], "ll" + "r" * (len(columns) - 1))
+                 "ll" + "r" * (len(columns) - 1))
 
 
 def scenes(study, columns):
@@ -90,7 +89,7 @@ def scenes(study, columns):
             break
         rows.append([cells[0]] + [cells[head.index(c)] for c in columns])
     right = "l" + "".join("r" if c in ("preview's flops, relative to cascadic", TOP[-1]) else "l" for c in columns)
-    return table(["scene"] + columns, rows, [f"{study}.md"], right)
+    return table(["scene"] + columns, rows, right)
 
 
 def best_in_table1():
@@ -115,7 +114,7 @@ def table1():
                      " / ".join(str(r["iterations_by_level"][-1]) for r in methods.values())])
     names = " / ".join(methods)
     return table(["scene", "vertices", f"best on rows of curvature: {names}", "of distance and silhouette", "of energy",
-                  "iterations on the finest level"], rows, [], "lr")[1:]
+                  "iterations on the finest level"], rows, "lr")
 
 
 def remedies():
@@ -130,8 +129,7 @@ def remedies():
     scenes_of = list(next(iter(small.values())))
     rows = [[plain_name(remedy)] + [figure(of_scene.get(s)) for s in scenes_of] + [f"{large[remedy]:.0f}" if remedy in large else "–"]
             for remedy, of_scene in small.items()]
-    # No comment for docs_figures: the sums stand in no record.
-    return table(["Newton iterations", *scenes_of, "sphere, cube and tablecloth, PCS and direct"], rows, [], "lrrrr")[1:]
+    return table(["Newton iterations", *scenes_of, "sphere, cube and tablecloth, PCS and direct"], rows, "lrrrr")
 
 
 def named_ablations():
@@ -151,9 +149,8 @@ def ablations():
             r = named[variant, method]
             rows.append([plain_name(variant), method, ", ".join(figure(n) for n in iterations(r)), figure(of(r, "tflop") / direct, 2),
                          preview(r, "distance_rms"), preview(r, "silhouette_overlap"), figure(of(r, "energy"), 6)])
-    # No comment for docs_figures: the flops are compared across variations.
     return table(["variation", "method", "iterations by level", "total flops, relative to direct by the defaults", "preview: RMS distance [diagonals]", "overlap",
-                  "final energy [J]"], rows, [], "lllrrrr")[1:]
+                  "final energy [J]"], rows, "lllrrrr")
 
 
 def decrements():
@@ -167,14 +164,13 @@ def decrements():
                      seconds_text([x["seconds"] for x in r]), with_range([x["seconds"] / direct[x["seed"]] for x in r], lambda v: figure(v, 2)),
                      with_range([x["energy"] for x in r], lambda v: figure(v, 4)),
                      with_range([x["force_residual"] for x in r], lambda v: figure(v, 2))])
-    # No comment for docs_figures: ratios start by start stand in no record.
-    return table(["method", "Newton iterations by level", "preview [s]", "total [s]", "relative to direct", "final energy [J]", "force residual"], rows, [], "llrrrrr")[1:]
+    return table(["method", "Newton iterations by level", "preview [s]", "total [s]", "relative to direct", "final energy [J]", "force residual"], rows, "llrrrrr")
 
 
 def ratios():
     rows = [[r["what"], r["against"], figure(r["ratio"], 2)] for r in read("ratios.json")["rows"]
             if not r["what"].startswith("results/")]
-    return table(["what", "over", "ratio"], rows, ["ratios.json"], "llr")
+    return table(["what", "over", "ratio"], rows, "llr")
 
 
 def linear_solvers():
@@ -187,9 +183,8 @@ def linear_solvers():
         rows.append([r["scene"], str(r["vertices"]), str(r["threads"]), cell(own), cell(cholmod),
                      figure(ratios_of["factorisation"], 2), figure(ratios_of["solve"], 2),
                      "yes" if cholmod["same_bits_as_with_one_thread"] else "no"])
-    # No comment for docs_figures: cells join two values of the record.
     return table(["scene", "vertices", "threads", "supernodal [s] (GFlop/s)", "cholmod [s] (GFlop/s)", "cholmod / supernodal",
-                  "the same for a solve", "cholmod: same bits as with one thread"], rows, [], "lrrrrrrl")[1:]
+                  "the same for a solve", "cholmod: same bits as with one thread"], rows, "lrrrrrrl")
 
 
 def changes():
@@ -199,7 +194,7 @@ def changes():
         for method in ("pcs", "newton"):
             cells += [str(r[method]["iterations"]), figure(r[method]["seconds"], 2)]
         rows.append(cells)
-    return table(["change", "PCS: Newton iterations", "s", "direct coarse: Newton iterations", "s"], rows, ["changes.json"], "lrrrr")
+    return table(["change", "PCS: Newton iterations", "s", "direct coarse: Newton iterations", "s"], rows, "lrrrr")
 
 
 def python():
@@ -209,7 +204,7 @@ def python():
     rows = [[f"a run with a callback for each iteration, {run['vertices']} vertices", *(figure(run[k]) for k in ("python", "cpp", "ratio"))]]
     rows += [[f"{what} of a membrane, {membrane['vertices']} vertices", *(figure(membrane[what][k]) for k in ("python", "cpp", "ratio"))]
              for what in ("value", "gradient", "hessian")]
-    return table(["what", "Python [s]", "C++ [s]", "ratio"], rows, ["python.json"], "lrrr")
+    return table(["what", "Python [s]", "C++ [s]", "ratio"], rows, "lrrr")
 
 
 def beside_codim_ipc():
@@ -234,9 +229,8 @@ def codim_ipc():
             row += [seconds_text([r[program].get(key) for r in starts]) for program in ("drape", "codim_ipc")]
             row.append(with_range(codim_ipc_ratios(starts, key), two))
         rows.append(row + [with_range([r.get("rms_distance") for r in starts], two)])
-    # No comment for docs_figures: ratios start by start stand in no record.
     return table(["scene", "vertices", "iteration [s]: drape", "iteration [s]: Codim-IPC", "iteration: ratio", "to the same state [s]: drape",
-                  "to the same state [s]: Codim-IPC", "to the same state: ratio", "RMS distance of the final states [diagonals]"], rows, [], "lrrrrrrrr")[1:]
+                  "to the same state [s]: Codim-IPC", "to the same state: ratio", "RMS distance of the final states [diagonals]"], rows, "lrrrrrrrr")
 
 
 def beside(program, title):
@@ -254,7 +248,7 @@ def beside(program, title):
                          with_range([r["force_residual"] for r in ends], two), str(sum(r["intersections"] > 0 for r in ends)),
                          with_range([r["largest_stretch"] for r in ends])])
     return table(["scene", "program", "CPU time [s]", "starts at rest", "force residual at the end", "starts with intersections", "largest stretch"],
-                 rows, [f"{program}.json"], "llrrrrr")
+                 rows, "llrrrrr")
 
 
 def scale():
@@ -263,12 +257,12 @@ def scale():
             for r in record["rows"]]
     exponents = record["exponents"]
     rows.append(["exponent", "", figure(exponents["seconds"], 3), "", figure(exponents["peak_bytes"], 3)])
-    lines = table(["vertices", "iterations", "seconds per iteration", "seconds of all levels", "peak memory [GB]"], rows, [], "rrrrr")[1:]
+    lines = table(["vertices", "iterations", "seconds per iteration", "seconds of all levels", "peak memory [GB]"], rows, "rrrrr")
     largest = record["rows"][-1]
     phases = sorted(largest["by_phase"].items(), key=lambda p: -p[1])
     rows = [[phase, figure(100 * s / largest["seconds"], 2), figure(exponents[phase], 3)] for phase, s in phases
             if s > 0.005 * largest["seconds"]]
-    return lines + [""] + table([f"phase, at {largest['vertices']} vertices", "% of an iteration", "exponent"], rows, [], "lrr")[1:]
+    return lines + [""] + table([f"phase, at {largest['vertices']} vertices", "% of an iteration", "exponent"], rows, "lrr")
 
 
 STUDIES = [
@@ -298,7 +292,7 @@ def studies():
     rows = [[title, f"[{record}](../../benchmarks/results/{record})", minutes(record), conditions(record)]
             for title, record in STUDIES if (RESULTS / record).exists()]
     rows.append(["[known answers](validation.md)", "`tests/physics`, which print and bound them", "–", "each build"])
-    return table(["study", "record", "minutes", "how it was measured"], rows, [], "llrl")[1:]
+    return table(["study", "record", "minutes", "how it was measured"], rows, "llrl")
 
 
 def solves(*names):
@@ -370,6 +364,7 @@ VALUES = {
     "sphere.seen": lambda: median_seconds("pcs", "seconds_of_preview"),
     "sphere.finished": lambda: median_seconds("pcs", "seconds"),
     "sphere.cascadic": lambda: median_seconds("cascadic", "seconds"),
+    "sphere.distance": lambda: figure(100 * median([r["preview"]["distance_rms"] for r in finished("sphere", "pcs")]), 2),
     "sphere.distance_ratio": lambda: figure(
         median([r["preview"]["distance_rms"] for r in finished("sphere", "cascadic")])
         / median([r["preview"]["distance_rms"] for r in finished("sphere", "pcs")]), 2),
