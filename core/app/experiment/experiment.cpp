@@ -91,7 +91,8 @@ void check_motions(const Experiment& e, ConfigErrors& errors) {
   if (const ScheduleParameters& s = p.schedule;
       s.keys.empty() && (s.duration > 0 || s.steps > 1 || s.equilibrate))
     errors.push_back(
-        {e.location_of("schedule"), "\"schedule\" has no \"keys\", so that nothing would change"});
+        {e.location_of("schedule"),
+         "\"schedule\" has no \"keys\", so that nothing would change; give it some, or leave it out"});
   const auto refuse = [&](const char* list, std::size_t k, const char* key, const std::string& message) {
     errors.push_back({e.source.find(list)->items[k].where_of(key), message});
   };

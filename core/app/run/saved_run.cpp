@@ -35,12 +35,14 @@ FileFingerprint fingerprint_of(const fs::path& path) {
 /// Copies of inputs in a results folder, as its config.yaml names them.
 constexpr const char* copies[] = {"rest/l0.ply", "reference.ply", "start.ply"};
 
-/// Throws std::runtime_error naming every mesh of a complete run whose checksum differs from results.json.
-void refuse_damaged_results(const fs::path& folder) {
+/// Throws std::runtime_error naming every mesh of a complete run, or of one of its methods, whose checksum
+/// differs from results.json.
+void refuse_damaged_results(const fs::path& folder, const std::string& only = "") {
   std::vector<std::string> damaged;
   const auto results = read_results(folder);
   const JsonFile file(folder / "results.json", "run the experiment again");
   for (const auto& [name, method] : results["methods"].items()) {
+    if (!only.empty() && name != only) continue;
     if (!method.is_object() || !method.contains("levels")) file.refuse("\"levels\" is missing");
     for (const auto& level : method["levels"]) {
       const auto checksum = file.find<double>(level, "mesh_checksum");
@@ -61,8 +63,13 @@ void refuse_damaged_results(const fs::path& folder) {
 void refuse_other_rest(const fs::path& folder, const Scene& scene) {
   for (const Level& level : scene.hierarchy.levels) {
     const std::string name = rest_file(level.index);
-    if (!fs::exists(folder / name)) continue;
-    const Positions saved = read_mesh(folder / name).vertices, &own = level.rest.vertices;
+    const Positions& own = level.rest.vertices;
+    Positions saved;
+    try {
+      saved = read_mesh(folder / name).vertices;
+    } catch (const std::exception&) {
+      continue;  // missing or cut short: it will be written again
+    }
     if (saved.rows() != own.rows() || !((saved - own).norm() <= 1e-9 * own.norm()))
       refuse_path(folder, name +
                               " does not follow from rest/l0.ply: one of the two was changed; run the "
@@ -200,11 +207,10 @@ SavedState saved_state(const fs::path& folder, const std::string& method, std::o
     std::vector<std::string> warnings;
     checkpoint = load_checkpoint(folder, warnings);
     if (state.method.empty()) state.method = checkpoint->methods.at(checkpoint->method);
-  } else {
-    refuse_damaged_results(folder);
   }
   if (state.method.empty())
     for (const auto& [name, entry] : results["methods"].items()) state.method = name;
+  if (!checkpoint) refuse_damaged_results(folder, state.method);
   const bool current = checkpoint && checkpoint->methods.at(checkpoint->method) == state.method;
   const std::optional<NewtonState>& under_way = current ? checkpoint->state.under_way : std::nullopt;
   constexpr int max_levels = 32;  // more than an experiment can have

@@ -97,10 +97,10 @@ std::string conflict(const VertexSelection& one, const VertexSelection& other, c
   std::vector<int> shared;
   std::set_intersection(first.begin(), first.end(), second.begin(), second.end(), std::back_inserter(shared));
   constexpr double rounding = 1e-9;
+  const double diagonal = shared.empty() ? 0 : bounding_box_diagonal(level.rest.vertices);
   for (const int v : shared) {
     const Eigen::Vector3d a = target_of(one, v, level, placed), b = target_of(other, v, level, placed);
-    const double size = bounding_box_diagonal(level.rest.vertices) + a.norm();
-    if ((a - b).norm() > rounding * size)
+    if ((a - b).norm() > rounding * (diagonal + a.norm()))
       return "both select vertex " + std::to_string(v) + " of level " + std::to_string(level.index) +
              ", at rest at " + text_of(level.rest.vertices.row(v)) + ", but want it at " + text_of(a) +
              " and at " + text_of(b) + "; let their regions share no vertex, or give both the same target";
@@ -229,13 +229,12 @@ std::vector<DirichletVertex> dirichlet_vertices(const ExperimentParameters& p, c
   for (std::size_t k = 0; k < p.pins.size(); ++k) {
     const std::vector<int> selected = selected_vertices(p.pins[k], level, coarsest);
     require_vertices(selected, "pin " + std::to_string(k), level);
-    int compared = -1;  // the last pin that has a vertex in common
+    std::vector<char> compared(k, 0);  // pins before it that have a vertex in common
     for (const int v : selected) {
-      if (by_vertex[v].vertex >= 0 && by_vertex[v].pin != compared) {
-        compared = by_vertex[v].pin;
-        if (const std::string why = conflict(p.pins[k], p.pins[compared], level, coarsest, placed);
-            !why.empty())
-          throw std::runtime_error("pin " + std::to_string(k) + " and pin " + std::to_string(compared) + " " +
+      if (const int other = by_vertex[v].pin; by_vertex[v].vertex >= 0 && !compared[other]) {
+        compared[other] = 1;
+        if (const std::string why = conflict(p.pins[k], p.pins[other], level, coarsest, placed); !why.empty())
+          throw std::runtime_error("pin " + std::to_string(k) + " and pin " + std::to_string(other) + " " +
                                    why);
       }
       by_vertex[v] = {v, target_of(p.pins[k], v, level, placed), static_cast<int>(k)};

@@ -125,7 +125,7 @@ std::string attach(const Experiment& e, int pin, const Scene& scene, const Level
   if (!follow.vertices.empty() && file && !file->scalar.empty() &&
       read_mesh(file->scalar).vertices.rows() != mesh.vertices.rows())
     return "loses vertices of its file that are in no triangle, or at the place of others, so \"vertices\" "
-           "would name others; remove those from the file";
+           "would name others; remove the former from the file, and join the latter";
   for (const int v : follow.vertices)
     if (v >= mesh.vertices.rows())
       return "has no vertex " + std::to_string(v) + "; they go from 0 to " +

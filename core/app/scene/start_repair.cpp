@@ -46,14 +46,13 @@ double winding_number(const TriangleMesh& mesh, const Vector3d& p) {
 
 }  // namespace
 
-bool is_inside(const Positions& points, const TriangleMesh& mesh) {
+bool is_inside(const Positions& points, const TriangleMesh& mesh, bool facing_inwards) {
   // What is open encloses what it surrounds almost wholly, as a scan with holes does: a cloth may lie in a
   // bowl.
   const bool open = !border_half_edges(mesh.triangles, static_cast<int>(mesh.vertices.rows())).empty();
   const double enclosed = open ? 0.9 : 0.5;
   for (Eigen::Index i = 0; i < points.rows(); ++i)
-    if (std::abs(winding_number(mesh, points.row(i).transpose())) > enclosed)
-      return true;  // facing either way
+    if ((facing_inwards ? -1 : 1) * winding_number(mesh, points.row(i).transpose()) > enclosed) return true;
   return false;
 }
 
@@ -120,10 +119,13 @@ class TranslationSearch {
     return clearance;
   }
 
-  /// Whether a component of the cloth lies inside an obstacle without intersecting it.
+  /// Whether a component of the cloth lies inside an obstacle without intersecting it. What faces inwards may
+  /// be a room, if the cloth starts in it.
   bool enclosed(const Vector3d& trial) const {
     const Positions points = points_.rowwise() + trial.transpose();
-    return std::ranges::any_of(obstacles_, [&](const TriangleMesh& mesh) { return is_inside(points, mesh); });
+    return std::ranges::any_of(obstacles_, [&](const TriangleMesh& mesh) {
+      return is_inside(points, mesh) || (is_inside(points, mesh, true) && !is_inside(points_, mesh, true));
+    });
   }
 
   /// Accepts a translation without intersections if it has fewer contacts than any before.

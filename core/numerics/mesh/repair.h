@@ -10,8 +10,8 @@ namespace drape {
 /// A mesh, and how it was repaired.
 struct RepairedMesh {
   std::vector<TriangleMesh> frames;  ///< one, or those of an animation, with the same triangles
-  /// "dropped 3 loose vertices and 1 doubled triangle; kept 2 edges with more than two triangles", which
-  /// contact takes as they are; empty if there was nothing.
+  /// "joined 2 vertices at the places of others; dropped 1 doubled triangle; kept 2 edges with more than two
+  /// triangles", of which contact takes those kept as they are; empty if there was nothing.
   std::string remark;
 };
 

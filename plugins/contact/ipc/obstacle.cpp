@@ -55,6 +55,8 @@ ObstacleMeshes load_meshes(const std::vector<std::string>& files, const FileCoor
   ObstacleMeshes loaded;
   try {
     RepairedMesh repaired = repair_mesh(std::move(frames));
+    if (strict && !repaired.remark.empty())
+      throw std::runtime_error("\"strict\" refuses what would be repaired: " + repaired.remark);
     loaded.repair = std::move(repaired.remark);
     for (TriangleMesh& mesh : repaired.frames) loaded.frames.push_back(ValidatedMesh::of(std::move(mesh)));
   } catch (const std::runtime_error& error) {
@@ -139,8 +141,6 @@ ObstacleMeshes ObstacleMeshes::of(const ObstacleParameters& p, int number) {
   try {
     ObstacleMeshes meshes = frames_of(p);
     if (!meshes.repair.empty()) meshes.repair = "obstacle " + name_of(p, number) + ": " + meshes.repair;
-    if (p.cages.count == 0 && p.cages != CageParameters())
-      throw std::runtime_error("\"cages\" needs a \"count\" of at least 1");
     if (p.cages.count > 0) meshes.cages = make_cages(*meshes.frames[0], p.cages);
     return meshes;
   } catch (const RefusedParameters& refused) {

@@ -187,6 +187,17 @@ TEST_CASE("ipc: triangles with vertices of their own act as those that share the
                                " vertices at the places of others");
   REQUIRE(repaired.frames[0].vertices.rows() == whole.vertices.rows());
   CHECK(NearSurface(repaired.frames[0]).value({0, 0, 0.5 * dhat}) == Approx(barrier(0.5).value));
+
+  TriangleMesh parts = whole;  // a second one that touches the first at a vertex
+  append(parts, {whole.vertices.row(0), {-1, 0, 0}, {-1, -1, 0}}, {{25, 26, 27}});
+  const Scratch folder;
+  write_mesh(folder / "parts.ply", parts);
+  ObstacleParameters p;
+  p.mesh = (folder / "parts.ply").string();
+  CHECK_THAT(ObstacleMeshes::of(p, 0).repair, Contains("joined 1 vertex at the place of another"));
+  p.strict = true;
+  CHECK_THROWS_WITH(ObstacleMeshes::of(p, 0),
+                    Contains("\"strict\" refuses what would be repaired: joined 1"));
 }
 
 TEST_CASE("ipc: the nearest feature of any triangles counts at least once, and the barrier has no hole") {

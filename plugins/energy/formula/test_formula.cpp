@@ -165,8 +165,8 @@ TEST_CASE("units are read and written") {
   CHECK(dimension_of("1/(m*s)"));
   CHECK(dimension_of("kg m^2/s^2")->text() == "J");
   CHECK(dimension_of("m^0.5 kg")->text() == "m^0.5 kg");
-  for (const std::string unit :
-       {"", "kPa", "mm", "N/", "/m", "N/m/m", "m^", "m^x", "N m m^99", "?", "m/s^2*kg", "(N/m)*m"})
+  for (const std::string unit : {"", "kPa", "mm", "N/", "/m", "N/m/m", "m^", "m^x", "N m m^99", "?",
+                                 "m/s^2*kg", "m/s^2 kg", "N/m·s", "(N/m)*m"})
     CHECK_FALSE(dimension_of(unit));
 }
 

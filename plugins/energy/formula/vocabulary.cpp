@@ -96,14 +96,15 @@ std::string Dimension::text() const {
 std::optional<Dimension> dimension_of(const std::string& unit) {
   const std::string text = lowered(unit);
   Dimension whole;
-  double sign = 1;      // -1 behind "/"
-  bool expects = true;  // a unit, at the begin or behind an operator
-  bool inside = false;  // parentheses
+  double sign = 1;       // -1 behind "/"
+  bool expects = true;   // a unit, at the begin or behind an operator
+  bool inside = false;   // parentheses
+  bool divided = false;  // what "/" divides by has ended
   for (std::size_t at = 0; at < text.size();) {
     const char c = text[at];
     if (c == '/' && (sign < 0 || at == 0)) return std::nullopt;  // a/b/c: ambiguous to readers
-    if (c == '*' && sign < 0 && !inside) return std::nullopt;    // so is a/b*c
     if (c == '(' || c == ')') inside = c == '(';
+    if (c == ')') divided = sign < 0;
     if (c == '/') sign = -1;
     if (c == '/' || c == '*') expects = true;
     if (std::string_view(" */()").find(c) != std::string_view::npos) {
@@ -115,7 +116,7 @@ std::optional<Dimension> dimension_of(const std::string& unit) {
       ++end;
     const auto found =
         std::ranges::find(units, text.substr(at, end - at), &decltype(units)::value_type::first);
-    if (found == units.end()) return std::nullopt;
+    if (divided || found == units.end()) return std::nullopt;  // a/b c is ambiguous, too
     double exponent = 1;
     if (end < text.size() && text[end] == '^') {
       const auto [rest, error] = std::from_chars(text.data() + end + 1, text.data() + text.size(), exponent);
@@ -124,6 +125,7 @@ std::optional<Dimension> dimension_of(const std::string& unit) {
     }
     whole = whole * Dimension{found->second}.to(sign * exponent);
     expects = false;
+    divided = sign < 0 && !inside;
     at = end;
   }
   return expects ? std::nullopt : std::optional(whole);
