@@ -38,8 +38,8 @@ const plain = (row, columns) => Object.fromEntries(columns.flatMap(({name}) => {
 }));
 
 /// A column is {name, title (text or nodes), few: whether it is among the first ones, better: 'lower' or 'higher', show};
-/// `rivals` gives the key of the rows among which the best value is bold; a method that is no better than a yardstick is not. The name is the column's in files;
-/// `state` keeps order and columns for another table of these columns.
+/// `rivals` gives the key of the rows among which the best value is bold; a row that only equals one with `yardstick`, such as
+/// the flat start, is not. The name is the column's in files; `state` keeps order and columns for another table of these columns.
 export function dataTable(name, what, columns, rows, rivals = () => '', state = {}) {
   const filled = columns.filter(column => rows.some(row => row[column.name] !== null && row[column.name] !== undefined && row[column.name] !== ''));
   const best = new Map();

@@ -64,8 +64,8 @@ void check_material(const Experiment& e, ConfigErrors& errors) {
     if (fault && material)
       errors.push_back({material->where_of(key), "\"" + std::string(key) + "\" " + message});
   };
-  const auto is_set = [&](const char* key, double value,
-                          double initial) {  // by a schedule to its default, too
+  // A schedule's first value may be the default.
+  const auto is_set = [&](const char* key, double value, double initial) {
     return value != initial || std::ranges::any_of(e.parameters.schedule.keys, [&](const ScheduleKey& k) {
              return k.parameter == "material." + std::string(key);
            });

@@ -55,8 +55,8 @@ std::vector<std::string> remarks_of(const Experiment& experiment, const Scene& s
 void refuse_intersecting_start(const Experiment& experiment, const LevelModel& model, const Positions& start,
                                ConfigErrors& errors);
 
-/// Whether one of the points (n×3) [m] lies inside a closed mesh that faces outwards, or inwards. Of
-/// a cloth that intersects nothing, a vertex of each connected part will do.
+/// Whether one of the points (n×3) [m] lies inside a closed mesh that faces outwards, or, if that is
+/// asked, inwards. Of a cloth that intersects nothing, a vertex of each connected part will do.
 bool is_inside(const Positions& points, const TriangleMesh& mesh, bool facing_inwards = false);
 
 /// Translates a start that intersects something, or is closer than a micrometre to it: up, or else

@@ -183,16 +183,17 @@ const FitSample& FitRuns::at(double factor) {
     if (sample.factor == factor) return sample;
   std::set<double> factors = factors_;
   factors.insert(factor);
-  ConfigErrors errors, of_others;
-  const bool is_valid = setup_.sweep({factor}, registry_, errors).has_value();
-  FitSample sample;
-  sample.factor = factor;
-  for (const ConfigError& error : errors) sample.left_out.push_back(error.text());
-  if (!is_valid) return samples_.emplace_back(std::move(sample));
-  const std::optional<Sweep> sweep = setup_.sweep(factors, registry_, of_others);
-  if (!sweep)
-    refuse_path(folder_.path(),
-                "has runs of another fit (" + of_others[0].text() + "); name another folder with --out");
+  ConfigErrors errors, own;
+  const std::optional<Sweep> sweep = setup_.sweep(factors, registry_, errors);
+  if (!sweep) {
+    if (setup_.sweep({factor}, registry_, own))
+      refuse_path(folder_.path(),
+                  "has runs of another fit (" + errors[0].text() + "); name another folder with --out");
+    FitSample sample;
+    sample.factor = factor;
+    for (const ConfigError& error : own) sample.left_out.push_back(error.text());
+    return samples_.emplace_back(std::move(sample));
+  }
   factors_ = factors;
   std::vector<std::size_t> missing = folder_.prepare(*sweep, options_.threads, true);
   begun_ = true;

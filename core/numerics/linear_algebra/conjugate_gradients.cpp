@@ -36,8 +36,9 @@ ConjugateGradients::End ConjugateGradients::solve(const BlockMatrix& matrix, con
   x.setZero(b.rows(), 3);
   double norm = std::sqrt(dot(r_, r_)), rz = 0;
   const double whole = norm;
-  for (int k = 0; !(norm <= accuracy.tolerance * whole) || std::isinf(norm); ++k) {
+  for (int k = 0;; ++k) {
     if (!std::isfinite(norm)) return End::not_converged;
+    if (norm <= accuracy.tolerance * whole) return End::converged;
     if (k == accuracy.max_iterations)
       return norm <= accuracy.sufficient * whole ? End::converged : End::not_converged;
     precondition(r_, z_);
@@ -64,7 +65,6 @@ ConjugateGradients::End ConjugateGradients::solve(const BlockMatrix& matrix, con
     });
     norm = std::sqrt(dot(r_, r_));
   }
-  return End::converged;
 }
 
 }  // namespace drape
