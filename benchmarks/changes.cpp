@@ -12,7 +12,6 @@
 #include <string>
 
 #include "benchmarks/measure.h"
-#include "core/kernel/plugin/loader.h"
 #include "core/kernel/threads/stopwatch.h"
 
 using namespace drape;
@@ -93,9 +92,7 @@ std::vector<double> load_milliseconds(const Scene& scene) {
 }
 
 int run(const char* result_file, const std::string& side) {
-  Registry registry;
-  load_plugins(registry, plugin_directories());
-  const Loaded loaded(registry, "../configs/sphere.yaml",
+  const Loaded loaded("../configs/sphere.yaml",
                       {{"schedule", schedule()}, {"cloth.columns", side}, {"cloth.rows", side}});
   const Experiment& e = *loaded.experiment;
   const Scene& scene = *loaded.scene;

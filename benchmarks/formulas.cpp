@@ -15,7 +15,6 @@
 #include "benchmarks/measure.h"
 #include "core/app/files/yaml_file.h"
 #include "core/kernel/interfaces/energy.h"
-#include "core/kernel/plugin/loader.h"
 #include "core/kernel/plugin/make.h"
 #include "core/kernel/threads/parallel.h"
 #include "core/numerics/patterns/generate.h"
@@ -32,10 +31,11 @@ double processor_seconds() {
   return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
 }
 
-std::unique_ptr<BoundEnergy> bind(const Registry& registry, const std::string& yaml, const Level& level) {
+std::unique_ptr<BoundEnergy> bind(const std::string& yaml, const Level& level) {
   ConfigErrors errors;
   const ConfigNode node = parse_yaml("energy: " + yaml, "benchmark", errors);
-  const auto energy = errors.empty() ? make_from<Energy>(registry, *node.find("energy"), errors) : nullptr;
+  const auto energy =
+      errors.empty() ? make_from<Energy>(all_plugins(), *node.find("energy"), errors) : nullptr;
   for (const ConfigError& error : errors) throw std::runtime_error(error.text());
   return energy->bind(level, Material());
 }
@@ -72,8 +72,6 @@ void compare(const std::string& name, const BoundEnergy& plugin, const BoundEner
 
 int main() try {
   set_thread_count(1);
-  Registry registry;
-  load_plugins(registry, plugin_directories());
   constexpr int n = 159;
   const Level level = Level::of(0, grid({1, 1}, n, n, Diagonals::one_way));
   Positions x = level.rest.vertices;
@@ -87,8 +85,7 @@ int main() try {
       {"neo_hookean",
        "{type: formula, where: {l: log(J)}, density: \"thickness*(mu*(g11 + g22 - l) + lambda/2*l^2)\"}"},
       {"hinge", "{type: formula, per: hinge, energy: \"3*k*length^2/area*bend^2\"}"}};
-  for (const auto& [name, formula] : formulas)
-    compare(name, *bind(registry, name, level), *bind(registry, formula, level), x);
+  for (const auto& [name, formula] : formulas) compare(name, *bind(name, level), *bind(formula, level), x);
 } catch (const std::exception& error) {
   std::cerr << "error: " << error.what() << "\n";
   return 1;

@@ -18,7 +18,6 @@
 #include <set>
 
 #include "benchmarks/measure.h"
-#include "core/kernel/plugin/loader.h"
 #include "core/kernel/threads/parallel.h"
 #include "core/kernel/threads/stopwatch.h"
 #include "core/numerics/linear_algebra/block_cholesky.h"
@@ -195,13 +194,12 @@ void compare(const System& system, const ordered_json& head, ordered_json& rows)
 }
 
 /// Measures the matrix where the cascadic method's finest level is after a few iterations.
-void measure(const Registry& registry, const std::string& scene_name, int levels, ordered_json& rows) {
+void measure(const std::string& scene_name, int levels, ordered_json& rows) {
   // From 40 vertices a side, 3 and 4 levels give 25K and 98K vertices.
-  const Loaded loaded(registry, "../configs/" + scene_name + ".yaml",
-                      {{"cloth.columns", "40"},
-                       {"cloth.rows", "40"},
-                       {"levels", std::to_string(levels)},
-                       {"newton.force_tolerance", "1e-2"}});
+  const Loaded loaded("../configs/" + scene_name + ".yaml", {{"cloth.columns", "40"},
+                                                             {"cloth.rows", "40"},
+                                                             {"levels", std::to_string(levels)},
+                                                             {"newton.force_tolerance", "1e-2"}});
   const LevelModel& model = *loaded.scene->models.back();
   FirstIterations some(3, levels - 1);
   const LevelResult reached = method(*loaded.experiment, "cascadic").solve(*loaded.scene, some).back();
@@ -222,12 +220,10 @@ void measure(const Registry& registry, const std::string& scene_name, int levels
 
 int main(int argc, char** argv) try {
   take_best_kernels(argv);
-  Registry registry;
-  load_plugins(registry, plugin_directories());
   std::printf("BLAS: %s %s\n", blas().c_str(), openblas_kernels().c_str());
   ordered_json rows = ordered_json::array();
   for (const char* scene : {"pinned_square", "sphere"})
-    for (const int levels : {3, 4}) measure(registry, scene, levels, rows);
+    for (const int levels : {3, 4}) measure(scene, levels, rows);
   if (argc > 1)
     write_record(argv[1], "linear_solvers", repeats, rows,
                  {{"blas", blas()}, {"blas_kernels", openblas_kernels()}});

@@ -12,6 +12,7 @@
 
 #include "core/app/files/machine.h"
 #include "core/app/scene/scene.h"
+#include "core/kernel/plugin/loader.h"
 #include "core/kernel/threads/parallel.h"
 #include "core/kernel/version.h"
 
@@ -22,13 +23,23 @@ inline double median(std::vector<double> values) {
   return values[values.size() / 2];
 }
 
+/// Everything that the plugins of this build offer.
+inline const drape::Registry& all_plugins() {
+  static const drape::Registry* const registry = [] {
+    auto* loaded = new drape::Registry;  // like the libraries, it stays for good
+    drape::load_plugins(*loaded, drape::plugin_directories());
+    return loaded;
+  }();
+  return *registry;
+}
+
 /// An experiment and its scene, from a file relative to benchmarks/; prints errors, then throws.
 struct Loaded {
   std::optional<drape::Experiment> experiment;
   std::unique_ptr<drape::Scene> scene;
-  Loaded(const drape::Registry& registry, const std::string& file, const drape::Overrides& overrides = {}) {
+  explicit Loaded(const std::string& file, const drape::Overrides& overrides = {}) {
     drape::ConfigErrors errors;
-    experiment = read_experiment(DRAPE_BENCHMARKS_DIR "/" + file, overrides, registry, errors);
+    experiment = read_experiment(DRAPE_BENCHMARKS_DIR "/" + file, overrides, all_plugins(), errors);
     scene = experiment ? build_scene(*experiment, errors) : nullptr;
     for (const drape::ConfigError& error : errors) std::cerr << "error: " << error.text() << "\n";
     if (!scene) throw std::runtime_error(file + " cannot be measured");

@@ -11,7 +11,6 @@
 #include <nlohmann/json.hpp>
 
 #include "benchmarks/measure.h"
-#include "core/kernel/plugin/loader.h"
 #include "core/numerics/linear_algebra/block_cholesky.h"
 #include "core/numerics/solve/newton.h"
 
@@ -133,16 +132,14 @@ void draped_level(const Experiment& e, const Scene& scene, Table& table) {
 }  // namespace
 
 int main(int argc, char** argv) try {
-  Registry registry;
-  load_plugins(registry, plugin_directories());
   Table table;
   {
-    const Loaded free(registry, "contact_free.yaml");
+    const Loaded free("contact_free.yaml");
     finest_level(*free.experiment, *free.scene, table);
     coarsest_level(*free.experiment, *free.scene, 10, table);
   }
   for (const char* levels : {"3", "4"}) {
-    const Loaded contact(registry, "contact.yaml", {{"levels", levels}, {"newton.max_steps", "150"}});
+    const Loaded contact("contact.yaml", {{"levels", levels}, {"newton.max_steps", "150"}});
     draped_level(*contact.experiment, *contact.scene, table);
     if (levels == std::string("4")) coarsest_level(*contact.experiment, *contact.scene, 50, table);
   }
