@@ -4,6 +4,7 @@ A function of a record that is not stored raises FileNotFoundError; fill_figures
 
 import csv
 import re
+from operator import itemgetter
 
 from records import CONVERGED, RESULTS, WITHOUT_CONTACT, conditions, figure, median, read, seconds_text, stamps, usual_conditions, with_range
 
@@ -36,6 +37,14 @@ def finished(study, method, scene=None, variant=None):
 
 def of(records, key):
     return median([r[key] for r in records])
+
+
+def grouped(records, *keys):
+    """Lists of records by their values of these keys."""
+    found = {}
+    for r in records:
+        found.setdefault(itemgetter(*keys)(r), []).append(r)
+    return found
 
 
 def over_cascadic(study, value):
@@ -134,10 +143,7 @@ def remedies():
 
 def named_ablations():
     """The runs by variation and method, and the direct solve's flops by the defaults."""
-    named = {}
-    for r in read("ablations.json"):
-        named.setdefault((r["variant"], r["method"]), []).append(r)
-    return named, of(runs("ablations", "newton", variant="as_it_is"), "tflop")
+    return grouped(read("ablations.json"), "variant", "method"), of(runs("ablations", "newton", variant="as_it_is"), "tflop")
 
 
 def ablations():
@@ -207,27 +213,14 @@ def python():
     return table(["what", "Python [s]", "C++ [s]", "ratio"], rows, "lrrr")
 
 
-def beside_codim_ipc():
-    """The comparison's entries, a list of starts by scene and vertices."""
-    found = {}
-    for r in read("codim_ipc.json")["runs"]:
-        found.setdefault((r["scene"], r["vertices"]), []).append(r)
-    return found
-
-
-def codim_ipc_ratios(starts, key):
-    """Codim-IPC over drape, start by start; empty where it was not measured."""
-    return [r["codim_ipc"][key] / r["drape"][key] for r in starts if key in r["drape"]]
-
-
 def codim_ipc():
     two = lambda v: figure(v, 2)  # noqa: E731
     rows = []
-    for (scene, vertices), starts in beside_codim_ipc().items():
+    for (scene, vertices), starts in grouped(read("codim_ipc.json")["runs"], "scene", "vertices").items():
         row = [scene, str(vertices)]
         for key in ("seconds_per_iteration", "seconds_to_same_state"):
             row += [seconds_text([r[program].get(key) for r in starts]) for program in ("drape", "codim_ipc")]
-            row.append(with_range(codim_ipc_ratios(starts, key), two))
+            row.append(with_range([r["codim_ipc"][key] / r["drape"][key] for r in starts if key in r["drape"]], two))
         rows.append(row + [with_range([r.get("rms_distance") for r in starts], two)])
     return table(["scene", "vertices", "iteration [s]: drape", "iteration [s]: Codim-IPC", "iteration: ratio", "to the same state [s]: drape",
                   "to the same state [s]: Codim-IPC", "to the same state: ratio", "RMS distance of the final states [diagonals]"], rows, "lrrrrrrrr")
@@ -236,11 +229,8 @@ def codim_ipc():
 def beside(program, title):
     """The ends of drape and of another program in the two scenes of two_drapes.py."""
     two = lambda v: figure(v, 2)  # noqa: E731
-    found = {}
-    for r in read(f"{program}.json")["runs"]:
-        found.setdefault(r["scene"], []).append(r)
     rows = []
-    for scene, starts in found.items():
+    for scene, starts in grouped(read(f"{program}.json")["runs"], "scene").items():
         for key, name in (("drape", "drape"), (program, title)):
             ends = [r[key] for r in starts]
             at_rest = sum(r.get("at_rest", r["force_residual"] < 1e-3) for r in ends)  # drape by its residual alone

@@ -35,9 +35,12 @@ def experiment_of(name, side, seed):
         "metrics": [], **({"contact": [{"type": "ipc", "dhat": DHAT}], "obstacles": [BALL]} if spec["contact"] else {})})
 
 
-def obstacle_mesh(folder):
-    """The ball's vertices and triangles. A run writes its obstacles as meshes; read as a cloth, one has its arrays in Python."""
-    experiment_of("draped", 3, SEEDS[0]).run(out=folder, progress=False)
+def obstacle_mesh(scene, folder):
+    """The ball's vertices and triangles, none in a scene without. A run writes its obstacles as meshes; read as a cloth, one has
+    its arrays in Python."""
+    if not SCENES[scene]["contact"]:
+        return numpy.empty((0, 3)), numpy.empty((0, 3), int)
+    experiment_of(scene, 3, SEEDS[0]).run(out=folder, progress=False)
     ball = drape.Experiment({"name": "ball", "cloth": {"shape": "file", "file": str(folder / "obstacles/0.ply")}, "levels": 1,
                              "energies": ["gravity"], "methods": {"newton": {}}})
     level = ball.scene()[0].level
@@ -76,6 +79,11 @@ def drape_end(scene, vertices, seed):
     seconds, states, level = solved(experiment)
     end = end_state(levels[0], seconds[-1], level.force_residual, states[-1])
     return levels[0], levels.start(0), {**end, "iterations": len(seconds)}
+
+
+def cases(*vertices):
+    """Each scene with each number of vertices, start by start."""
+    return [{"scene": scene, "vertices": n, "seed": seed} for seed in SEEDS for n in vertices for scene in SCENES]
 
 
 def measure_all(out, about, cases, measure):
