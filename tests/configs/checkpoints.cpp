@@ -351,8 +351,7 @@ void interrupt_sheets(const Scratch& folder) {
   write_sheets(folder);
   DrapeAtWork command(sheets_run, folder);
   wait_for_steps(command, folder / "out", 12);
-  command.send(SIGINT);
-  REQUIRE(command.wait().exit_code == 130);
+  REQUIRE(command.ended_by(SIGINT).exit_code == 130);
   REQUIRE_FALSE(is_complete(folder / "out"));
 }
 
@@ -382,8 +381,7 @@ TEST_CASE("A run that is killed at random moments resumes every time, with equal
     else
       wait_for_steps(command, folder / "out",
                      static_cast<int>(lines_in(folder / "out/iterations.csv") + part * all_steps / 20));
-    command.send(SIGKILL);
-    cut += command.wait().exit_code == 128 + SIGKILL;
+    cut += command.ended_by(SIGKILL).exit_code == 128 + SIGKILL;
   }
   CHECK(cut == kills);
   CHECK_FALSE(is_complete(folder / "out"));
@@ -654,8 +652,7 @@ methods: {newton: {}}
 )yaml");
   DrapeAtWork command("run e.yaml --out out --checkpoint 0 -q --no-report", folder);
   wait_for_steps(command, folder / "out", 320);
-  command.send(SIGINT);
-  REQUIRE(command.wait().exit_code == 130);
+  REQUIRE(command.ended_by(SIGINT).exit_code == 130);
   const Ended resumed = drape_with("run --resume out -q --no-report", folder.path);
   CHECK(resumed.exit_code != 2);
   CHECK(is_complete(folder / "out"));
@@ -667,8 +664,7 @@ TEST_CASE("An obstacle's mesh that changed since is named") {
   write_mesh(folder / "box.obj", grid({0.4, 0.4}, 2, 2, Diagonals::one_way));
   DrapeAtWork command(sheets_run, folder);
   wait_for_steps(command, folder / "out", 3);
-  command.send(SIGKILL);
-  command.wait();
+  command.ended_by(SIGKILL);
   write_mesh(folder / "box.obj", grid({0.5, 0.4}, 2, 2, Diagonals::one_way));
   CHECK_THAT(refused_by("run --resume out", folder.path),
              Contains("box.obj: is not what it was when the run began"));
@@ -710,8 +706,7 @@ TEST_CASE("A run warm-starts from a saved state under changed parameters, in ano
   // Interrupted and resumed, it has the bits of one that is not.
   DrapeAtWork command(flow + "--out part --checkpoint 0", folder);
   wait_for_steps(command, folder / "part", 5);
-  command.send(SIGKILL);
-  command.wait();
+  command.ended_by(SIGKILL);
   drape_with(replaced(go_on, "--resume out", "--resume part"), folder.path);
   check_equal(folder / "part", folder / "last");
 

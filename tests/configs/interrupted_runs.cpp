@@ -25,8 +25,7 @@ TEST_CASE("SIGINT ends a run after the step, with all results so far and the rep
   const Scratch folder(small_experiment());
   DrapeAtWork command(endless, folder);
   wait_for_lines(command, folder / "out/iterations.csv", 6);
-  command.send(SIGINT);
-  const Ended ended = command.wait();
+  const Ended ended = command.ended_by(SIGINT);
   CHECK(ended.exit_code == 130);
   CHECK(ended.out == "report: out/report.html\n");
   CHECK_THAT(ended.err, Catch::EndsWith("stopped on request; everything up to then is in out\n"));
@@ -49,8 +48,7 @@ TEST_CASE("SIGHUP, as of a terminal that is closed, ends a run as SIGTERM does; 
     wait_for_lines(command, folder / "out/iterations.csv", 6);
     command.send(SIGHUP);
     std::this_thread::sleep_for(std::chrono::milliseconds(50));
-    command.send(SIGHUP);  // from the system, once the shell has ended
-    CHECK(command.wait().exit_code == 129);
+    CHECK(command.ended_by(SIGHUP).exit_code == 129);  // from the system, once the shell has ended
   }
   CHECK(fs::exists(folder / "out/checkpoint/state.bin"));
   CHECK(fs::exists(folder / "out/report.html"));
@@ -59,8 +57,7 @@ TEST_CASE("SIGHUP, as of a terminal that is closed, ends a run as SIGTERM does; 
   wait_for_lines(command, folder / "out/iterations.csv", 6);
   command.send(SIGHUP);
   wait_for_lines(command, folder / "out/iterations.csv", lines_in(folder / "out/iterations.csv") + 20);
-  command.send(SIGINT);
-  CHECK(command.wait().exit_code == 130);
+  CHECK(command.ended_by(SIGINT).exit_code == 130);
 }
 
 TEST_CASE("A run writes nothing of its progress into its files where the standard streams are closed") {
@@ -93,16 +90,14 @@ TEST_CASE("An interrupted run is resumed although its results.json is damaged an
       "--set newton.max_steps=100000 --set newton.force_tolerance=1e-300",
       folder);
   wait_for_lines(command, folder / "out/iterations.csv", 6);
-  command.send(SIGKILL);
-  command.wait();
+  command.ended_by(SIGKILL);
   std::ofstream(folder / "out/results.json") << "";
   const fs::path newest = folder / "out/checkpoint/state.bin";
   if (between_renames && fs::exists(newest)) fs::rename(newest, folder / "out/checkpoint/previous.bin");
   fs::remove(folder / "out/config.yaml");
   DrapeAtWork resumed("run --resume out --quiet --no-report", folder);
   wait_for_lines(resumed, folder / "out/iterations.csv", lines_in(folder / "out/iterations.csv") + 4);
-  resumed.send(SIGINT);
-  CHECK(resumed.wait().exit_code == 130);
+  CHECK(resumed.ended_by(SIGINT).exit_code == 130);
   CHECK(json_in(folder / "out/results.json")["methods"]["pcs"]["status"] == "cancelled");
 }
 
@@ -114,8 +109,7 @@ TEST_CASE("SIGKILL at any moment leaves complete files, sufficient for a report"
     const Scratch folder(small_experiment());
     DrapeAtWork command(endless + fast, folder);
     wait_for_lines(command, folder / "out/log.jsonl", level_lines);
-    command.send(SIGKILL);
-    REQUIRE(command.wait().exit_code == 128 + SIGKILL);
+    REQUIRE(command.ended_by(SIGKILL).exit_code == 128 + SIGKILL);
 
     const Json all = json_in(folder / "out/results.json");
     CHECK(all["complete"] == false);
@@ -204,8 +198,7 @@ TEST_CASE("a run that is sent SIGTERM, and then SIGINT by its sweep, still saves
   wait_for_lines(command, folder / "out/iterations.csv", 6);
   command.send(SIGTERM);
   command.wait_until("the signal is delivered", [&] { return !command.has_pending(SIGTERM); });
-  command.send(SIGINT);
-  const Ended ended = command.wait();
+  const Ended ended = command.ended_by(SIGINT);
   CHECK(ended.exit_code == 128 + SIGTERM);
   CHECK_THAT(ended.err, Catch::EndsWith("stopped on request; everything up to then is in out\n"));
 }

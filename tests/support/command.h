@@ -128,6 +128,12 @@ class Command {
     return {code, text_of(output_ / "out"), text_of(output_ / "err")};
   }
 
+  /// The same, once the command was sent a signal.
+  Ended ended_by(int signal) {
+    send(signal);
+    return wait();
+  }
+
   /// Waits until the condition holds that the command is to bring about; fails the test case when the command
   /// ends without, or takes more than the limit.
   void wait_until(const std::string& what, const std::function<bool()>& condition,
