@@ -2,30 +2,12 @@
 
 #include "core/numerics/model/stretch_limit.h"
 #include "tests/support/elastica.h"
+#include "tests/support/stepped.h"
 #include "tests/support/strip.h"
 
 using namespace drape;
 
 namespace {
-
-/// A scene that is solved, with the result of every increment, and the number of intersections on the way.
-struct Stepped : Solved, Observer {
-  explicit Stepped(const std::string& yaml) : Solved(scene_from(yaml)) {
-    levels = experiment.methods[0].second->solve(*scene, *this);
-  }
-  std::vector<IncrementRow> rows;
-  std::vector<Positions> states;
-  std::size_t intersections = 0;
-
-  void increment_finished(const IncrementRow& row, const Positions& x) override {
-    rows.push_back(row);
-    states.push_back(x);
-  }
-  void iteration(const IterationRow& row, const Positions& x) override {
-    for (const auto& contact : scene->model(row.level)->contacts())
-      intersections += contact->intersections(x).size();
-  }
-};
 
 /// A square above a ball, of which one pin is moved down onto it, and back up in the second half of the steps
 /// if asked for.
