@@ -66,7 +66,7 @@ std::vector<NamedModel> registered_models(bool with_obstacles) {
   std::vector<NamedModel> all;
   for (const RegistryEntry* entry : test_registry().of_kind("contact")) {
     if (!with_obstacles && !declares(*entry, "self_contact")) continue;
-    const std::string own = with_obstacles ? conformance_parameters(*entry) : "";
+    const std::string own = with_obstacles ? conformance_parameters(*entry)["conformance"] : "";
     const auto model = make_plugin_from<ContactModel>(conformance_config(*entry, own, common));
     if (model->bind(two_sheets(20), Material()))
       all.push_back({entry->name, model, declares(*entry, "friction")});

@@ -30,14 +30,11 @@ struct Candidate {
   double enlarged() const { return energy->role() == EnergyRole::limit ? 1.2 : 1; }
 };
 
-/// Every registered energy, with its defaults unless its conformance.yaml overrides them, and with the
-/// parameters of each of its conformance_*.yaml.
+/// Every registered energy, with each of the settings that it asks to be tested with.
 std::vector<Candidate> all_energies() {
   std::vector<Candidate> all;
   for (const RegistryEntry* entry : test_registry().of_kind("energy")) {
-    all.push_back(
-        {entry->name, make_plugin_from<Energy>(conformance_config(*entry, conformance_parameters(*entry)))});
-    for (const auto& [name, parameters] : more_conformance_parameters(*entry))
+    for (const auto& [name, parameters] : conformance_parameters(*entry))
       all.push_back({entry->name + " with " + name,
                      make_plugin_from<Energy>(conformance_config(*entry, parameters)),
                      name.find("prestressed") != std::string::npos});

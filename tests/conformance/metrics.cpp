@@ -44,8 +44,8 @@ methods: {newton: {}}
 std::vector<std::pair<std::string, std::shared_ptr<Metric>>> metrics(MetricScope scope) {
   std::vector<std::pair<std::string, std::shared_ptr<Metric>>> chosen;
   for (const RegistryEntry* entry : test_registry().of_kind("metric"))
-    if (const auto metric =
-            make_plugin_from<Metric>(conformance_config(*entry, conformance_parameters(*entry)));
+    if (const auto metric = make_plugin_from<Metric>(
+            conformance_config(*entry, conformance_parameters(*entry)["conformance"]));
         metric->scope() == scope)
       chosen.emplace_back(entry->name, metric);
   REQUIRE(chosen.size() >= 2);

@@ -4,6 +4,7 @@
 #include <catch2/catch.hpp>
 #include <filesystem>
 #include <fstream>
+#include <map>
 #include <random>
 #include <regex>
 #include <string>
@@ -21,27 +22,18 @@ inline bool declares(const drape::RegistryEntry& entry, const std::string& param
                              [&](const drape::Parameter& p) { return p.name == parameter; });
 }
 
-/// The parameters in plugins/<kind>/<name>/conformance.yaml, with which a plugin asks to be tested. Empty
-/// without the file.
-inline std::string conformance_parameters(const drape::RegistryEntry& entry) {
-  std::ifstream file(folders::source() / "plugins" / entry.kind / entry.name / "conformance.yaml");
-  return {std::istreambuf_iterator<char>(file), {}};
-}
-
-/// The parameters in conformance_*.yaml beside it, by file name: more settings that a plugin asks to be
-/// tested with.
-inline std::vector<std::pair<std::string, std::string>> more_conformance_parameters(
-    const drape::RegistryEntry& entry) {
-  std::vector<std::pair<std::string, std::string>> all;
+/// The parameters with which a plugin asks to be tested, by the names of their files beside it: those of
+/// conformance.yaml first, empty without the file, then those of each conformance_*.yaml.
+inline std::map<std::string, std::string> conformance_parameters(const drape::RegistryEntry& entry) {
+  std::map<std::string, std::string> all = {{"conformance", ""}};
+  std::error_code no_folder;  // of an example
   const auto folder = folders::source() / "plugins" / entry.kind / entry.name;
-  if (!std::filesystem::exists(folder)) return all;
-  for (const auto& found : std::filesystem::directory_iterator(folder)) {
+  for (const auto& found : std::filesystem::directory_iterator(folder, no_folder)) {
     const std::string name = found.path().stem().string();
-    if (!name.starts_with("conformance_") || found.path().extension() != ".yaml") continue;
+    if (!name.starts_with("conformance") || found.path().extension() != ".yaml") continue;
     std::ifstream file(found.path());
-    all.emplace_back(name, std::string(std::istreambuf_iterator<char>(file), {}));
+    all[name] = std::string(std::istreambuf_iterator<char>(file), {});
   }
-  std::sort(all.begin(), all.end());
   return all;
 }
 
