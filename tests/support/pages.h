@@ -24,19 +24,21 @@ inline std::vector<std::string> lines_of(const std::filesystem::path& file) {
   return lines;
 }
 
-/// The Markdown files below these folders of the sources, in order.
-inline std::vector<std::filesystem::path> below(const std::vector<std::string>& folders) {
+/// The files below these folders of the sources whose names end so, in order.
+inline std::vector<std::filesystem::path> below(const std::vector<std::string>& folders,
+                                                const std::vector<std::string>& extensions) {
   std::vector<std::filesystem::path> found;
   for (const std::string& folder : folders)
     for (const auto& entry : std::filesystem::recursive_directory_iterator(folders::source() / folder))
-      if (entry.path().extension() == ".md") found.push_back(entry.path());
+      if (std::ranges::find(extensions, entry.path().extension().string()) != extensions.end())
+        found.push_back(entry.path());
   std::sort(found.begin(), found.end());
   return found;
 }
 
-/// README.md, CONTRIBUTING.md and everything in docs/.
+/// README.md, CONTRIBUTING.md and every page in docs/.
 inline std::vector<std::filesystem::path> documents() {
-  std::vector<std::filesystem::path> found = below({"docs"});
+  std::vector<std::filesystem::path> found = below({"docs"}, {".md"});
   for (const char* page : {"README.md", "CONTRIBUTING.md"}) found.push_back(folders::source() / page);
   return found;
 }

@@ -18,17 +18,14 @@ namespace {
 /// All sources of core and plugins, with string literals that go on in the next line joined.
 std::string sources() {
   std::string all;
-  for (const char* folder : {"core", "plugins"})
-    for (const auto& entry : fs::recursive_directory_iterator(folders::source() / folder))
-      if (entry.path().extension() == ".cpp" || entry.path().extension() == ".h")
-        all += pages::text_of(entry.path());
+  for (const fs::path& file : pages::below({"core", "plugins"}, {".cpp", ".h"})) all += pages::text_of(file);
   return std::regex_replace(all, std::regex("\"\\s*\n\\s*\""), "");
 }
 
 /// Every page with links: documents, and the pages of core, plugins, dependencies and stored results.
 std::vector<fs::path> linked_pages() {
   std::vector<fs::path> found = pages::documents();
-  for (const fs::path& page : pages::below({"core", "plugins", "third_party", "benchmarks"}))
+  for (const fs::path& page : pages::below({"core", "plugins", "third_party", "benchmarks"}, {".md"}))
     found.push_back(page);
   return found;
 }
@@ -129,19 +126,19 @@ TEST_CASE("docs/README.md is the map of every page, and a page shows every pictu
   const std::string map = pages::text_of(docs / "README.md");
   std::string all;
   for (const fs::path& page : pages::documents()) all += pages::text_of(page);
-  for (const auto& entry : fs::recursive_directory_iterator(docs)) {
-    const std::string name = fs::relative(entry.path(), docs).generic_string();
+  for (const fs::path& file : pages::below({"docs"}, {".md", ".png", ".webp"})) {
+    const std::string name = fs::relative(file, docs).generic_string();
     INFO(name);
-    if (entry.path().extension() == ".md" && name != "README.md")
-      CHECK(map.find("](" + name + ")") != std::string::npos);
-    const bool picture = entry.path().extension() == ".png" || entry.path().extension() == ".webp";
-    if (picture) CHECK(all.find(name + ")") != std::string::npos);
+    if (name == "README.md") continue;
+    const bool found = file.extension() == ".md" ? map.find("](" + name + ")") != map.npos
+                                                 : all.find(name + ")") != all.npos;
+    CHECK(found);
   }
 }
 
 TEST_CASE("a page begins with an example, and README.md is short") {
   const fs::path root = folders::source();
-  for (const fs::path& page : pages::below({"docs"})) {
+  for (const fs::path& page : pages::below({"docs"}, {".md"})) {
     const std::string name = fs::relative(page, root / "docs").generic_string();
     // The maps and the glossary are none to read from the top.
     if (name == "README.md" || name == "theory/glossary.md") continue;

@@ -52,8 +52,7 @@ std::vector<std::string> words_of(const std::string& line) {
 /// The sources of the `drape` command.
 std::string cli_sources() {
   std::string all;
-  for (const auto& entry : fs::directory_iterator(folders::source() / "core/app/cli"))
-    all += pages::text_of(entry.path());
+  for (const fs::path& file : pages::below({"core/app/cli"}, {".cpp", ".h"})) all += pages::text_of(file);
   return all;
 }
 

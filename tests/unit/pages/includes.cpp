@@ -28,10 +28,8 @@ std::vector<std::string> folders_of_core() {
 }
 
 std::vector<fs::path> sources_in(const std::string& folder) {
-  std::vector<fs::path> files;
-  for (const auto& entry : fs::recursive_directory_iterator(folders::source() / folder))
-    if (entry.path().extension() == ".h" || entry.path().extension() == ".cpp")
-      files.push_back(entry.path().lexically_relative(folders::source()));
+  std::vector<fs::path> files = pages::below({folder}, {".h", ".cpp"});
+  for (fs::path& file : files) file = file.lexically_relative(folders::source());
   return files;
 }
 
