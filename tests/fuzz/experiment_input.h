@@ -1,12 +1,11 @@
 #pragma once
 
-#include <cstdlib>
-#include <iostream>
 #include <string>
 
 #include "core/app/experiment/experiment.h"
 #include "core/app/files/yaml_file.h"
 #include "core/kernel/plugin/loader.h"
+#include "tests/fuzz/require.h"
 
 namespace drape {
 
@@ -18,13 +17,6 @@ inline const Registry& fuzz_registry() {
     return all;
   }();
   return *registry;
-}
-
-/// Ends the process, with the reason, as a sanitizer does.
-inline void require(bool holds, const std::string& what) {
-  if (holds) return;
-  std::cerr << "broken: " << what << std::endl;
-  std::abort();
 }
 
 /// Whether reading a config would build meshes: that is slow, and geometry's part, not the readers'.

@@ -1,12 +1,11 @@
 // A mesh file of any format; the first byte chooses which: P for PLY, S for STL, o for OBJ, O for OFF.
 
 #include <cstdint>
-#include <cstdlib>
-#include <iostream>
 #include <stdexcept>
 
 #include "core/numerics/mesh/check.h"
 #include "core/numerics/mesh_files/io_formats.h"
+#include "tests/fuzz/require.h"
 
 namespace {
 
@@ -17,12 +16,6 @@ TriangleMesh read(char format, std::string_view bytes) {
   if (format == 'O') return read_off("fuzz.off", bytes);
   if (format == 'S') return read_stl("fuzz.stl", bytes);
   return read_ply("fuzz.ply", bytes);
-}
-
-void require(bool holds, const char* what) {
-  if (holds) return;
-  std::cerr << "broken: " << what << std::endl;
-  std::abort();
 }
 
 }  // namespace
