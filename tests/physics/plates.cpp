@@ -30,9 +30,6 @@ BlockMatrix hessian_at_rest(const Level& level, const Model& model, double nu) {
   return hessian_of(*energy, level.rest.vertices, Projection::none);
 }
 
-/// Stiffness [N/m] by deflections.
-Matrix by_deflections(const BlockMatrix& h, const FreeVertices& free) { return stiffness_of(h, free, {2}); }
-
 /// Deflections under forces, where no vertex for whose place held(p) holds moves.
 template <class Held>
 Eigen::VectorXd deflections(const Level& level, const BlockMatrix& h, const Eigen::VectorXd& forces,
@@ -42,7 +39,7 @@ Eigen::VectorXd deflections(const Level& level, const BlockMatrix& h, const Eige
   Eigen::VectorXd f(free.count);
   for (int v = 0; v < level.vertex_count(); ++v)
     if (number[v] >= 0) f[number[v]] = forces[v];
-  const Eigen::SimplicialLDLT<Matrix> factor(by_deflections(h, free));
+  const Eigen::SimplicialLDLT<Matrix> factor(stiffness_of(h, free, {2}));
   REQUIRE(factor.info() == Eigen::Success);
   REQUIRE(factor.vectorD().minCoeff() > 0);
   const Eigen::VectorXd solved = factor.solve(f);
@@ -133,7 +130,7 @@ TEST_CASE("midedge_bending has the modes of a plate on every triangulation, and 
       if (model.name == "quadratic") continue;
       const Level level = Level::of(0, triangulated(triangulation, {1, 1}, 0.05));
       const FreeVertices free(level, on_sides);
-      Eigen::MatrixXd k = by_deflections(hessian_at_rest(level, model, 0.3), free);
+      Eigen::MatrixXd k = stiffness_of(hessian_at_rest(level, model, 0.3), free, {2});
       for (int v = 0; v < level.vertex_count(); ++v)
         if (const int i = free.number[v]; i >= 0) {
           const double scale = 1 / std::sqrt(level.vertex_area[v]);

@@ -27,14 +27,6 @@ struct Strip : CutStrip {
       }
     return z[1] - z[0];
   }
-
-  std::string end_load(double force) const {
-    std::string points;
-    for (int j = 0; j < 3; ++j)
-      points += (j ? ", " : "") + std::string("{point: ") + text({length(), j * width() / 2, 0}) +
-                ", force: " + text(Eigen::Vector3d(0, 0, -force * (j == 1 ? 0.5 : 0.25))) + "}";
-    return "{type: constant_load, points: [" + points + "]}";
-  }
 };
 
 }  // namespace
@@ -81,8 +73,9 @@ TEST_CASE("A strip with a load at its end bends alike on every triangulation wit
       double deflection[2];
       for (int i = 0; i < 2; ++i) {
         const double alpha = i == 0 ? 1 : 4, stiffness = 20;
+        const Eigen::Vector3d force(0, 0, -alpha * stiffness * strip.width());
         const Solved s =
-            strip.bent("midedge_bending", stiffness, strip.end_load(alpha * stiffness * strip.width()));
+            strip.bent("midedge_bending", stiffness, end_load(strip.length(), strip.width(), force));
         deflection[i] = -strip.mean(s, -0.01, 0.01).z();
         errors[i].push_back(std::abs(deflection[i] - cantilever_under_end_load(alpha).deflection));
       }

@@ -39,6 +39,15 @@ inline drape::TriangleMesh triangulated(const std::string& triangulation, const 
   return triangulated(triangulation, size, cells);
 }
 
+/// A load [N] spread evenly over the end at x of a strip of three rows of vertices, as an item of `energies`.
+inline std::string end_load(double x, double width, const Eigen::Vector3d& force) {
+  std::string points;
+  for (int j = 0; j < 3; ++j)
+    points += (j ? ", " : "") + std::string("{point: ") + text({x, j * width / 2, 0}) +
+              ", force: " + text(force * (j == 1 ? 0.5 : 0.25)) + "}";
+  return "{type: constant_load, points: [" + points + "]}";
+}
+
 /// D = E d³ / 12 (1 − ν²) = 1 N m.
 inline drape::Material unit_plate(double nu) {
   drape::Material m;
@@ -80,14 +89,8 @@ struct BeamStrip {
            text(1.01 * cell()) + ", 1, 1]}]\n" + "energies: " + energies + "\nmethods: {newton: {}}\n" + more;
   }
 
-  /// A load [N] spread evenly over the free end, as an item of `energies`.
-  std::string end_load(const Eigen::Vector3d& force) const {
-    std::string points;
-    for (int j = 0; j < 3; ++j)
-      points += (j ? ", " : "") + std::string("{point: ") + text({total(), j * width() / 2, 0}) +
-                ", force: " + text(force * (j == 1 ? 0.5 : 0.25)) + "}";
-    return "{type: constant_load, points: [" + points + "]}";
-  }
+  /// A load [N] on the free end, as an item of `energies`.
+  std::string end_load(const Eigen::Vector3d& force) const { return ::end_load(total(), width(), force); }
 };
 
 /// Vertex of the middle line at a column of a solved strip.
