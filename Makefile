@@ -1,27 +1,4 @@
-# make          install what is needed, configure, build the command and its plugins: build/bin/drape
-# make setup    install what third_party/packages-to-run.txt and packages-to-test.txt list (Debian 12, asks apt-get); each
-#               target installs what it needs of them
-# make demo     build the command and its plugins, drape a square over a sphere by PCS, show the preview first
-# make results  run what the pages state and fill their figures in, with all that studies need: the Python module, scanned meshes,
-#               Blender, OpenBLAS; at most eight hours on two cores; resumes; STUDIES=sphere,scale chooses some, STUDIES=scenes
-#               one that takes hours
-# make figures  fill the pages' figures in from the stored records; runs nothing
-# make python   build the Python module: PYTHONPATH=build/python python3 -c "import drape"; `make test` then tests it too
-# make deb      pack the command, its plugins, the C++ package and the Python module: build-package/drape_*.deb, for Debian 12
-# make wheel    pack the Python module with its libraries, command and plugins: build-package/drape-*.whl, for pip of /usr/bin/python3
-# make notebooks run the notebooks of docs/guide/notebooks and store their outputs in them
-# make test     build and run every test
-# make fuzz     fuzz the readers of configs, --set, meshes and checkpoints for FUZZ_SECONDS each (20), or FUZZ_RUNS inputs each;
-#               FUZZ_TARGETS="mesh config" chooses some; what ends one is kept in build-fuzz/artifacts
-# make extremes run small drapes with parameters at their declared bounds: EXTREMES (500) of them, from the seed EXTREMES_SEED (1)
-# make data     fetch scanned meshes and make obstacles of them: data/*.ply (third_party/data/meshes.txt)
-# make benchmarks build the benchmark programs, build/bin/drape_bench_*
-# make pictures the pictures of README and docs, from the runs of the study sphere that `make results` has left (FROM=
-#               results/studies/COMMIT/ chooses the build, the newest otherwise) and from some runs of its own, minutes
-# make api      pages of the headers that plugins include, by Doxygen: build/api/html/index.html
-# make format   check the layout of the sources;  make fix-format  rewrites them
-# make lint     static analysis of core and plugins, or of one folder (LINT=core/app/sweep), each source checked by itself
-# make clean    remove what was built
+# Every target says what it does. Each installs what it needs of the packages that third_party lists (Debian 12, asks apt-get).
 #
 # PRESET=debug, ci, clang, asan or tsan chooses another of CMakePresets.json; under asan and tsan, the sanitizers,
 # `make test` leaves out the long studies (docs/contributing/testing.md).
@@ -39,6 +16,7 @@ SOURCES = $(shell find core plugins examples tests benchmarks -name '*.cpp' -o -
         api format fix-format lint clean
 all: build
 
+# Installs what third_party/packages-to-run.txt and packages-to-test.txt list.
 setup:
 	@third_party/setup run test
 
@@ -48,7 +26,7 @@ configure:
 	@third_party/setup run
 	@$(CONFIGURE) >/dev/null
 
-# With the Python module where there is one, which loads these libraries.
+# The command and its plugins, build/bin/drape, with the Python module where there is one, which loads these libraries.
 build: configure
 	@cmake --build $(BUILD) -j $(JOBS) --target drape_cli drape_plugins \
 	  $$(grep -qx DRAPE_PYTHON:BOOL=ON $(BUILD)/CMakeCache.txt && echo drape_python)
@@ -57,57 +35,67 @@ build-tests: setup
 	@$(CONFIGURE) -D DRAPE_TESTS=ON >/dev/null
 	@cmake --build $(BUILD) -j $(JOBS) --target drape_tests
 
-benchmarks: setup
+benchmarks: setup  # the benchmark programs, build/bin/drape_bench_*
 	@$(CONFIGURE) -D DRAPE_BENCHMARKS=ON >/dev/null
 	@cmake --build $(BUILD) -j $(JOBS) --target drape_cli drape_plugins drape_benchmarks
 
+# The Python module: PYTHONPATH=build/python python3 -c "import drape". `make test` then tests it too.
 python: configure
 	@third_party/setup use-python
 	@$(CONFIGURE) -D DRAPE_PYTHON=ON >/dev/null
 	@cmake --build $(BUILD) -j $(JOBS) --target drape_cli drape_plugins drape_python
 
-# Both pack one build, for any processor with AVX2 (the preset `package`).
+# The command, its plugins, the C++ package and the Python module, for Debian 12: build-package/drape_*.deb. Like the wheel it packs
+# a build for any processor with AVX2 (the preset `package`).
 deb:
 	@third_party/setup run use-python
 	@cmake --preset package --log-level=WARNING >/dev/null
 	@cmake --build build-package -j $(JOBS)
 	@cd build-package && cpack >/dev/null && ls $$PWD/drape_*.deb
 
+# The Python module with its libraries, command and plugins, for pip of /usr/bin/python3: build-package/drape-*.whl.
 wheel:
 	@third_party/setup run use-python
 	@CMAKE_BUILD_PARALLEL_LEVEL=$(JOBS) /usr/bin/python3 -m pip wheel -q --no-build-isolation --no-deps --no-index -w build-package .
 	@ls build-package/drape-*.whl
 
-notebooks: python setup
+notebooks: python setup  # runs those of docs/guide/notebooks and stores their outputs in them
 	@PYTHONPATH=$(BUILD)/python /usr/bin/python3 tests/python/notebooks.py
 
-demo: build
+demo: build  # drapes a square over a sphere by PCS, shows the preview first
 	@configs/demo $(BUILD)/bin/drape
 
-test: build-tests
+test: build-tests  # runs every test
 	@ctest --preset $(PRESET) -j $(JOBS)
 
+# Fuzzes the readers of configs, --set, meshes and checkpoints for FUZZ_SECONDS each (20), or FUZZ_RUNS inputs each;
+# FUZZ_TARGETS="mesh config" chooses some; what ends one is kept in build-fuzz/artifacts.
 fuzz: build setup
 	@cmake --preset fuzz --log-level=WARNING -DDRAPE_BUILD=$(abspath $(BUILD)) >/dev/null
 	@cmake --build build-fuzz -j $(JOBS)
 	@FUZZ_SECONDS=$(FUZZ_SECONDS) FUZZ_RUNS=$(FUZZ_RUNS) JOBS=$(JOBS) tests/fuzz/run build-fuzz $(FUZZ_TARGETS)
 
+# Small drapes with parameters at their declared bounds: EXTREMES (500) of them, from the seed EXTREMES_SEED (1).
 extremes: build setup
 	@tests/extremes/run $(BUILD)/bin/drape --count $(or $(EXTREMES),500) --seed $(or $(EXTREMES_SEED),1) --jobs $(JOBS)
 
-data: configure
+data: configure  # fetches scanned meshes and makes obstacles of them: data/*.ply (third_party/data/meshes.txt)
 	@third_party/data/fetch data $(BUILD)
 
-# The records are stamped with the commit that ran, so nothing may differ from it (benchmarks/run_studies). Without the scanned
-# meshes, Blender or OpenBLAS, which are downloaded, only the studies that need them are left out.
+# Runs what the pages state and fills their figures in: at most eight hours on two cores; resumes. STUDIES=sphere,scale chooses
+# some, STUDIES=scenes one that takes hours. The records are stamped with the commit that ran, so nothing may differ from it
+# (benchmarks/run_studies). Without the scanned meshes, Blender or OpenBLAS, which are downloaded, only the studies that need
+# them are left out.
 results: benchmarks python
 	@third_party/setup compare || true
 	@third_party/data/fetch data $(BUILD) || true
 	@benchmarks/run_studies $(BUILD) $(STUDIES)
 
-figures:
+figures:  # fills the pages' figures in from the stored records; runs nothing
 	@benchmarks/fill_figures
 
+# Pictures of README and docs, from the runs of the study sphere that `make results` has left (FROM=results/studies/COMMIT/ chooses
+# the build, the newest otherwise) and from some runs of its own, minutes.
 FROM ?= $(patsubst %sphere,%,$(shell ls -td results/studies/*/sphere 2>/dev/null | head -1))
 # The start whose PCS preview has the median distance from its final state.
 SPHERE = $(FROM)sphere/runs/base/seed_1
@@ -116,16 +104,17 @@ pictures: benchmarks data
 	@tests/browser/install $(BUILD)/tests/browser
 	DRAPE_BIN=$(abspath $(BUILD))/bin DRAPE_NODE_MODULES=$(abspath $(BUILD))/tests/browser node docs/pictures/make.mjs $(SPHERE) results/pictures
 
-api: setup
+api: setup  # pages of the headers that plugins include, by Doxygen
 	@doxygen docs/Doxyfile
 	@echo "build/api/html/index.html"
 
-format: setup
+format: setup  # checks the layout of the sources
 	@clang-format --dry-run -Werror $(SOURCES)
 
 fix-format: setup
 	@clang-format -i $(SOURCES)
 
+# Static analysis of core and plugins, or of one folder (LINT=core/app/sweep), each source checked by itself.
 lint: setup
 	@cmake --preset single-files --log-level=ERROR >/dev/null
 	@cmake --build build-single-files -j $(JOBS) --target drape_cli drape_plugins
@@ -135,5 +124,5 @@ lint: setup
 	@run-clang-tidy-16 -quiet -p build-lint -j $(JOBS) -extra-arg=-Wno-ignored-optimization-argument \
 	  -extra-arg=-Wno-unused-command-line-argument '$(LINTED)'
 
-clean:
+clean:  # removes what was built
 	rm -rf build build-package build-debug build-clang build-asan build-tsan build-lint build-fuzz build-single-files
