@@ -33,23 +33,20 @@ double median_seconds(const Body& body) {
 }
 
 /// Rows of what is printed and stored: a ratio, its two times and the figure aimed at.
-class Table {
- public:
+struct Table {
+  nlohmann::ordered_json rows = nlohmann::ordered_json::array();
+
   void add(const std::string& what, double seconds, const std::string& against, double base, double goal) {
     const double ratio = seconds / base;
     std::printf("%-46s %9.2f ms   %-28s %9.2f ms   ratio %6.3f   goal %5.2f  %s\n", what.c_str(),
                 1e3 * seconds, against.c_str(), 1e3 * base, ratio, goal, ratio <= goal ? "met" : "MISSED");
-    rows_.push_back({{"what", what},
-                     {"seconds", seconds},
-                     {"against", against},
-                     {"base_seconds", base},
-                     {"ratio", ratio},
-                     {"goal", goal}});
+    rows.push_back({{"what", what},
+                    {"seconds", seconds},
+                    {"against", against},
+                    {"base_seconds", base},
+                    {"ratio", ratio},
+                    {"goal", goal}});
   }
-  const nlohmann::ordered_json& rows() const { return rows_; }
-
- private:
-  nlohmann::ordered_json rows_ = nlohmann::ordered_json::array();
 };
 
 /// A wrinkled state of the finest level: what a few iterations of coarse PCS lead to.
@@ -143,7 +140,7 @@ int main(int argc, char** argv) try {
     draped_level(*contact.experiment, *contact.scene, table);
     if (levels == std::string("4")) coarsest_level(*contact.experiment, *contact.scene, 50, table);
   }
-  if (argc > 1) write_record(argv[1], "ratios", repeats, table.rows());
+  if (argc > 1) write_record(argv[1], "ratios", repeats, table.rows);
   return 0;
 } catch (const std::exception& error) {
   std::cerr << "error: " << error.what() << "\n";

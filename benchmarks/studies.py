@@ -16,8 +16,8 @@ MODULE = {"python/drape": "the Python module: run `make python`"}
 RUN_COLUMNS = "run,status,vertices,steps,seconds,energy_released,smallest_gap,largest_stretch,intersections,d_H_fit,message"
 
 
-def sweep(name, out="{out}"):
-    return ["{drape}", "sweep", f"configs/sweeps/{name}.yaml", "-o", out, "-j", "{workers}", "--threads", "{threads}", "-q"]
+def sweep(name):
+    return ["{drape}", "sweep", f"configs/sweeps/{name}.yaml", "-o", "{out}", "-j", "{workers}", "--threads", "{threads}", "-q"]
 
 
 def previews(name, what, minutes, starts=3, timed=False, meshes=()):
@@ -25,9 +25,21 @@ def previews(name, what, minutes, starts=3, timed=False, meshes=()):
             "gather": [["benchmarks/previews", name, "{out}"]], "records": [f"{name}.json", f"{name}.md"]}
 
 
+def one_record(name, what, minutes, *command):
+    """A timed study whose command writes the record."""
+    file = "{out}/" + name + ".json"
+    return {"what": what, "minutes": minutes, "timed": True, "run": [[*command, file]], "gather": [["cp", file, "{results}/"]],
+            "records": [f"{name}.json"]}
+
+
 def program(name, what, minutes):
-    return {"what": what, "minutes": minutes, "timed": True, "run": [["{build}/bin/drape_bench_" + name, "{out}/" + name + ".json"]],
-            "gather": [["cp", "{out}/" + name + ".json", "{results}/"]], "records": [f"{name}.json"]}
+    return one_record(name, what, minutes, "{build}/bin/drape_bench_" + name)
+
+
+def beside(name, title, minutes, check):
+    """A comparison with another program, which is to be there."""
+    return one_record(name, f"direct Newton beside {title}", minutes, "env", "PYTHONPATH={build}/python", f"benchmarks/{name}/compare") | {
+        "threads": 1, "starts": 3, "needs": MODULE, "check": check}
 
 
 HARD = ["closing", "contact", "dragged", "folded", "friction", "material", "mesh", "pins", "remedies", "remedies_draped",
@@ -39,25 +51,13 @@ STUDIES = {
     "changes": program("changes", "what a change of a parameter costs", 10),
     "linear_solvers": program("linear_solvers", "both linear solvers on the same matrices", 15) | {
         "check": ["sh", "-c", "/sbin/ldconfig -p | grep -q openblas || echo 'OpenBLAS: run third_party/setup compare' >&2"]},
-    "python": {
-        "what": "what the Python module costs", "minutes": 5, "timed": True, "needs": MODULE,
-        "run": [["env", "PYTHONPATH={build}/python", "/usr/bin/python3", "benchmarks/python", "{drape}", "{out}/python.json"]],
-        "gather": [["cp", "{out}/python.json", "{results}/"]], "records": ["python.json"]},
-    "codim_ipc": {
-        "what": "direct Newton beside Codim-IPC", "minutes": 45, "timed": True, "threads": 1, "starts": 3, "needs": MODULE,
-        "check": ["benchmarks/codim_ipc/installation.py"],
-        "run": [["env", "PYTHONPATH={build}/python", "benchmarks/codim_ipc/compare", "{out}/codim_ipc.json"]],
-        "gather": [["cp", "{out}/codim_ipc.json", "{results}/"]], "records": ["codim_ipc.json"]},
-    "stark": {
-        "what": "direct Newton beside STARK", "minutes": 20, "timed": True, "threads": 1, "starts": 3, "needs": MODULE,
-        "check": ["sh", "-c", "test -x \"$STARK/simulate\" || echo 'STARK: name the folder in which benchmarks/stark/CMakeLists.txt was built' >&2"],
-        "run": [["env", "PYTHONPATH={build}/python", "benchmarks/stark/compare", "{out}/stark.json"]],
-        "gather": [["cp", "{out}/stark.json", "{results}/"]], "records": ["stark.json"]},
-    "blender": {
-        "what": "direct Newton beside Blender's cloth", "minutes": 15, "timed": True, "threads": 1, "starts": 3, "needs": MODULE,
-        "check": ["sh", "-c", "command -v blender >/dev/null || echo 'Blender: run third_party/setup compare' >&2"],
-        "run": [["env", "PYTHONPATH={build}/python", "benchmarks/blender/compare", "{out}/blender.json"]],
-        "gather": [["cp", "{out}/blender.json", "{results}/"]], "records": ["blender.json"]},
+    "python": one_record("python", "what the Python module costs", 5, "env", "PYTHONPATH={build}/python", "/usr/bin/python3",
+                         "benchmarks/python", "{drape}") | {"needs": MODULE},
+    "codim_ipc": beside("codim_ipc", "Codim-IPC", 45, ["benchmarks/codim_ipc/installation.py"]),
+    "stark": beside("stark", "STARK", 20, [
+        "sh", "-c", "test -x \"$STARK/simulate\" || echo 'STARK: name the folder in which benchmarks/stark/CMakeLists.txt was built' >&2"]),
+    "blender": beside("blender", "Blender's cloth", 15, [
+        "sh", "-c", "command -v blender >/dev/null || echo 'Blender: run third_party/setup compare' >&2"]),
     "scale": {
         "what": "an iteration by the number of vertices, 16K to a million", "minutes": 20, "timed": True, "starts": 1,
         "run": [sweep("scale") + ["--allow-memory"]],
