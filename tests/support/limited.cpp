@@ -29,7 +29,7 @@ class TimeFile {
     std::string name = (std::filesystem::temp_directory_path() / "drape_test_time_XXXXXX").string();
     file_ = mkstemp(name.data());
     name_ = name;
-    write({});
+    write(0, 0);
     setenv("DRAPE_TEST_TIME", name_.c_str(), 1);
   }
   ~TimeFile() {
@@ -38,12 +38,10 @@ class TimeFile {
   }
   TimeFile(const TimeFile&) = delete;
 
-  struct Seconds {
-    double cpu = 0, idle = 0;
-  };
-  void write(const Seconds& seconds) const {
+  /// Seconds of processor time and of idle time.
+  void write(double cpu, double idle) const {
     char text[64];
-    const int size = std::snprintf(text, sizeof text, "%14.2f %14.2f\n", seconds.cpu, seconds.idle);
+    const int size = std::snprintf(text, sizeof text, "%14.2f %14.2f\n", cpu, idle);
     if (pwrite(file_, text, static_cast<std::size_t>(size), 0) != size) std::perror(name_.c_str());
   }
 
@@ -79,7 +77,7 @@ class Test {
   /// Waits for the command; returns its status, as of waitpid.
   int wait(const TimeLimit& limit) {
     while (reap()) {
-      if (taken_.look()) time_file_.write({taken_.cpu(), taken_.idle()});
+      if (taken_.look()) time_file_.write(taken_.cpu(), taken_.idle());
       const std::string excess = taken_.excess(limit);
       if (!excess.empty()) {
         std::cerr << "\nthe test " << excess << ". Its processes:\n" << list() << std::flush;
