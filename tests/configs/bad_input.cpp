@@ -40,8 +40,6 @@ std::string said_of_edit(const std::string& from, const std::string& to) {
   return said_of(replaced(small_experiment(), from, to));
 }
 
-std::string said_of_set(const std::string& set) { return said_of(small_experiment(), "--set '" + set + "'"); }
-
 /// A text of the experiment, what stands there instead, and the refusal after "error: e.yaml:".
 struct Edit {
   std::string from, to, refusal;
@@ -234,7 +232,7 @@ TEST_CASE("energies, methods and their names") {
        "14:12: \"reference\": . holds no reference.ply; name a mesh, as in ./levels/newton_l3.ply, or run "
        "that experiment with a reference of its own"},
   });
-  CHECK(said_of_set("methods={}") ==
+  CHECK(said_of(small_experiment(), "--set 'methods={}'") ==
         "error: --set methods: \"methods\" must be a map of at least one method, as in \"methods: {pcs: {}, "
         "newton: {}}\"\n");
 }

@@ -29,13 +29,6 @@ const Material fabric = [] {
 /// D of the hinge energy on a grid [J].
 const double plate_stiffness = fabric.bending_modulus * std::pow(fabric.thickness, 3) / 4;
 
-std::vector<NamedEnergy> energies(const std::string& membrane) {
-  std::vector<NamedEnergy> all;
-  for (const std::string& name : {membrane, std::string("hinge")})
-    all.push_back({name, make_plugin_from<Energy>(name)});
-  return all;
-}
-
 /// A strip of `cells` coarse cells between clamps, which are a cell wide at either end.
 struct ClampedStrip {
   int cells;
@@ -69,7 +62,7 @@ struct ClampedStrip {
       if (along < 1e-9 || along > length() - 1e-9)
         clamped.push_back({i, Eigen::Vector3d(x(i, 0), x(i, 1), 0)});
     }
-    return {level, fabric, energies(membrane), clamped};
+    return {level, fabric, named_energies({membrane, "hinge"}), clamped};
   }
 
   double solved(const LevelModel& model) const {
@@ -109,14 +102,13 @@ TEST_CASE("A strip that hangs or bends under its weight is the same with a membr
   m.density = 1000;
   m.bending_modulus = 1e8;
   for (const bool hangs : {true, false}) {
-    std::vector<NamedEnergy> all = energies("neo_hookean");
-    all.push_back({"gravity", make_plugin_from<Energy>(hangs ? "{type: gravity, acceleration: [9.81, 0, 0]}"
-                                                             : "gravity")});
+    const std::string gravity = hangs ? "{type: gravity, acceleration: [9.81, 0, 0]}" : "gravity";
     std::vector<DirichletVertex> clamped;
     for (int i = 0; i < level.vertex_count(); ++i)
       if (level.rest.vertices(i, 0) < (hangs ? 1e-9 : 0.051))
         clamped.push_back({i, level.rest.vertices.row(i).transpose()});
-    const LevelModel plain(level, m, all, clamped), buckling = plain.with_effective_membranes(2);
+    const LevelModel plain(level, m, named_energies({"neo_hookean", "hinge", gravity}), clamped),
+        buckling = plain.with_effective_membranes(2);
     const Positions expected = equilibrium_of(plain, level.rest.vertices, 1e-8),
                     found = equilibrium_of(buckling, level.rest.vertices, 1e-8);
     const double moved = (expected - level.rest.vertices).rowwise().norm().maxCoeff();
@@ -143,7 +135,7 @@ TEST_CASE("The membrane energy of a rolled sheet falls with h as of chords, up t
     const auto density = [&](const LevelModel& model) {
       return model.value(x, Roles{EnergyRole::membrane}) / (side * side);
     };
-    const LevelModel model(level, fabric, energies("stvk"), {});
+    const LevelModel model(level, fabric, named_energies({"stvk", "hinge"}), {});
     const double plain = density(model), buckling = density(model.with_effective_membranes(levels_below));
     const double elastic = stiffness * strain * strain / 2;
     const double wrinkled =
@@ -167,7 +159,7 @@ TEST_CASE("A sheared panel carries the stress of a tension field", "[physics]") 
       Material m = fabric;
       m.poisson_ratio = nu;
       const Level level = Level::of(0, grid({0.4, 0.2}, 9, 5, Diagonals::one_way));
-      const LevelModel plain(level, m, energies(membrane), {}),
+      const LevelModel plain(level, m, named_energies({membrane, "hinge"}), {}),
           buckling = plain.with_effective_membranes(levels_below);
       const auto stress = [&](const LevelModel& model) {
         const auto energy = [&](double gamma) {
@@ -178,7 +170,7 @@ TEST_CASE("A sheared panel carries the stress of a tension field", "[physics]") 
         return (energy(shear + step) - energy(shear - step)) / (2 * step * 0.4 * 0.2 * m.thickness);
       };
       const double h = 0.05, modulus = m.membrane_modulus;
-      const double sigma = 4 * pi * pi * energies(membrane)[1].energy->plate_stiffness(m) /
+      const double sigma = 4 * pi * pi * make_plugin_from<Energy>("hinge")->plate_stiffness(m) /
                            (m.thickness * h * h * (1 - std::pow(4.0, -levels_below)));
       const double theory = (modulus * shear / 2 + (1 - nu) * sigma) / 2;
       const double own = stress(plain), wrinkled = stress(buckling);

@@ -36,9 +36,7 @@ struct HungSquare {
     m.bending_modulus = 1e7;  // so that no compression buckles
     m.density = 1;            // strains of a thousandth at the pin
     const std::string gravity = "{type: gravity, acceleration: " + text(Eigen::Vector3d(down())) + "}";
-    std::vector<NamedEnergy> energies;
-    for (const std::string& energy : {std::string("neo_hookean"), std::string("hinge"), gravity})
-      energies.push_back({energy, make_plugin_from<Energy>(energy)});
+    const std::vector<NamedEnergy> energies = named_energies({"neo_hookean", "hinge", gravity});
     return {level, m, energies, {{held, level.rest.vertices.row(held).transpose()}}};
   }
 

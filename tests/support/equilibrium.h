@@ -1,8 +1,18 @@
 #pragma once
 
 #include <catch2/catch.hpp>
+#include <string>
+#include <vector>
 
 #include "core/numerics/solve/newton.h"
+#include "tests/support/registry.h"
+
+/// Energies of a model, each by its YAML, which is its name too.
+inline std::vector<drape::NamedEnergy> named_energies(const std::vector<std::string>& all) {
+  std::vector<drape::NamedEnergy> energies;
+  for (const std::string& yaml : all) energies.push_back({yaml, make_plugin_from<drape::Energy>(yaml)});
+  return energies;
+}
 
 /// The model's equilibrium from a start (n×3) [m], by plain Newton steps of this size [s] down to this force
 /// residual; the test ends if there is none.
