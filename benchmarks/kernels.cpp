@@ -55,38 +55,32 @@ const Cloth& cloth() {
   return made;
 }
 
-/// Stands for midedge_bending in place of a kernel: on the cloth, where all triangles are alike, and on one
-/// whose triangles all differ.
-struct MidedgeAlike {
-  static const Cloth& cloth() { return ::cloth(); }
-};
-struct MidedgeIrregular {
-  static const Cloth& cloth() {
-    static const Cloth made(313, 0.2);
-    return made;
-  }
-};
+// Stand for midedge_bending in place of an energy's class: on the cloth, where all triangles are alike, and
+// on one whose triangles all differ.
+struct MidedgeAlike {};
+struct MidedgeIrregular {};
 
 template <class Kernel>
 const Cloth& cloth_of() {
-  if constexpr (requires { Kernel::cloth(); })
-    return Kernel::cloth();
-  else
-    return cloth();
+  return cloth();
 }
-
-template <class Kernel>
-requires requires { Kernel::cloth(); }
-const BoundEnergy& energy() {
-  static const BoundMidedgeBending made(
-      Kernel::cloth().level, ShapeOperators::of(Kernel::cloth().level, Material(), 0.02), BendingFriction());
+template <>
+const Cloth& cloth_of<MidedgeIrregular>() {
+  static const Cloth made(313, 0.2);
   return made;
 }
 
-template <std::derived_from<Energy> E>
+template <class Kernel>
 const BoundEnergy& energy() {
-  static const auto made = E({}).bind(cloth().level, Material());
-  return *made;
+  const Level& level = cloth_of<Kernel>().level;
+  if constexpr (std::derived_from<Kernel, Energy>) {
+    static const auto made = Kernel({}).bind(level, Material());
+    return *made;
+  } else {
+    static const BoundMidedgeBending made(level, ShapeOperators::of(level, Material(), 0.02),
+                                          BendingFriction());
+    return made;
+  }
 }
 
 void finish(benchmark::State& state, double elements) {
