@@ -112,7 +112,7 @@ TEST_CASE("under a ceiling a start is moved to a side") {
   CHECK((left.y() == 0 && left.z() == 0));
 }
 
-TEST_CASE("a start is not moved into a closed mesh, one that faces inwards neither") {
+TEST_CASE("a start is not moved into a closed mesh, nor into one that faces inwards") {
   const Scratch folder;
   drape::TriangleMesh inwards = drape::unit_sphere(4);
   inwards.triangles.col(1).swap(inwards.triangles.col(2));

@@ -128,7 +128,7 @@ class Command {
     return {code, text_of(output_ / "out"), text_of(output_ / "err")};
   }
 
-  /// The same, once the command was sent a signal.
+  /// Sends a signal, and waits for the end that it brings about.
   Ended ended_by(int signal) {
     send(signal);
     return wait();

@@ -24,7 +24,7 @@ inline std::vector<std::string> lines_of(const std::filesystem::path& file) {
   return lines;
 }
 
-/// The files below these folders of the sources whose names end so, in order.
+/// The files with these extensions below these folders of the sources, in order.
 inline std::vector<std::filesystem::path> below(const std::vector<std::string>& folders,
                                                 const std::vector<std::string>& extensions) {
   std::vector<std::filesystem::path> found;
