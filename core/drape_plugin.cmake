@@ -5,8 +5,7 @@ function(drape_add_plugin name)
   cmake_parse_arguments(PARSE_ARGV 1 plugin "" "" SOURCES)
   add_library(${name} MODULE ${plugin_SOURCES})
   # A plugin exports its one C function, so that two plugins may use one name for different things.
-  set_target_properties(${name} PROPERTIES PREFIX lib LINKER_LANGUAGE CXX
-                        CXX_VISIBILITY_PRESET hidden VISIBILITY_INLINES_HIDDEN ON)
+  set_target_properties(${name} PROPERTIES LINKER_LANGUAGE CXX CXX_VISIBILITY_PRESET hidden VISIBILITY_INLINES_HIDDEN ON)
   target_link_libraries(${name} PRIVATE drape::drape)
   # A missing symbol shows here, not when loading; a sanitizer's own are in the program alone.
   if(NOT "${CMAKE_CXX_FLAGS} ${CMAKE_CXX_FLAGS_DEBUG}" MATCHES "-fsanitize")
