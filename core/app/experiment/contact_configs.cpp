@@ -63,13 +63,13 @@ bool has_friction(const RegistryEntry& model) {
 }
 
 /// Friction that no model of an experiment has, which would be ignored.
-void check_friction(const Registry& registry, const ExperimentParameters& p,
-                    const std::vector<const RegistryEntry*>& models, ConfigErrors& errors) {
+void check_friction(const Experiment& e, const std::vector<const RegistryEntry*>& models,
+                    ConfigErrors& errors) {
   const auto has = [](const RegistryEntry* model) { return !model || has_friction(*model); };
-  if (p.friction == 0 || std::ranges::any_of(models, has)) return;
-  Location where = p.contact.where;
-  if (where.line == 0) where.key = "friction";
-  errors.push_back({where, refusal_of_friction(registry)});
+  if (e.parameters.friction == 0 || std::ranges::any_of(models, has)) return;
+  const Location& contact = e.parameters.contact.where;
+  errors.push_back(
+      {contact.line > 0 ? contact : e.location_of("friction"), refusal_of_friction(*e.registry)});
 }
 
 /// Each model sees every pair of the cloth and all of its obstacles, so a second one would count them twice.
@@ -177,13 +177,12 @@ std::string refusal_of_friction(const Registry& registry) {
 void make_contacts(Experiment& e, ConfigErrors& errors) {
   const ExperimentParameters& p = e.parameters;
   const std::vector<ConfigNode> written = contact_sections(p);
-  const std::size_t before = errors.size();
   std::vector<const RegistryEntry*> models;
   for (const ConfigNode& node : written) models.push_back(e.registry->find("contact", node.plugin_name()));
   e.contact_configs.resize(written.size());
   check_models(written, models, errors);
   check_names(p.obstacles, errors);
-  check_friction(*e.registry, p, models, errors);
+  check_friction(e, models, errors);
   share_obstacles(*e.registry, p.obstacles, models, e.contact_configs, errors);
   ConfigNode sections, obstacles;
   sections.kind = obstacles.kind = NodeKind::list;
@@ -195,9 +194,6 @@ void make_contacts(Experiment& e, ConfigErrors& errors) {
     e.contacts.push_back(
         std::static_pointer_cast<ContactModel>(make_plugin(config.parameters, locate, errors)));
   }
-  for (std::size_t i = before; i < errors.size(); ++i)  // without "contact" they have only a key
-    if (Location& where = errors[i].where; where.line == 0 && e.source.find(where.key))
-      where = e.location_of(where.key);
   const bool is_one = p.contact.kind != NodeKind::list && !sections.items.empty();
   set_path(e.resolved, "contact", is_one ? sections.items[0] : sections);
   set_path(e.resolved, "obstacles", obstacles);
