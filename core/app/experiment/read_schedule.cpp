@@ -111,7 +111,6 @@ class KeyReader {
     const ConfigNode* section = e_.resolved.find(part);
     const bool is_list = section->kind == NodeKind::list;
     const auto item = is_list && words.size() > 1 ? section->index_of(words[1]) : std::nullopt;
-    const std::vector<std::string> within(words.begin() + (is_list && words.size() > 1 ? 2 : 1), words.end());
     if (part == "friction") {
       for (std::size_t c = 0; c < e_.contact_configs.size(); ++c)
         add_target(key, LoadPart::contact, c, words);
@@ -120,13 +119,13 @@ class KeyReader {
         const std::vector<std::size_t>& own = e_.contact_configs[c].obstacles;
         const auto place = std::ranges::find(own, *item);
         if (place == own.end()) continue;
-        std::vector<std::string> path = {part, std::to_string(place - own.begin())};
-        path.insert(path.end(), within.begin(), within.end());
+        std::vector<std::string> path = words;
+        path[1] = std::to_string(place - own.begin());
         add_target(key, LoadPart::contact, c, path);
       }
-    } else if (part == "energies" || part == "contact") {
-      if (item || !is_list)
-        add_target(key, part == "contact" ? LoadPart::contact : LoadPart::energies, item.value_or(0), within);
+    } else if ((part == "energies" || part == "contact") && (item || !is_list)) {
+      const std::vector<std::string> within(words.begin() + (item ? 2 : 1), words.end());
+      add_target(key, part == "contact" ? LoadPart::contact : LoadPart::energies, item.value_or(0), within);
     } else if (part == "material") {
       add_target(key, LoadPart::material, 0, words);
     } else if (item) {
