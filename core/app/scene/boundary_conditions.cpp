@@ -88,14 +88,9 @@ std::string text_of(const Eigen::Vector3d& p) {
 /// same place but for round-off.
 std::string conflict(const VertexSelection& one, const VertexSelection& other, const Level& level,
                      const Level& coarsest, const Positions& placed) {
-  const auto selected = [&](const VertexSelection& selection) {
-    std::vector<int> vertices = selected_vertices(selection, level, coarsest);
-    std::sort(vertices.begin(), vertices.end());
-    return vertices;
-  };
-  const std::vector<int> first = selected(one), second = selected(other);
   std::vector<int> shared;
-  std::set_intersection(first.begin(), first.end(), second.begin(), second.end(), std::back_inserter(shared));
+  std::ranges::set_intersection(selected_vertices(one, level, coarsest),
+                                selected_vertices(other, level, coarsest), std::back_inserter(shared));
   constexpr double rounding = 1e-9;
   const double diagonal = shared.empty() ? 0 : bounding_box_diagonal(level.rest.vertices);
   for (const int v : shared) {
