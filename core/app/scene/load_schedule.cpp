@@ -194,8 +194,7 @@ class ScheduleStepping final : public LoadStepping {
 
 }  // namespace
 
-LoadSchedule::LoadSchedule(const Experiment& e, const Scene& scene)
-    : hierarchy_(scene.hierarchy), placed_(scene.placed), following_(scene.following) {
+LoadSchedule::LoadSchedule(const Experiment& e, const Scene& scene) : scene_(scene) {
   std::size_t first = 0;
   for (const ScheduleKey& key : e.parameters.schedule.keys) {
     for (const KeyTarget& target : key.targets)
@@ -240,23 +239,25 @@ std::shared_ptr<const LoadState> LoadSchedule::at(std::vector<double> values, co
     if (change.part == LoadPart::contact) make_again(own, load->contacts[change.item]);
   }
   if (parameters) load->parameters = parameters;
-  if (new_handles) load->energies.back().energy = handles_energy(*parameters, hierarchy_.levels[0], placed_);
+  if (new_handles)
+    load->energies.back().energy = handles_energy(*parameters, scene_.hierarchy.levels[0], scene_.placed);
   load->values = std::move(values);
   return load;
 }
 
 std::shared_ptr<const LevelModel> LoadSchedule::model(const LoadState& load, int level,
                                                       const LevelModel& before) const {
-  const Level &own = hierarchy_.levels[level], &coarsest = hierarchy_.levels[0];
+  const Level &own = scene_.hierarchy.levels[level], &coarsest = scene_.hierarchy.levels[0];
   const auto with = [&](std::vector<DirichletVertex> dirichlet, const LevelModel& shared) {
     return std::make_shared<const LevelModel>(own, load.parameters->material, load.energies,
                                               std::move(dirichlet), load.contacts, &shared);
   };
   std::vector<DirichletVertex> dirichlet =
-      dirichlet_vertices(*load.parameters, own, coarsest, placed_[level]);
-  if (following_[level].empty()) return with(std::move(dirichlet), before);
+      dirichlet_vertices(*load.parameters, own, coarsest, scene_.placed[level]);
+  const FollowingVertices& following = scene_.following[level];
+  if (following.empty()) return with(std::move(dirichlet), before);
   const auto moved = with({}, before);  // where the obstacles are decides the targets
-  move_targets(following_[level], moved->contacts(), dirichlet);
+  move_targets(following, moved->contacts(), dirichlet);
   return with(std::move(dirichlet), *moved);
 }
 

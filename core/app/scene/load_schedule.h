@@ -48,9 +48,7 @@ class LoadSchedule {
   };
   Change& change_of(const Experiment& experiment, const KeyTarget& target);
 
-  const Hierarchy& hierarchy_;
-  const std::vector<Positions>& placed_;
-  const std::vector<FollowingVertices>& following_;
+  const Scene& scene_;
   std::vector<Change> changes_;
   std::shared_ptr<const LoadState> first_;
 };
