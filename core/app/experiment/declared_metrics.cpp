@@ -28,12 +28,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-const Json& list(const Json& json, const char* key) {
-  static const Json none = Json::array();
-  const Json& member = member_of(json, key);
-  return member.is_array() ? member : none;
-}
-
 Json column_json(const MetricColumn& c) {
   Json json = {
       {"name", c.name}, {"label", c.label}, {"unit", c.unit}, {"better", c.better}, {"shown", c.shown}};
@@ -56,9 +50,8 @@ MetricColumn column_of(const Json& json) {
 }
 
 template <class Named>
-void add_new(std::vector<Named>& all, const std::vector<Named>& more) {
-  for (const Named& one : more)
-    if (std::ranges::find(all, one.name, &Named::name) == all.end()) all.push_back(one);
+void add_new(std::vector<Named>& all, const Named& one) {
+  if (std::ranges::find(all, one.name, &Named::name) == all.end()) all.push_back(one);
 }
 
 }  // namespace
@@ -74,7 +67,7 @@ std::vector<DeclaredMetric> declared_metrics(
     const std::vector<std::pair<std::string, std::shared_ptr<Metric>>>& metrics) {
   std::vector<DeclaredMetric> declared;
   for (const auto& [name, metric] : metrics)
-    add_new(declared, {DeclaredMetric{name, metric->scope(), metric->declaration()}});
+    add_new(declared, DeclaredMetric{name, metric->scope(), metric->declaration()});
   for (DeclaredMetric& metric : declared)
     for (MetricColumn& column : metric.declaration.columns)
       if (column.label.empty())
@@ -113,7 +106,7 @@ void check_declarations(const std::vector<DeclaredMetric>& metrics, const Locati
       const auto [owner, is_new] = owners.insert({{metric.scope, column.name}, metric.name});
       if (column.name.empty())
         refuse("a value needs a name");
-      else if (std::ranges::find(taken, first) != taken.end() && metric.name != "energy")
+      else if (is_one_of(first, taken) && metric.name != "energy")
         refuse(value + " needs another name: results.json has a key \"" + first + "\" of its own");
       else if (!is_new)
         refuse(value + (owner->second == metric.name ? " is declared twice"
@@ -153,9 +146,9 @@ std::vector<DeclaredMetric> declared_metrics(const Json& json) {
   for (const auto& [name, entry] : json.items()) {
     DeclaredMetric metric{name, member_of(entry, "scope").get<MetricScope>(), {}};
     metric.declaration.text = text_member(entry, "text");
-    for (const Json& column : list(entry, "columns"))
+    for (const Json& column : member_of(entry, "columns"))
       if (!text_member(column, "name").empty()) metric.declaration.columns.push_back(column_of(column));
-    for (const Json& c : list(entry, "colours"))
+    for (const Json& c : member_of(entry, "colours"))
       if (!text_member(c, "field").empty())
         metric.declaration.colours.push_back({text_member(c, "field"), text_member(c, "other_field"),
                                               text_member(c, "unit"), text_member(c, "label")});
@@ -170,15 +163,16 @@ std::vector<MetricColumn> columns_of(const std::vector<DeclaredMetric>& metrics,
   for (const DeclaredMetric& metric : metrics)
     if (metric.scope == scope)
       for (const MetricColumn& column : metric.declaration.columns)
-        if (column.shown >= least) add_new(columns, {column});
+        if (column.shown >= least) add_new(columns, column);
   return columns;
 }
 
 void merge(std::vector<DeclaredMetric>& all, const std::vector<DeclaredMetric>& more) {
-  add_new(all, more);
-  for (const DeclaredMetric& metric : more)
-    for (DeclaredMetric& own : all)
-      if (own.name == metric.name) add_new(own.declaration.columns, metric.declaration.columns);
+  for (const DeclaredMetric& metric : more) {
+    add_new(all, metric);
+    DeclaredMetric& own = *std::ranges::find(all, metric.name, &DeclaredMetric::name);
+    for (const MetricColumn& column : metric.declaration.columns) add_new(own.declaration.columns, column);
+  }
 }
 
 bool beats(Better better, double a, double b) {
@@ -189,11 +183,10 @@ bool beats(Better better, double a, double b) {
 std::vector<ErrorMeasure> error_measures(const std::vector<DeclaredMetric>& metrics) {
   std::vector<ErrorMeasure> measures;
   for (const MetricColumn& column : columns_of(metrics, MetricScope::pair, Shown::stored)) {
-    const auto same = std::ranges::find(measures, column.error, &ErrorMeasure::name);
-    if (column.error.empty() || same != measures.end()) continue;
+    if (column.error.empty()) continue;
     const std::string label = (column.better == Better::higher ? "1 − " : "") + column.label +
                               (column.unit == "1" ? "" : " [" + column.unit + "]");
-    measures.push_back({column.error, label, column.error_use, column.name, column.better});
+    add_new(measures, ErrorMeasure{column.error, label, column.error_use, column.name, column.better});
   }
   std::stable_partition(measures.begin(), measures.end(),
                         [](const ErrorMeasure& m) { return m.use == ErrorUse::ranking; });
