@@ -18,6 +18,34 @@ ParameterHandle angle(ParameterHandle p) {
 /// A number that counts from 0.
 ParameterHandle natural(ParameterHandle p, double most = bounds::largest_int) { return p.between(0, most); }
 
+/// The parameters that pins and handles share.
+template <class Condition>
+void declare_selection(Declaration<Condition>& d) {
+  d.add("region", &VertexSelection::region,
+        "selects vertices by their rest positions: the coarsest level's vertex nearest to `point`, all "
+        "within `radius` of `point`, all in a box, the boundary, or coarsest-level indices")
+      .choices({"nearest", "ball", "box", "border", "vertices"});
+  coordinate(
+      d.add("point", &VertexSelection::point, "point of `nearest`, centre of `ball`, in the rest shape"))
+      .only_with("region", {"nearest", "ball"});
+  d.add("radius", &VertexSelection::radius, "radius of `ball`")
+      .unit("m")
+      .between(0, bounds::largest_coordinate)
+      .only_with("region", {"ball"});
+  coordinate(d.add("lower", &VertexSelection::lower, "lower corner of `box`, in the rest shape"))
+      .only_with("region", {"box"});
+  coordinate(d.add("upper", &VertexSelection::upper, "upper corner of `box`, in the rest shape"))
+      .only_with("region", {"box"});
+  natural(d.add("vertices", &VertexSelection::vertices, "indices on the coarsest level, from 0"))
+      .only_with("region", {"vertices"});
+  coordinate(d.add("translate", &VertexSelection::translate,
+                   "translation from the rest position to the target, applied after `rotate`; without both, "
+                   "the target is the position at the start, without its noise"));
+  angle(d.add("rotate", &VertexSelection::rotate,
+              "rotation of the rest position about x, then y, then z through `centre`"));
+  coordinate(d.add("centre", &VertexSelection::centre, "centre of `rotate`, in the rest shape"));
+}
+
 }  // namespace
 
 void LoopParameters::declare(Declaration<LoopParameters>& d) {
@@ -126,38 +154,6 @@ void StartParameters::declare(Declaration<StartParameters>& d) {
       .between(bounds::smallest_length, bounds::largest_length);
   natural(d.add("seed", &StartParameters::seed, "seed of the noise"));
 }
-
-namespace {
-
-/// The parameters that pins and handles share.
-template <class Condition>
-void declare_selection(Declaration<Condition>& d) {
-  d.add("region", &VertexSelection::region,
-        "selects vertices by their rest positions: the coarsest level's vertex nearest to `point`, all "
-        "within `radius` of `point`, all in a box, the boundary, or coarsest-level indices")
-      .choices({"nearest", "ball", "box", "border", "vertices"});
-  coordinate(
-      d.add("point", &VertexSelection::point, "point of `nearest`, centre of `ball`, in the rest shape"))
-      .only_with("region", {"nearest", "ball"});
-  d.add("radius", &VertexSelection::radius, "radius of `ball`")
-      .unit("m")
-      .between(0, bounds::largest_coordinate)
-      .only_with("region", {"ball"});
-  coordinate(d.add("lower", &VertexSelection::lower, "lower corner of `box`, in the rest shape"))
-      .only_with("region", {"box"});
-  coordinate(d.add("upper", &VertexSelection::upper, "upper corner of `box`, in the rest shape"))
-      .only_with("region", {"box"});
-  natural(d.add("vertices", &VertexSelection::vertices, "indices on the coarsest level, from 0"))
-      .only_with("region", {"vertices"});
-  coordinate(d.add("translate", &VertexSelection::translate,
-                   "translation from the rest position to the target, applied after `rotate`; without both, "
-                   "the target is the position at the start, without its noise"));
-  angle(d.add("rotate", &VertexSelection::rotate,
-              "rotation of the rest position about x, then y, then z through `centre`"));
-  coordinate(d.add("centre", &VertexSelection::centre, "centre of `rotate`, in the rest shape"));
-}
-
-}  // namespace
 
 void FollowParameters::declare(Declaration<FollowParameters>& d) {
   d.add("obstacle", &FollowParameters::obstacle,

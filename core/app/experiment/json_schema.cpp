@@ -70,6 +70,32 @@ Json parameter_schema(const Parameter& p, const Registry* registry) {
   return json;
 }
 
+/// Of an experiment's `obstacles`: the items that the registered contact models take.
+Json obstacles_schema(const Registry& registry) {
+  Json alternatives = Json::array();
+  for (const RegistryEntry* model : registry.of_kind("contact"))
+    for (const Parameter& p : model->schema.parameters)
+      if (p.from_experiment && p.section) {
+        Json identified = Json::array();
+        for (const Parameter& key : p.section->parameters)
+          if (key.identifies_item) identified.push_back(Json{{"required", Json::array({key.name})}});
+        Json item = json_schema(*p.section, &registry);
+        item["allOf"] = Json::array({Json{{"anyOf", identified}}});
+        item["description"] = "of contact model " + model->name + ": " + p.description;
+        alternatives.push_back(std::move(item));
+      }
+  return {{"type", "array"}, {"items", {{"anyOf", alternatives}}}};
+}
+
+/// Of a map from names to plugins of a kind, as an experiment's methods; `type` defaults to the name.
+Json named_plugins_schema(const std::string& kind, const Registry& registry) {
+  Json one = plugin_schema(kind, registry);
+  for (Json& alternative : one["anyOf"])
+    if (alternative.contains("required")) alternative["required"].erase(0);  // the type, which comes first
+  one["anyOf"].push_back({{"type", "null"}});
+  return {{"type", "object"}, {"minProperties", 1}, {"additionalProperties", one}};
+}
+
 }  // namespace
 
 Json json_value(const ConfigNode& node) {
@@ -111,36 +137,6 @@ Json json_schema(const Schema& schema, const Registry* registry) {
   if (!required.empty()) json["required"] = required;
   return json;
 }
-
-namespace {
-
-/// Of an experiment's `obstacles`: the items that the registered contact models take.
-Json obstacles_schema(const Registry& registry) {
-  Json alternatives = Json::array();
-  for (const RegistryEntry* model : registry.of_kind("contact"))
-    for (const Parameter& p : model->schema.parameters)
-      if (p.from_experiment && p.section) {
-        Json identified = Json::array();
-        for (const Parameter& key : p.section->parameters)
-          if (key.identifies_item) identified.push_back(Json{{"required", Json::array({key.name})}});
-        Json item = json_schema(*p.section, &registry);
-        item["allOf"] = Json::array({Json{{"anyOf", identified}}});
-        item["description"] = "of contact model " + model->name + ": " + p.description;
-        alternatives.push_back(std::move(item));
-      }
-  return {{"type", "array"}, {"items", {{"anyOf", alternatives}}}};
-}
-
-/// Of a map from names to plugins of a kind, as an experiment's methods; `type` defaults to the name.
-Json named_plugins_schema(const std::string& kind, const Registry& registry) {
-  Json one = plugin_schema(kind, registry);
-  for (Json& alternative : one["anyOf"])
-    if (alternative.contains("required")) alternative["required"].erase(0);  // the type, which comes first
-  one["anyOf"].push_back({{"type", "null"}});
-  return {{"type", "object"}, {"minProperties", 1}, {"additionalProperties", one}};
-}
-
-}  // namespace
 
 Json experiment_json_schema(const Registry& registry) {
   Json schema = json_schema(experiment_schema(), &registry);

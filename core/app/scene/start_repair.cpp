@@ -44,20 +44,6 @@ double winding_number(const TriangleMesh& mesh, const Vector3d& p) {
   return angle / (4 * M_PI);
 }
 
-}  // namespace
-
-bool is_inside(const Positions& points, const TriangleMesh& mesh, bool facing_inwards) {
-  // What is open encloses what it surrounds almost wholly, as a scan with holes does: a cloth may lie in a
-  // bowl.
-  const bool open = !border_half_edges(mesh.triangles, static_cast<int>(mesh.vertices.rows())).empty();
-  const double enclosed = open ? 0.9 : 0.5;
-  for (Eigen::Index i = 0; i < points.rows(); ++i)
-    if ((facing_inwards ? -1 : 1) * winding_number(mesh, points.row(i).transpose()) > enclosed) return true;
-  return false;
-}
-
-namespace {
-
 /// Searches for a translation of the start without intersections.
 class TranslationSearch {
  public:
@@ -168,6 +154,16 @@ class TranslationSearch {
 };
 
 }  // namespace
+
+bool is_inside(const Positions& points, const TriangleMesh& mesh, bool facing_inwards) {
+  // What is open encloses what it surrounds almost wholly, as a scan with holes does: a cloth may lie in a
+  // bowl.
+  const bool open = !border_half_edges(mesh.triangles, static_cast<int>(mesh.vertices.rows())).empty();
+  const double enclosed = open ? 0.9 : 0.5;
+  for (Eigen::Index i = 0; i < points.rows(); ++i)
+    if ((facing_inwards ? -1 : 1) * winding_number(mesh, points.row(i).transpose()) > enclosed) return true;
+  return false;
+}
 
 Vector3d repair_start(Experiment& experiment, const Scene& scene, ConfigErrors& errors) {
   TranslationSearch search(scene);
