@@ -1,7 +1,6 @@
 #include "core/app/experiment/declared_metrics.h"
 
 #include <algorithm>
-#include <cmath>
 #include <iterator>
 #include <map>
 #include <nlohmann/json.hpp>
@@ -173,11 +172,6 @@ void merge(std::vector<DeclaredMetric>& all, const std::vector<DeclaredMetric>& 
     DeclaredMetric& own = *std::ranges::find(all, metric.name, &DeclaredMetric::name);
     for (const MetricColumn& column : metric.declaration.columns) add_new(own.declaration.columns, column);
   }
-}
-
-bool beats(Better better, double a, double b) {
-  if (better == Better::neither) return false;
-  return better == Better::higher ? a > b : std::abs(a) < std::abs(b);
 }
 
 std::vector<ErrorMeasure> error_measures(const std::vector<DeclaredMetric>& metrics) {

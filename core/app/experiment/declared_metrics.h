@@ -1,6 +1,5 @@
 #pragma once
 
-#include <array>
 #include <memory>
 #include <nlohmann/json_fwd.hpp>
 #include <string>
@@ -47,10 +46,6 @@ std::vector<MetricColumn> columns_of(const std::vector<DeclaredMetric>& metrics,
 /// Adds the metrics and columns that are not in `all` yet, as of another run.
 void merge(std::vector<DeclaredMetric>& all, const std::vector<DeclaredMetric>& more);
 
-/// Whether a is better than b. Where lower is better, the value nearer to zero is, because a difference of
-/// energies may be negative. False if neither direction is better.
-bool beats(Better better, double a, double b);
-
 /// A measure of a state's error (docs/theory/errors.md); errors.csv has a column of it for every target.
 struct ErrorMeasure {
   std::string name;   ///< in errors.csv, after the target's
@@ -66,8 +61,5 @@ inline constexpr const char* energy_gap = "energy_gap";
 
 /// The measures that metrics declare, those that rank first, and the energy gap, last.
 std::vector<ErrorMeasure> error_measures(const std::vector<DeclaredMetric>& metrics);
-
-/// The states that errors are measured against: the method's own finest one, and the run's reference.
-inline constexpr std::array error_targets = {"own", "reference"};
 
 }  // namespace drape

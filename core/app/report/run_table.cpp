@@ -72,6 +72,12 @@ std::string statuses(const MethodRecord& method) {
   return same ? method.status : joined(words);
 }
 
+/// Where lower is better, the value nearer to zero is, because a difference of energies may be negative.
+bool is_worse(Better better, double value, double than) {
+  if (better == Better::lower) return std::abs(value) > std::abs(than);
+  return better == Better::higher ? value < than : value > than;
+}
+
 /// A metric's value of one method: of a state metric, that of the finest level, or for summaries the worst of
 /// all levels; of a pair metric, that of the coarsest level against the finest.
 OptionalNumber metric_value(const MetricColumn& column, MetricScope scope, const MethodRecord& method) {
@@ -168,10 +174,7 @@ OptionalNumber worst_over_levels(const MetricColumn& column, const MethodRecord&
   OptionalNumber worst;
   for (const LevelRecord& level : method.levels) {
     const OptionalNumber value = level.values.of(column.name);
-    if (!value) continue;
-    const bool worse =
-        !worst || (column.better == Better::neither ? *value > *worst : beats(column.better, *worst, *value));
-    if (worse) worst = value;
+    if (value && (!worst || is_worse(column.better, *value, *worst))) worst = value;
   }
   return worst;
 }

@@ -119,8 +119,8 @@ void Recorder::write_errors(const Positions* reference, const std::function<bool
   const int finest = scene_.finest();
   const std::vector<ErrorMeasure> measures = error_measures(declared_metrics(experiment_.metrics));
   std::string text = "method,level,level_iterations,seconds,iterations,flops,vertices";
-  for (const char* target : error_targets)
-    for (const ErrorMeasure& measure : measures) text += "," + std::string(target) + "_" + measure.name;
+  for (const char* target : {",own_", ",reference_"})
+    for (const ErrorMeasure& measure : measures) text += target + measure.name;
   text += "\n";
   const double start = energy_of_start(scene_);
   const auto target_at = [&](const Positions& x, double energy) {
