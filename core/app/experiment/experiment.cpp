@@ -184,9 +184,7 @@ const Solver& Experiment::solver_of(const std::string& method) const {
 }
 
 std::string Experiment::solver_type(const std::string& method) const {
-  const ConfigNode* node = &resolved;
-  for (const char* key : {"methods", method.c_str(), "type"}) node = node ? node->find(key) : nullptr;
-  return node ? node->scalar : method;
+  return resolved.find("methods")->find(method)->plugin_name();
 }
 
 std::optional<double> newton_number(const ConfigNode& config, const std::string& method, const char* key) {
@@ -231,9 +229,8 @@ std::vector<std::string> chosen_methods(const Experiment& experiment, const std:
                                joined(known) + " with --method, or run them all with --method all");
     return {name};
   }
-  std::vector<std::string> chosen = known;
-  std::erase_if(chosen, [&](const std::string& name) { return !is_one_of(name, asked); });
-  return chosen;
+  std::erase_if(known, [&](const std::string& name) { return !is_one_of(name, asked); });
+  return known;
 }
 
 }  // namespace drape

@@ -201,10 +201,9 @@ LoadSchedule::LoadSchedule(const Experiment& e, const Scene& scene) : scene_(sce
       change_of(e, target).numbers.emplace_back(target.numbers, first);
     first += key.values[0].size();
   }
-  auto parameters = std::make_shared<const ExperimentParameters>(e.parameters);
-  std::vector<double> values = parameters->schedule.values_at(0);
   first_ = std::make_shared<const LoadState>(
-      LoadState{std::move(values), std::move(parameters), scene.energies, e.contacts});
+      LoadState{e.parameters.schedule.values_at(0),
+                std::make_shared<const ExperimentParameters>(e.parameters), scene.energies, e.contacts});
 }
 
 LoadSchedule::Change& LoadSchedule::change_of(const Experiment& e, const KeyTarget& target) {

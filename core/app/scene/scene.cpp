@@ -166,10 +166,9 @@ std::unique_ptr<Scene> build_scene(const Experiment& e, ConfigErrors& errors,
   if (auto handles = handles_energy(p, coarsest, scene->placed))
     scene->energies.push_back({"handles", std::move(handles)});
   for (const Level& level : scene->hierarchy.levels) {
-    const Positions &rest = level.rest.vertices, &shape = shapes[level.index];
     std::vector<DirichletVertex> dirichlet =
         dirichlet_vertices(p, level, coarsest, scene->placed[level.index]);
-    Positions start = make_start(rest, shape, p.start, p.start.perturbation);
+    Positions start = make_start(level.rest.vertices, shapes[level.index], p.start, p.start.perturbation);
     for (const DirichletVertex& d : dirichlet) start.row(d.vertex) = d.target.transpose();
     for (const std::string& fault : check_coordinates(start))
       errors.push_back(
