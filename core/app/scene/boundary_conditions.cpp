@@ -13,11 +13,14 @@ namespace drape {
 
 namespace {
 
-constexpr std::pair<const char*, LoadPart> conditions[] = {{"pins", LoadPart::pins},
-                                                           {"handles", LoadPart::handles}};
-
-std::size_t count(const ExperimentParameters& p, LoadPart part) {
-  return part == LoadPart::pins ? p.pins.size() : p.handles.size();
+/// Calls check(part, k, written) for every pin and handle k, or for the one that a key's target names.
+template <class Check>
+void for_each_condition(const Experiment& e, const KeyTarget* only, const Check& check) {
+  for (const auto& [key, part] : {std::pair("pins", LoadPart::pins), {"handles", LoadPart::handles}}) {
+    const ConfigNode* written = e.source.find(key);
+    for (std::size_t k = 0; written && k < written->items.size(); ++k)
+      if (!only || (only->part == part && only->item == k)) check(part, k, written->items);
+  }
 }
 
 const VertexSelection& selection(const ExperimentParameters& p, LoadPart part, std::size_t k) {
@@ -103,22 +106,34 @@ std::string conflict(const VertexSelection& one, const VertexSelection& other, c
   return "";
 }
 
-/// Appends an error for pin or handle k and the first conflict with each of the first `end` others.
-/// `written`, if it is not null, has the line of each in its file.
-void check_shared(const ExperimentParameters& p, LoadPart part, std::size_t k, std::size_t end,
-                  const Location& where, const ConfigNode* written, const std::vector<Level>& levels,
-                  const std::vector<Positions>& placed, ConfigErrors& errors) {
-  const auto name = [&](std::size_t of) {
-    return name_of(p, part, of, written ? written->items[of].where.line : 0);
-  };
-  for (std::size_t j = 0; j < end; ++j)
-    for (std::size_t l = 0; l < levels.size() && j != k; ++l) {
-      const std::string why =
-          conflict(selection(p, part, k), selection(p, part, j), levels[l], levels[0], placed[l]);
-      if (why.empty()) continue;
-      errors.push_back({where, name(k) + " and " + name(j) + " " + why});
-      break;
-    }
+/// Appends the errors of check_selections for pin or handle k.
+void check_selection(const ExperimentParameters& parameters, LoadPart part, std::size_t k,
+                     const Location& where, const std::vector<Level>& levels, ConfigErrors& errors) {
+  const VertexSelection& p = selection(parameters, part, k);
+  const Level& coarsest = levels[0];
+  const std::string name = name_of(parameters, part, k);
+  const bool by_index = p.region == "vertices";
+  if (by_index ? p.vertices.empty() : selected_vertices(p, coarsest, coarsest).empty())
+    errors.push_back(
+        {where, name + " selects no vertex of the coarsest level; " +
+                    (by_index ? "list some under \"vertices\""
+                              : "widen its region; the rest shape, in which it counts, spans " +
+                                    point_text(coarsest.rest.vertices.colwise().minCoeff()) + " to " +
+                                    point_text(coarsest.rest.vertices.colwise().maxCoeff()) + " m")});
+  else if (!by_index)
+    for (const Level& level : levels)
+      if (selected_vertices(p, level, coarsest).empty()) {
+        errors.push_back({where, name + " selects vertices of the coarsest level, but none of level " +
+                                     std::to_string(level.index) +
+                                     ", whose rest positions the refiner moves; widen its region, or select "
+                                     "by \"nearest\" or \"vertices\""});
+        break;
+      }
+  for (int v : p.vertices)
+    if (by_index && (v < 0 || v >= coarsest.vertex_count()))
+      errors.push_back({where, name + " names vertex " + std::to_string(v) +
+                                   ", but those of the coarsest level go from 0 to " +
+                                   std::to_string(coarsest.vertex_count() - 1)});
 }
 
 }  // namespace
@@ -168,54 +183,29 @@ std::vector<int> selected_vertices(const VertexSelection& selection, const Level
   return selected;
 }
 
-void check_selections(const Experiment& e, const std::vector<Level>& levels, ConfigErrors& errors) {
-  for (const auto& [key, part] : conditions)
-    for (std::size_t k = 0; k < count(e.parameters, part); ++k)
-      check_selection(e.parameters, part, k, e.source.find(key)->items[k].where, levels, errors);
+void check_selections(const Experiment& e, const ExperimentParameters& load, const std::vector<Level>& levels,
+                      ConfigErrors& errors, const KeyTarget* only) {
+  for_each_condition(e, only, [&](LoadPart part, std::size_t k, const std::vector<ConfigNode>& written) {
+    check_selection(load, part, k, written[k].where, levels, errors);
+  });
 }
 
-void check_shared_vertices(const Experiment& e, const std::vector<Level>& levels,
-                           const std::vector<Positions>& placed, ConfigErrors& errors) {
-  for (const auto& [key, part] : conditions)
-    for (std::size_t k = 0; k < count(e.parameters, part); ++k) {
-      const ConfigNode* written = e.source.find(key);
-      check_shared(e.parameters, part, k, k, written->items[k].where, written, levels, placed, errors);
-    }
-}
-
-void check_shared_vertices(const ExperimentParameters& p, LoadPart part, std::size_t k, const Location& where,
+void check_shared_vertices(const Experiment& e, const ExperimentParameters& load,
                            const std::vector<Level>& levels, const std::vector<Positions>& placed,
-                           ConfigErrors& errors) {
-  check_shared(p, part, k, count(p, part), where, nullptr, levels, placed, errors);
-}
-
-void check_selection(const ExperimentParameters& parameters, LoadPart part, std::size_t k,
-                     const Location& where, const std::vector<Level>& levels, ConfigErrors& errors) {
-  const VertexSelection& p = selection(parameters, part, k);
-  const Level& coarsest = levels[0];
-  const std::string name = name_of(parameters, part, k);
-  const bool by_index = p.region == "vertices";
-  if (by_index ? p.vertices.empty() : selected_vertices(p, coarsest, coarsest).empty())
-    errors.push_back(
-        {where, name + " selects no vertex of the coarsest level; " +
-                    (by_index ? "list some under \"vertices\""
-                              : "widen its region; the rest shape, in which it counts, spans " +
-                                    point_text(coarsest.rest.vertices.colwise().minCoeff()) + " to " +
-                                    point_text(coarsest.rest.vertices.colwise().maxCoeff()) + " m")});
-  else if (!by_index)
-    for (const Level& level : levels)
-      if (selected_vertices(p, level, coarsest).empty()) {
-        errors.push_back({where, name + " selects vertices of the coarsest level, but none of level " +
-                                     std::to_string(level.index) +
-                                     ", whose rest positions the refiner moves; widen its region, or select "
-                                     "by \"nearest\" or \"vertices\""});
+                           ConfigErrors& errors, const KeyTarget* only) {
+  for_each_condition(e, only, [&](LoadPart part, std::size_t k, const std::vector<ConfigNode>& written) {
+    const auto name = [&](std::size_t of) {
+      return name_of(load, part, of, only ? 0 : written[of].where.line);
+    };
+    for (std::size_t j = 0; j < (only ? written.size() : k); ++j)  // without a key each pair once
+      for (std::size_t l = 0; l < levels.size() && j != k; ++l) {
+        const std::string why =
+            conflict(selection(load, part, k), selection(load, part, j), levels[l], levels[0], placed[l]);
+        if (why.empty()) continue;
+        errors.push_back({written[k].where, name(k) + " and " + name(j) + " " + why});
         break;
       }
-  for (int v : p.vertices)
-    if (by_index && (v < 0 || v >= coarsest.vertex_count()))
-      errors.push_back({where, name + " names vertex " + std::to_string(v) +
-                                   ", but those of the coarsest level go from 0 to " +
-                                   std::to_string(coarsest.vertex_count() - 1)});
+  });
 }
 
 std::vector<DirichletVertex> dirichlet_vertices(const ExperimentParameters& p, const Level& level,

@@ -9,22 +9,18 @@ namespace drape {
 std::vector<int> selected_vertices(const VertexSelection& selection, const Level& level,
                                    const Level& coarsest);
 
-/// Appends an error for every pin and handle that selects no vertex of a level, or one that does not exist.
-void check_selections(const Experiment& experiment, const std::vector<Level>& levels, ConfigErrors& errors);
+/// Appends an error for every pin and handle that selects no vertex of a level, or one that does not exist,
+/// under a load with these parameters. With `only`, looks at the one that this target of a key names.
+void check_selections(const Experiment& experiment, const ExperimentParameters& load,
+                      const std::vector<Level>& levels, ConfigErrors& errors,
+                      const KeyTarget* only = nullptr);
 
 /// Appends an error for every two pins, and every two handles, that select the same vertex of a level and
-/// have different targets for it. `placed` has the positions, n×3 [m] for each level, where those without a
-/// transform hold.
-void check_shared_vertices(const Experiment& experiment, const std::vector<Level>& levels,
-                           const std::vector<Positions>& placed, ConfigErrors& errors);
-
-/// The same two checks for pin or handle k, as `part` says, under a load with these parameters. The errors
-/// have `where` as location.
-void check_selection(const ExperimentParameters& parameters, LoadPart part, std::size_t k,
-                     const Location& where, const std::vector<Level>& levels, ConfigErrors& errors);
-void check_shared_vertices(const ExperimentParameters& parameters, LoadPart part, std::size_t k,
-                           const Location& where, const std::vector<Level>& levels,
-                           const std::vector<Positions>& placed, ConfigErrors& errors);
+/// have different targets for it, under such a load. `placed` has the positions, n×3 [m] for each level,
+/// where those without a transform hold.
+void check_shared_vertices(const Experiment& experiment, const ExperimentParameters& load,
+                           const std::vector<Level>& levels, const std::vector<Positions>& placed,
+                           ConfigErrors& errors, const KeyTarget* only = nullptr);
 
 /// The Dirichlet vertices of a level with their targets [m]. Of several pins that select a vertex the last
 /// one counts. Throws std::runtime_error naming two pins that want it at different places, or a pin that

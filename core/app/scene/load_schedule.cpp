@@ -56,7 +56,6 @@ void check_on_levels(const Experiment& e, const Scene& scene, const LoadSchedule
   const std::vector<Level>& levels = scene.hierarchy.levels;
   for (const ScheduleKey& key : e.parameters.schedule.keys) {
     const LoadPart part = key.targets[0].part;
-    const std::size_t item = key.targets[0].item;
     if (part == LoadPart::contact) continue;
     const bool of_vertices = part == LoadPart::pins || part == LoadPart::handles;
     const Location& where = key.written.where;
@@ -79,14 +78,14 @@ void check_on_levels(const Experiment& e, const Scene& scene, const LoadSchedule
       return true;
     };
     const bool bound = hold_at(key.times, [&](const LoadState& load, ConfigErrors& own) {
-      if (of_vertices) check_selection(*load.parameters, part, item, where, levels, own);
+      if (of_vertices) check_selections(e, *load.parameters, levels, own, &key.targets[0]);
       if (!own.empty() || part == LoadPart::pins) return;
       for (const auto& first : scene.models)  // throws for an energy that load stepping could not bind
         LevelModel(first->level(), load.parameters->material, load.energies, {}, {}, first.get());
     });
     if (bound && of_vertices)
       hold_at(times_with_between(key.times), [&](const LoadState& load, ConfigErrors& own) {
-        check_shared_vertices(*load.parameters, part, item, where, levels, scene.placed, own);
+        check_shared_vertices(e, *load.parameters, levels, scene.placed, own, &key.targets[0]);
       });
   }
 }

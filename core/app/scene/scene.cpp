@@ -155,13 +155,13 @@ std::unique_ptr<Scene> build_scene(const Experiment& e, ConfigErrors& errors,
     return nullptr;
   }
   const Level& coarsest = scene->hierarchy.levels[0];
-  check_selections(e, scene->hierarchy.levels, errors);
+  check_selections(e, p, scene->hierarchy.levels, errors);
   const std::vector<Positions> shapes = start_shapes(e, scene->hierarchy, errors);
   if (!errors.empty()) return nullptr;
   scene->energies = e.energies;
   for (const Level& level : scene->hierarchy.levels)
     scene->placed.push_back(make_start(level.rest.vertices, shapes[level.index], p.start, 0));
-  check_shared_vertices(e, scene->hierarchy.levels, scene->placed, errors);
+  check_shared_vertices(e, p, scene->hierarchy.levels, scene->placed, errors);
   if (!errors.empty()) return nullptr;
   if (auto handles = handles_energy(p, coarsest, scene->placed))
     scene->energies.push_back({"handles", std::move(handles)});
