@@ -32,29 +32,24 @@ double gravity_of(const LevelModel& model, const std::vector<NamedEnergy>& energ
   return gravity;
 }
 
-void add_edges(const Level& level, SceneSummary& summary) {
+/// The lengths of a level's edges with its vertices at x [m].
+Eigen::VectorXd edge_lengths(const Level& level, const Positions& x) {
   const auto& edges = level.topology.edges;
-  std::vector<double> lengths(edges.rows());
-  for (Eigen::Index e = 0; e < edges.rows(); ++e)
-    lengths[e] = (level.rest.vertices.row(edges(e, 0)) - level.rest.vertices.row(edges(e, 1))).norm();
-  const auto middle = lengths.begin() + std::ssize(lengths) / 2;
-  std::nth_element(lengths.begin(), middle, lengths.end());
-  summary.median_edge = *middle;
-  summary.longest_edge = *std::max_element(middle, lengths.end());
-  summary.shortest_edge = *std::min_element(lengths.begin(), middle + 1);
-  summary.level = level.index;
+  return (x(edges.col(0), Eigen::all) - x(edges.col(1), Eigen::all)).rowwise().norm();
 }
 
-double stretch_of(const Level& level, const Positions& start) {
-  const auto& edges = level.topology.edges;
-  std::vector<double> stretch(edges.rows());
-  for (Eigen::Index e = 0; e < edges.rows(); ++e) {
-    const auto length = [&](const Positions& x) { return (x.row(edges(e, 0)) - x.row(edges(e, 1))).norm(); };
-    stretch[e] = length(start) / length(level.rest.vertices);
-  }
-  const auto middle = stretch.begin() + std::ssize(stretch) / 2;
-  std::nth_element(stretch.begin(), middle, stretch.end());
+double median(Eigen::VectorXd values) {
+  const auto middle = values.begin() + values.size() / 2;
+  std::nth_element(values.begin(), middle, values.end());
   return *middle;
+}
+
+void add_edges(const Level& level, SceneSummary& summary) {
+  const Eigen::VectorXd lengths = edge_lengths(level, level.rest.vertices);
+  summary.shortest_edge = lengths.minCoeff();
+  summary.median_edge = median(lengths);
+  summary.longest_edge = lengths.maxCoeff();
+  summary.level = level.index;
 }
 
 void add_contacts(const LevelModel& model, const Positions& start, SceneSummary& summary) {
@@ -98,7 +93,8 @@ SceneSummary summary_of(const Scene& scene) {
   summary.parts = static_cast<int>(coarsest.level().topology.components().size());
   summary.mass = coarsest.masses().sum();
   add_edges(scene.hierarchy.levels.back(), summary);
-  summary.start_stretch = stretch_of(coarsest.level(), scene.placed[0]);
+  const Eigen::VectorXd rest = edge_lengths(coarsest.level(), coarsest.level().rest.vertices);
+  summary.start_stretch = median(edge_lengths(coarsest.level(), scene.placed[0]).cwiseQuotient(rest));
   const bool bends = std::ranges::any_of(
       scene.energies, [](const NamedEnergy& named) { return named.energy->role() == EnergyRole::bending; });
   const double gravity = gravity_of(coarsest, scene.energies), stiffness = 2 * bending_stiffness(material);
