@@ -44,36 +44,23 @@ std::size_t mark_empty(const std::vector<TriangleMesh>& frames, std::vector<char
   return count;
 }
 
-/// The number of each element among those that are kept; -1 for others.
-std::vector<int> numbers_of(const std::vector<char>& dropped, int& count) {
-  std::vector<int> numbers(dropped.size(), -1);
-  count = 0;
-  for (std::size_t i = 0; i < dropped.size(); ++i)
-    if (!dropped[i]) numbers[i] = count++;
-  return numbers;
-}
-
 /// The frames without these triangles and the vertices of no other.
 std::vector<TriangleMesh> reduced(const std::vector<TriangleMesh>& frames,
                                   const std::vector<char>& dropped_triangles) {
-  const Triangles& old = frames[0].triangles;
-  std::vector<char> dropped_vertices(frames[0].vertices.rows(), 1);
-  for (Eigen::Index t = 0; t < old.rows(); ++t)
-    for (int k = 0; k < 3; ++k)
-      if (!dropped_triangles[t]) dropped_vertices[old(t, k)] = 0;
-  int vertex_count = 0, triangle_count = 0;
-  const std::vector<int> vertices = numbers_of(dropped_vertices, vertex_count),
-                         kept = numbers_of(dropped_triangles, triangle_count);
-  Triangles triangles(triangle_count, 3);
-  for (Eigen::Index t = 0; t < old.rows(); ++t)
-    for (int k = 0; k < 3; ++k)
-      if (kept[t] >= 0) triangles(kept[t], k) = vertices[old(t, k)];
-  std::vector<TriangleMesh> result;
-  for (const TriangleMesh& frame : frames) {
-    TriangleMesh& mesh = result.emplace_back(TriangleMesh{Positions(vertex_count, 3), triangles});
-    for (std::size_t v = 0; v < vertices.size(); ++v)
-      if (vertices[v] >= 0) mesh.vertices.row(vertices[v]) = frame.vertices.row(static_cast<Eigen::Index>(v));
+  std::vector<int> kept_triangles, kept_vertices, numbers(frames[0].vertices.rows(), -1);
+  for (int t = 0; t < std::ssize(dropped_triangles); ++t)
+    if (!dropped_triangles[t]) kept_triangles.push_back(t);
+  Triangles triangles = frames[0].triangles(kept_triangles, Eigen::all);
+  for (const int v : triangles.reshaped()) numbers[v] = 0;
+  for (int v = 0; v < std::ssize(numbers); ++v) {
+    if (numbers[v] < 0) continue;
+    numbers[v] = static_cast<int>(kept_vertices.size());
+    kept_vertices.push_back(v);
   }
+  for (int& v : triangles.reshaped()) v = numbers[v];
+  std::vector<TriangleMesh> result;
+  for (const TriangleMesh& frame : frames)
+    result.push_back({frame.vertices(kept_vertices, Eigen::all), triangles});
   return result;
 }
 
