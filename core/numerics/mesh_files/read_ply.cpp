@@ -20,20 +20,25 @@ struct PlyFace {
   std::array<double, 3> warp{};
 };
 
+/// A scalar vertex property.
+struct PlyColumn {
+  std::string name;
+  std::vector<double> values;
+};
+
 constexpr std::array<const char*, 3> warp_names{"warp_x", "warp_y", "warp_z"};
 
 struct PlyContent {
   MeshBuilder mesh;
   std::vector<PlyFace> faces;
-  bool has_warp = false;                     ///< of the faces
-  std::vector<double> warp;                  ///< 3m, or none
-  std::vector<std::string> names;            ///< scalar vertex properties
-  std::vector<std::vector<double>> columns;  ///< their values
+  bool has_warp = false;     ///< of the faces
+  std::vector<double> warp;  ///< 3m, or none
+  std::vector<PlyColumn> columns;
 
   /// The values of a scalar vertex property; null without one of this name.
   const std::vector<double>* column(const std::string& name) const {
-    const auto found = std::find(names.begin(), names.end(), name);
-    return found == names.end() ? nullptr : &columns[found - names.begin()];
+    const auto found = std::ranges::find(columns, name, &PlyColumn::name);
+    return found == columns.end() ? nullptr : &found->values;
   }
 };
 
@@ -64,12 +69,12 @@ constexpr auto ignore = [](const auto&...) {};
 
 void read_vertices(PlyBody& body, const PlyElement& element, PlyContent& content) {
   for (const PlyProperty& p : element.properties)
-    if (!p.count_type) content.names.push_back(p.name);
-  content.columns.resize(content.names.size());
+    if (!p.count_type) content.columns.push_back({p.name, {}});
   std::size_t column = 0;
-  read_element(
-      body, element, [&](const PlyProperty&, double value) { content.columns[column++].push_back(value); },
-      ignore, [&] { column = 0; });
+  const auto on_number = [&](const PlyProperty&, double value) {
+    content.columns[column++].values.push_back(value);
+  };
+  read_element(body, element, on_number, ignore, [&] { column = 0; });
 }
 
 bool holds_corners(const PlyProperty& p) {
@@ -150,11 +155,8 @@ std::string counts_of(const PlyHeader& header) {
 PlyContent read_content(const std::filesystem::path& path, std::string_view bytes) {
   TextReader reader(path, bytes, '\0');
   const PlyHeader header = read_ply_header(reader);
-  const auto named = [&](const char* name) {
-    return std::count_if(header.elements.begin(), header.elements.end(),
-                         [&](const auto& e) { return e.name == name; });
-  };
-  if (named("vertex") != 1) reader.fail("the header must have one element 'vertex'");
+  const auto vertices = std::ranges::find(header.elements, std::string("vertex"), &PlyElement::name);
+  if (vertices == header.elements.end()) reader.fail("the header must have one element 'vertex'");
   for (const PlyElement& e : header.elements)
     if ((e.name == "face" || e.name == "tristrips") && e.count > 0 &&
         std::count_if(e.properties.begin(), e.properties.end(), holds_corners) != 1)
@@ -162,9 +164,7 @@ PlyContent read_content(const std::filesystem::path& path, std::string_view byte
   reader.set_note(counts_of(header));
 
   PlyContent content;
-  int vertex_count = 0;
-  for (const PlyElement& element : header.elements)
-    if (element.name == "vertex") vertex_count = element.count;
+  const int vertex_count = vertices->count;
   PlyBody body(reader, bytes, header.format, path);
   for (const PlyElement& element : header.elements) {
     if (element.name == "vertex")
@@ -181,14 +181,14 @@ PlyContent read_content(const std::filesystem::path& path, std::string_view byte
   content.mesh.coordinates.resize(3 * static_cast<std::size_t>(vertex_count));
   for (int axis = 0; axis < 3; ++axis) {
     const std::string name(1, "xyz"[axis]);
-    const std::vector<double>* found = content.column(name);
-    if (!found) refuse_path(path, "vertices have no property '" + name + "'");
-    const std::vector<double>& column = *found;
-    for (std::size_t v = 0; v < column.size(); ++v) {
-      if (!std::isfinite(column[v]))
+    const std::vector<double>* values = content.column(name);
+    if (!values) refuse_path(path, "vertices have no property '" + name + "'");
+    for (std::size_t v = 0; v < values->size(); ++v) {
+      const double x = (*values)[v];
+      if (!std::isfinite(x))
         refuse_path(path,
                     "vertex " + std::to_string(v) + " (counted from 0) has a coordinate that is not finite");
-      content.mesh.coordinates[3 * v + axis] = column[v];
+      content.mesh.coordinates[3 * v + axis] = x;
     }
   }
   for (const PlyFace& face : content.faces) {
@@ -226,12 +226,9 @@ TriangleMesh read_ply(const std::filesystem::path& path, std::string_view bytes)
 VertexFields read_ply_fields(const std::filesystem::path& path) {
   const PlyContent content = read_content(path, read_file(path));
   VertexFields fields;
-  for (std::size_t i = 0; i < content.names.size(); ++i) {
-    const std::string& name = content.names[i];
-    const auto& column = content.columns[i];
-    if (name == "x" || name == "y" || name == "z") continue;
-    fields.push_back({name, Eigen::Map<const Eigen::VectorXd>(column.data(), column.size())});
-  }
+  for (const auto& [name, values] : content.columns)
+    if (name != "x" && name != "y" && name != "z")
+      fields.push_back({name, Eigen::Map<const Eigen::VectorXd>(values.data(), std::ssize(values))});
   return fields;
 }
 
