@@ -1,5 +1,7 @@
 // The recorder's job at the end of a method: metrics of its levels and of pairs of them.
 
+#include <algorithm>
+
 #include "core/app/run/recorder.h"
 #include "core/app/run/recorder_files.h"
 #include "core/kernel/files/file.h"
@@ -74,7 +76,7 @@ void Recorder::method_finished(const std::vector<LevelResult>& results,
   Outcome worst = Outcome::converged;
   for (std::size_t i = 0; i < results.size(); ++i) {
     const LevelResult& r = results[i];
-    worst = worse_of(worst, r.outcome);
+    worst = std::max(worst, r.outcome);
     Json& state = entry["levels"][i];
     const LevelModel model = scene_.model(r.level)->with_stiffness(r.contact_stiffness);
     for (const auto& [name, metric] : experiment_.metrics)

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <algorithm>
 #include <map>
 #include <memory>
 #include <optional>
@@ -46,7 +45,6 @@ const char* to_string(Outcome outcome);
 inline bool has_converged(Outcome outcome) { return outcome <= Outcome::converged_to_rounding; }
 /// The same for outcomes by name.
 bool has_converged(const std::string& outcome);
-inline Outcome worse_of(Outcome a, Outcome b) { return std::max(a, b); }
 
 /// One Newton iteration, for observers.
 struct IterationRow {
