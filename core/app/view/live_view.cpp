@@ -30,11 +30,10 @@ LiveView::LiveView(const Experiment& experiment, const Scene& scene, const std::
                   blocks_[name] = std::make_shared<const std::string>(std::move(bytes));
                 }) {
   for (const auto& [name, solver] : experiment.methods)
-    if (methods.empty() || is_one_of(name, methods)) {
-      methods_.push_back(name), styles_.push_back(solver_style(experiment.solver_type(name)));
-      tolerances_.push_back(newton_number(experiment.resolved, name, "force_tolerance")
-                                .value_or(experiment.parameters.newton.force_tolerance));
-    }
+    if (methods.empty() || is_one_of(name, methods))
+      methods_.push_back({name, solver_style(experiment.solver_type(name)),
+                          newton_number(experiment.resolved, name, "force_tolerance")
+                              .value_or(experiment.parameters.newton.force_tolerance)});
   server_ = std::make_unique<LiveServer>(
       port, LiveAnswers{page(title_ + ", live", {{"kind", "live"}, {"title", title_}}),
                         [this](long version, std::size_t rows) { return news(version, rows); },
@@ -44,7 +43,7 @@ LiveView::LiveView(const Experiment& experiment, const Scene& scene, const std::
 
 void LiveView::method_started(const std::string& method) {
   const std::lock_guard lock(mutex_);
-  method_ = static_cast<int>(std::find(methods_.begin(), methods_.end(), method) - methods_.begin());
+  method_ = static_cast<int>(std::ranges::find(methods_, method, &Method::name) - methods_.begin());
   ++version_;
 }
 
@@ -148,13 +147,13 @@ std::string LiveView::news(long version, std::size_t rows) {
       if (view.sent == view.name) continue;
       forget_blocks(std::exchange(view.sent_before, std::exchange(view.sent, view.name)));
     }
-    methods.push_back(
-        {{"name", methods_[m]}, {"style", styles_[m]}, {"tolerance", tolerances_[m]}, {"levels", levels}});
+    const auto& [name, style, tolerance] = methods_[m];
+    methods.push_back({{"name", name}, {"style", style}, {"tolerance", tolerance}, {"levels", levels}});
   }
   Json news = document_.document(title_, methods);
   news["version"] = version_;
   news["outcome"] = outcome_;
-  news["method"] = method_ < 0 ? "" : methods_[method_];
+  news["method"] = method_ < 0 ? "" : methods_[method_].name;
   news["level"] = level_;
   news["finest"] = finest_;
   news["first_row"] = std::min(rows, rows_.size());

@@ -35,6 +35,11 @@ class LiveView : public Observer {
 
  private:
   using Json = ViewDocument::Json;
+  struct Method {
+    std::string name;
+    int style;
+    double tolerance;  // of the force residual
+  };
   /// What the page has of a method and level.
   struct LevelView {
     std::string status = "running";
@@ -53,9 +58,7 @@ class LiveView : public Observer {
 
   const Scene& scene_;
   const std::string title_;
-  std::vector<std::string> methods_;
-  std::vector<int> styles_;         // of the methods
-  std::vector<double> tolerances_;  // of the force residual, of the methods
+  std::vector<Method> methods_;
   int finest_ = 0;
 
   std::atomic<bool> stop_ = false, refine_ = false;
