@@ -179,12 +179,7 @@ ConfigNode* step(ConfigNode& node, const std::string& word, const Location& wher
     const auto index = node.index_of(word);
     return index ? &node.items[*index] : nullptr;
   }
-  if (node.kind == Kind::scalar) {
-    ConfigNode map;
-    map.where = node.where;
-    map.add("type", node);
-    node = map;
-  }
+  if (node.kind == Kind::scalar) node = node.as_map("type");
   for (auto& [key, value] : node.entries)
     if (key == word) return &value;
   ConfigNode value;

@@ -138,6 +138,14 @@ const std::string& ConfigNode::plugin_name() const {
   return (type ? *type : *this).scalar;
 }
 
+ConfigNode ConfigNode::as_map(const std::string& key) const {
+  if (kind != Kind::scalar) return *this;
+  ConfigNode map;
+  map.where = where;
+  map.add(key, *this);
+  return map;
+}
+
 void ConfigNode::add(const std::string& key, ConfigNode value) {
   kind = Kind::map;
   key_locations.push_back(value.where);

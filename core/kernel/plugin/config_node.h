@@ -44,6 +44,8 @@ struct ConfigNode {
   /// The plugin that the node chooses: a scalar's text, or that of a map's `type`; empty for others.
   const std::string& plugin_name() const;
 
+  /// The node itself; for a scalar, the map that has it as the value of `key`, at the scalar's location.
+  ConfigNode as_map(const std::string& key) const;
   void add(const std::string& key, ConfigNode value);  ///< appends an entry, making a null node a map
   /// Removes a map's first entry of this key. Returns the key's location; nothing without the entry.
   std::optional<Location> remove(const std::string& key);

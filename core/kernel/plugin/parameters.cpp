@@ -52,9 +52,7 @@ std::string scalar_fault(const std::string& type, const ConfigNode& node, const 
   if (type == "boolean")
     return plain && (node.scalar == "true" || node.scalar == "false") ? "" : "true or false";
   if (node.kind != NodeKind::scalar) return p.choices.empty() ? "text" : quoted_choice(p.choices);
-  const bool known =
-      p.choices.empty() || std::find(p.choices.begin(), p.choices.end(), node.scalar) != p.choices.end();
-  return known ? "" : quoted_choice(p.choices);
+  return p.choices.empty() || is_one_of(node.scalar, p.choices) ? "" : quoted_choice(p.choices);
 }
 
 void check_scalar(const std::string& type, const std::string& label, const ConfigNode& node,
@@ -144,13 +142,9 @@ bool check(const ConfigNode& node, const Parameter& p, ConfigErrors& errors) {
 /// `type` if it set another key of the section.
 ConfigNode expand_shorthand(const ConfigNode& node, const Parameter& p) {
   if (p.shorthand_key.empty()) return node;
-  ConfigNode map = node;
+  ConfigNode map = node.as_map(p.shorthand_key);
   for (auto& [key, value] : map.entries)
     if (key == "type") key = p.shorthand_key;
-  if (node.kind != NodeKind::scalar) return map;
-  map = ConfigNode();
-  map.where = node.where;
-  map.add(p.shorthand_key, node);
   return map;
 }
 

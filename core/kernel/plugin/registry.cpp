@@ -138,17 +138,11 @@ PluginParameters read_plugin_parameters(const Registry& registry, const std::str
                                         const std::function<void(const Schema&, void*)>& prepare) {
   PluginParameters read{find_plugin(registry, kind, node, errors), nullptr};
   if (!read.entry) return read;
-  ConfigNode map = node;
-  if (node.kind == ConfigNode::Kind::scalar) {
-    map = ConfigNode();
-    map.where = node.where;
-    map.add("type", node);
-  }
   const Schema schema = section_schema(*read.entry);
   const std::shared_ptr<void> values = read.entry->schema.fresh();
   const size_t before = errors.size();
   if (prepare) prepare(read.entry->schema, values.get());
-  schema.read(values.get(), map, errors);
+  schema.read(values.get(), node.as_map("type"), errors);
   if (resolved) *resolved = schema.write(values.get());
   if (errors.size() == before) read.values = values;
   return read;
