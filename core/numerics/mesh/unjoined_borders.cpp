@@ -27,13 +27,8 @@ bool has_only_pieces(const Triangles& triangles, const std::vector<int>& border)
 }
 
 /// A border edge with its triangle's corner opposite.
-struct BorderEdge {
-  int from, to, opposite;
-
-  static BorderEdge of(const Triangles& triangles, int half_edge) {
-    const HalfEdge e = HalfEdge::of(triangles, half_edge);
-    return {e.from, e.to, triangles(half_edge / 3, half_edge % 3)};
-  }
+struct BorderEdge : HalfEdge {
+  int opposite;
 };
 
 class JunctionSearch {
@@ -44,7 +39,8 @@ class JunctionSearch {
       parts_.unite(t[0], t[1]);
       parts_.unite(t[1], t[2]);
     }
-    for (const int h : border) edges_.push_back(BorderEdge::of(mesh.triangles, h));
+    for (const int h : border)
+      edges_.push_back({HalfEdge::of(mesh.triangles, h), mesh.triangles(h / 3, h % 3)});
     for (int i = 0; i < static_cast<int>(edges_.size()); ++i)
       for (const int v : {edges_[i].from, edges_[i].to}) {
         if (edges_at_[v].empty()) vertices_.push_back(v);

@@ -141,7 +141,7 @@ TriangleMesh read_off(const std::filesystem::path& path, std::string_view bytes)
     if (size < 3) reader.fail("a face needs at least three vertices");
     if (words.size() <= size) reader.fail("a face of " + std::to_string(size) + " vertices names fewer");
     face.clear();
-    for (std::size_t k = 1; k <= size; ++k) face.push_back(reader.index(words[k], vertex_count, "vertex"));
+    for (std::size_t k = 1; k <= size; ++k) face.push_back(reader.vertex(words[k], vertex_count));
     check_further_numbers(reader, size + 1, 4);  // a colour
     builder.add_face(face, {}, [&](const std::string& why) { reader.fail(why); });
   }

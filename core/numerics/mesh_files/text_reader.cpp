@@ -76,10 +76,10 @@ long long TextReader::integer(std::string_view word) const {
   return value;
 }
 
-int TextReader::index(std::string_view word, int limit, const std::string& what) const {
+int TextReader::vertex(std::string_view word, int vertex_count) const {
   const long long value = integer(word);
-  if (value < 0 || value >= limit)
-    fail(what + " " + std::to_string(value) + " is not in 0 … " + std::to_string(limit - 1));
+  if (value < 0 || value >= vertex_count)
+    fail("vertex " + std::to_string(value) + " is not in 0 … " + std::to_string(vertex_count - 1));
   return static_cast<int>(value);
 }
 

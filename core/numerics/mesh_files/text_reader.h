@@ -32,8 +32,8 @@ class TextReader {
   double number(std::string_view word) const;
   double coordinate(std::string_view word) const;  ///< a number that is finite
   long long integer(std::string_view word) const;
-  /// integer(word), which must lie in 0 … limit - 1; `what` names it in the error.
-  int index(std::string_view word, int limit, const std::string& what) const;
+  /// integer(word), a vertex, which must lie in 0 … vertex_count - 1.
+  int vertex(std::string_view word, int vertex_count) const;
 
   /// integer(word), a number of `things`, each of which takes at least a byte of the text.
   int count(std::string_view word, const std::string& things) const;
