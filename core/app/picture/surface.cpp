@@ -1,19 +1,15 @@
 #include "core/app/picture/surface.h"
 
-#include <Eigen/Geometry>
 #include <vector>
 
 namespace drape {
 
 Positions smooth_normals(const TriangleMesh& mesh) {
+  const Positions areas = area_vectors(mesh);
   Positions normals = Positions::Zero(mesh.vertices.rows(), 3);
-  for (Eigen::Index t = 0; t < mesh.triangles.rows(); ++t) {
-    const auto v = mesh.triangles.row(t);
-    const Eigen::RowVector3d a = mesh.vertices.row(v[0]);
-    const Eigen::RowVector3d n = (mesh.vertices.row(v[1]) - a).cross(mesh.vertices.row(v[2]) - a);
-    if (!n.allFinite()) continue;
-    for (int k = 0; k < 3; ++k) normals.row(v[k]) += n;
-  }
+  for (Eigen::Index t = 0; t < mesh.triangles.rows(); ++t)
+    if (areas.row(t).allFinite())
+      for (int k = 0; k < 3; ++k) normals.row(mesh.triangles(t, k)) += areas.row(t);
   for (Eigen::Index i = 0; i < normals.rows(); ++i) normals.row(i).normalize();
   return normals;
 }
@@ -21,14 +17,10 @@ Positions smooth_normals(const TriangleMesh& mesh) {
 TriangleMesh split_at_creases(const TriangleMesh& mesh, Positions& normals) {
   constexpr double cosine_of_crease = 0.766;
   const Eigen::Index m = mesh.triangles.rows();
-  Positions areas(m, 3);  // normals of the length of twice the area
+  const Positions areas = area_vectors(mesh);
   std::vector<std::vector<int>> around(mesh.vertices.rows());
-  for (Eigen::Index t = 0; t < m; ++t) {
-    const Eigen::RowVector3d a = mesh.vertices.row(mesh.triangles(t, 0));
-    areas.row(t) =
-        (mesh.vertices.row(mesh.triangles(t, 1)) - a).cross(mesh.vertices.row(mesh.triangles(t, 2)) - a);
+  for (Eigen::Index t = 0; t < m; ++t)
     for (int k = 0; k < 3; ++k) around[mesh.triangles(t, k)].push_back(static_cast<int>(t));
-  }
   TriangleMesh split{Positions(3 * m, 3), Triangles(m, 3)};
   normals = Positions::Zero(3 * m, 3);
   for (Eigen::Index t = 0; t < m; ++t)

@@ -11,17 +11,6 @@ namespace {
 constexpr double flatness = 1e-3;  // of the diagonal
 constexpr double steep = 0.7;      // a plane whose unit normal has a smaller |z| stands upright
 
-/// Normals of the triangles, of the length of twice the area.
-Positions area_vectors(const TriangleMesh& mesh) {
-  Positions areas(mesh.triangles.rows(), 3);
-  for (Eigen::Index t = 0; t < areas.rows(); ++t) {
-    const Eigen::RowVector3d a = mesh.vertices.row(mesh.triangles(t, 0));
-    areas.row(t) =
-        (mesh.vertices.row(mesh.triangles(t, 1)) - a).cross(mesh.vertices.row(mesh.triangles(t, 2)) - a);
-  }
-  return areas;
-}
-
 /// The unit normal of a flat mesh, towards the side that most of its area faces. Triangles may face either
 /// way, as those of a flat bag do.
 Eigen::Vector3d plane_normal(const TriangleMesh& mesh) {
