@@ -2,30 +2,31 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <numbers>
 
 #include "core/kernel/interfaces/level.h"
 #include "core/numerics/mesh/check.h"
+#include "core/numerics/mesh/same_entries.h"
 #include "core/numerics/patterns/delaunay.h"
 
 using namespace drape;
 
 namespace {
 
-/// The smallest angle of all triangles [degree].
-double smallest_angle(const TriangleMesh& mesh) {
-  double smallest = std::numbers::pi;
-  for (const auto& v : mesh.triangles.rowwise())
-    for (int k = 0; k < 3; ++k) {
-      const auto side_to = [&](int i) -> Eigen::Vector3d {
-        return mesh.vertices.row(v[i % 3]) - mesh.vertices.row(v[k]);
-      };
-      const Eigen::Vector3d a = side_to(k + 1), b = side_to(k + 2);
-      smallest = std::min(smallest, std::atan2(a.cross(b).norm(), a.dot(b)));
-    }
-  return smallest * 180 / std::numbers::pi;
+/// The angles of triangle t [degree].
+std::array<double, 3> angles_of(const TriangleMesh& mesh, Eigen::Index t) {
+  std::array<double, 3> angles;
+  for (int k = 0; k < 3; ++k) {
+    const auto side_to = [&](int i) -> Eigen::Vector3d {
+      return mesh.vertices.row(mesh.triangles(t, i % 3)) - mesh.vertices.row(mesh.triangles(t, k));
+    };
+    const Eigen::Vector3d a = side_to(k + 1), b = side_to(k + 2);
+    angles[k] = std::atan2(a.cross(b).norm(), a.dot(b)) * 180 / std::numbers::pi;
+  }
+  return angles;
 }
 
 /// Signed area of a flat mesh.
@@ -47,8 +48,7 @@ int euler_characteristic(const TriangleMesh& mesh) {
 }
 
 bool same(const TriangleMesh& a, const TriangleMesh& b) {
-  return a.vertices.rows() == b.vertices.rows() && a.triangles.rows() == b.triangles.rows() &&
-         a.vertices == b.vertices && a.triangles == b.triangles;
+  return same_entries(a.vertices, b.vertices) && same_entries(a.triangles, b.triangles);
 }
 
 /// What every pattern must be: valid, flat, counter-clockwise, in one piece with this many holes.
@@ -58,7 +58,10 @@ void require_pattern(const TriangleMesh& mesh, double area, int holes, double an
   CHECK((mesh.vertices.col(2).array() == 0).all());
   CHECK(signed_area(mesh) == Approx(area).epsilon(1e-12));
   CHECK(euler_characteristic(mesh) == 1 - holes);
-  CHECK(smallest_angle(mesh) > angle);
+  double smallest = 180;
+  for (Eigen::Index t = 0; t < mesh.triangles.rows(); ++t)
+    smallest = std::min(smallest, std::ranges::min(angles_of(mesh, t)));
+  CHECK(smallest > angle);
 }
 
 const Polygon unit_square{{0, 0}, {1, 0}, {1, 1}, {0, 1}};
@@ -88,25 +91,6 @@ TEST_CASE("diagonals go one way or criss-cross", "[generate]") {
   CHECK(valence(Diagonals::criss_cross, 14) == 8);  // (2, 2)
 }
 
-namespace {
-
-/// Angles of all triangles whose vertices all satisfy `inside` [degrees].
-template <class Inside>
-std::vector<double> angles_where(const TriangleMesh& mesh, const Inside& inside) {
-  std::vector<double> angles;
-  for (int t = 0; t < mesh.triangles.rows(); ++t)
-    for (int k = 0; k < 3; ++k) {
-      const Eigen::RowVector3d p = mesh.vertices.row(mesh.triangles(t, k)),
-                               a = mesh.vertices.row(mesh.triangles(t, (k + 1) % 3)),
-                               b = mesh.vertices.row(mesh.triangles(t, (k + 2) % 3));
-      if (!inside(p) || !inside(a) || !inside(b)) continue;
-      angles.push_back(std::acos((a - p).normalized().dot((b - p).normalized())) * 180 / std::numbers::pi);
-    }
-  return angles;
-}
-
-}  // namespace
-
 TEST_CASE("an equilateral triangulation has angles of 60 degrees, and halves at two sides", "[generate]") {
   const int columns = GENERATE(2, 7, 12), rows = GENERATE(2, 3, 9, 10);
   const double side = 0.1;
@@ -119,12 +103,15 @@ TEST_CASE("an equilateral triangulation has angles of 60 degrees, and halves at 
   CHECK(mesh.vertices.colwise().maxCoeff() == Eigen::RowVector3d(size.x(), size.y(), 0));
   CHECK(mesh.vertices.colwise().minCoeff() == Eigen::RowVector3d(0, 0, 0));
 
-  // Triangles that do not touch the sides x = 0 and x = width.
-  const auto inside = [&](const Eigen::RowVector3d& p) { return p.x() > 0 && p.x() < size.x(); };
-  for (const double angle : angles_where(mesh, inside)) CHECK(angle == Approx(60).epsilon(1e-9));
-  // All others, two a strip, have a half or a whole triangle's angles.
-  for (const double angle : angles_where(mesh, [](const Eigen::RowVector3d&) { return true; }))
-    CHECK(std::min({std::abs(angle - 30), std::abs(angle - 60), std::abs(angle - 90)}) < 1e-9);
+  // Triangles at the sides x = 0 and x = width, two a strip, have a half or a whole triangle's angles.
+  for (Eigen::Index t = 0; t < mesh.triangles.rows(); ++t) {
+    const Eigen::Vector3d x = mesh.vertices(mesh.triangles.row(t), 0);
+    const bool inside = x.minCoeff() > 0 && x.maxCoeff() < size.x();
+    for (const double angle : angles_of(mesh, t)) {
+      const double from_60 = std::abs(angle - 60);
+      CHECK((inside ? from_60 : std::min({std::abs(angle - 30), from_60, std::abs(angle - 90)})) < 1e-9);
+    }
+  }
 }
 
 TEST_CASE("an equilateral triangulation is had in about the asked number, nearly equilateral", "[generate]") {
