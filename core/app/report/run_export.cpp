@@ -227,7 +227,7 @@ std::vector<fs::path> export_run(const fs::path& folder, const fs::path& file, c
   if (extension == ".glb")
     write_file(file, gltf_of(run, method, levels, options.frames));
   else if (extension == ".vtp")
-    write_vtp(file, run.mesh(levels[0]->mesh), read_ply_fields(run.folder / levels[0]->mesh));
+    write_file(file, vtp_text(run.mesh(levels[0]->mesh), read_ply_fields(run.folder / levels[0]->mesh)));
   else
     write_mesh(file, cloth_mesh(run, *levels[0]));
   return {file};

@@ -171,7 +171,7 @@ bool Recorder::measure_errors(Observer& observer, bool cancelled) {
     scene_.load_stepping->restore(finest, s_.last_load);
   const Positions* reference = find_reference(observer, cancelled);
   if (reference) {
-    write_ply(folder_.file("reference.ply"), {*reference, scene_.hierarchy.levels[finest].rest.triangles});
+    write_mesh(folder_.file("reference.ply"), {*reference, scene_.hierarchy.levels[finest].rest.triangles});
     for (const RecordedState* state : finest_states())
       if (&state->x != reference) {
         s_.method = state->method;

@@ -10,7 +10,7 @@
 #include "core/kernel/files/file.h"
 #include "core/kernel/files/number_text.h"
 #include "core/kernel/files/string_utils.h"
-#include "core/numerics/mesh_files/io_formats.h"
+#include "core/numerics/mesh_files/io.h"
 
 namespace drape {
 

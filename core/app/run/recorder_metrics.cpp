@@ -6,7 +6,7 @@
 #include "core/app/run/recorder_files.h"
 #include "core/kernel/files/file.h"
 #include "core/kernel/files/message_text.h"
-#include "core/numerics/mesh_files/io_formats.h"
+#include "core/numerics/mesh_files/io.h"
 
 namespace drape {
 

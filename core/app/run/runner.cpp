@@ -183,7 +183,7 @@ bool run_experiment(const Experiment& experiment, const Scene& scene, const RunO
     begun.first_level = options.first_level;
     if (!options.warm_started_from.empty()) begun.start = scene.starts[options.first_level];
     write_file(folder.file("config.yaml"), begun.config);
-    if (!start_file.empty()) write_ply(folder.file("start.ply"), start);
+    if (!start_file.empty()) write_mesh(folder.file("start.ply"), start);
     Recorder recorder(folder, experiment, scene);
     if (options.verbosity != Verbosity::quiet)
       for (const std::string& line : remarks_of(experiment, scene))

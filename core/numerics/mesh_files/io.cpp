@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cctype>
-#include <set>
 #include <stdexcept>
 
 #include "core/kernel/files/file.h"
@@ -34,24 +33,9 @@ TriangleMesh read_mesh(const std::filesystem::path& path) {
   throw unknown_extension(path, ".obj, .off, .ply, .stl");
 }
 
-void require_fields(const std::filesystem::path& path, const TriangleMesh& mesh, const VertexFields& fields) {
-  std::set<std::string> names{"x", "y", "z"};
-  for (const VertexField& field : fields) {
-    const auto refuse = [&](const std::string& why) {
-      throw std::runtime_error("cannot write " + path.string() + ": field '" + field.name + "' " + why);
-    };
-    if (field.name.empty() || field.name.find_first_of(" \t\r\n\v\f") != std::string::npos)
-      refuse("needs a name without white space");
-    if (!names.insert(field.name).second) refuse("has the name of another field");
-    if (field.values.size() != mesh.vertices.rows())
-      refuse("has " + std::to_string(field.values.size()) + " values for " +
-             std::to_string(mesh.vertices.rows()) + " vertices");
-  }
-}
-
 void write_mesh(const std::filesystem::path& path, const TriangleMesh& mesh) {
   const std::string extension = lower_extension(path);
-  if (extension == ".ply") return write_ply(path, mesh);
+  if (extension == ".ply") return write_file(path, ply_bytes(mesh));
   if (extension == ".obj") return write_file(path, obj_text(mesh));
   throw unknown_extension(path, ".obj, .ply");
 }

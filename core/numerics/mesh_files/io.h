@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <filesystem>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "core/kernel/interfaces/triangle_mesh.h"
@@ -11,7 +12,7 @@ namespace drape {
 
 /// A named scalar per vertex.
 struct VertexField {
-  std::string name;        ///< not empty, no white space
+  std::string name;        ///< not empty, no white space; each of a mesh its own, none x, y or z
   Eigen::VectorXd values;  ///< n
 };
 using VertexFields = std::vector<VertexField>;
@@ -31,17 +32,16 @@ TriangleMesh read_mesh(const std::filesystem::path& path);
 /// All scalar vertex properties of a PLY other than x, y and z, in the file's order.
 VertexFields read_ply_fields(const std::filesystem::path& path);
 
-// Every writer writes path + ".part" and renames it. All throw std::runtime_error naming the path.
+/// A PLY, binary little endian, coordinates and fields in double; reads back to the same bits.
+std::string ply_bytes(const TriangleMesh& mesh, const VertexFields& fields = {});
+/// A VTK XML PolyData file, base64 inline, for ParaView; without texture coordinates, which VTK has no seams
+/// for.
+std::string vtp_text(const TriangleMesh& mesh, const VertexFields& fields = {});
+/// A ParaView collection: time [s] and a .vtp path relative to the collection, one pair per frame.
+std::string pvd_text(const std::vector<std::pair<double, std::string>>& frames);
 
-/// Writes PLY (as write_ply) or OBJ by extension; either reads back to the same bits, texture coordinates
-/// included.
+/// Writes PLY or OBJ by extension, as write_file; either reads back to the same bits, texture coordinates
+/// included. Throws std::runtime_error naming the path.
 void write_mesh(const std::filesystem::path& path, const TriangleMesh& mesh);
-
-/// Writes a PLY, binary little endian, coordinates and fields in double; reads back to the same bits.
-void write_ply(const std::filesystem::path& path, const TriangleMesh& mesh, const VertexFields& fields = {});
-
-/// Writes a VTK XML PolyData file, base64 inline, for ParaView; without texture coordinates, which VTK has
-/// no seams for.
-void write_vtp(const std::filesystem::path& path, const TriangleMesh& mesh, const VertexFields& fields = {});
 
 }  // namespace drape

@@ -1,9 +1,7 @@
 // PLY out: binary little endian, double.
 #include <cstdint>
 
-#include "core/kernel/files/file.h"
 #include "core/numerics/mesh_files/io.h"
-#include "core/numerics/mesh_files/io_formats.h"
 
 namespace drape {
 
@@ -34,11 +32,6 @@ std::string ply_bytes(const TriangleMesh& mesh, const VertexFields& fields) {
     for (int k = 0; with_warp && k < 3; ++k) append(mesh.warp(t, k));
   }
   return bytes;
-}
-
-void write_ply(const std::filesystem::path& path, const TriangleMesh& mesh, const VertexFields& fields) {
-  require_fields(path, mesh, fields);
-  write_file(path, ply_bytes(mesh, fields));
 }
 
 }  // namespace drape

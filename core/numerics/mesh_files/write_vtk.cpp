@@ -2,11 +2,9 @@
 // UInt64 byte count and the data, in one piece.
 #include <cstdint>
 
-#include "core/kernel/files/file.h"
 #include "core/kernel/files/number_text.h"
 #include "core/numerics/mesh_files/base64.h"
 #include "core/numerics/mesh_files/io.h"
-#include "core/numerics/mesh_files/io_formats.h"
 
 namespace drape {
 namespace {
@@ -48,11 +46,6 @@ std::string vtp_text(const TriangleMesh& mesh, const VertexFields& fields) {
           data_array("type=\"Int64\" Name=\"offsets\"", ends.data(), m) +
           "</Polys>\n</Piece>\n</PolyData>\n</VTKFile>\n";
   return text;
-}
-
-void write_vtp(const std::filesystem::path& path, const TriangleMesh& mesh, const VertexFields& fields) {
-  require_fields(path, mesh, fields);
-  write_file(path, vtp_text(mesh, fields));
 }
 
 std::string pvd_text(const std::vector<std::pair<double, std::string>>& frames) {

@@ -51,7 +51,7 @@ struct SampleRun {
     for (const char* name : {"levels", "fields", "rest"}) fs::create_directories(folder / name);
     const TriangleMesh rest[2] = {grid({1, 1}, 13, 13, Diagonals::one_way),
                                   split(grid({1, 1}, 13, 13, Diagonals::one_way))};
-    for (int l = 0; l < 2; ++l) write_ply(folder / "rest" / ("l" + std::to_string(l) + ".ply"), rest[l]);
+    for (int l = 0; l < 2; ++l) write_mesh(folder / "rest" / ("l" + std::to_string(l) + ".ply"), rest[l]);
     results = {{"experiment", "sample"},
                {"description", "A rippled sheet."},
                {"complete", true},
@@ -68,7 +68,7 @@ struct SampleRun {
       entry = {{"status", "converged"}, {"seconds", 12.345}, {"peak_memory_bytes", 123456789}};
       for (int l = 0; l < 2; ++l) {
         const std::string mesh = "levels/" + method + "_l" + std::to_string(l) + ".ply";
-        write_ply(folder / mesh, {rippled(rest[l].vertices, waves[l]), rest[l].triangles});
+        write_mesh(folder / mesh, {rippled(rest[l].vertices, waves[l]), rest[l].triangles});
         entry["levels"].push_back({{"level", l},
                                    {"vertices", rest[l].vertices.rows()},
                                    {"triangles", rest[l].triangles.rows()},
@@ -93,10 +93,10 @@ struct SampleRun {
       const std::string fields = "fields/" + method + "_l0_l1.ply";
       const Eigen::VectorXd coarse = ripple_curvature(rest[1].vertices, waves[0]);
       const Eigen::VectorXd fine = ripple_curvature(rest[1].vertices, waves[1]);
-      write_ply(folder / fields, {rippled(rest[1].vertices, waves[1]), rest[1].triangles},
-                {{"H_difference", (coarse - fine) / 2},
-                 {"principal_curvature", fine},
-                 {"principal_curvature_other", coarse}});
+      write_file(folder / fields, ply_bytes({rippled(rest[1].vertices, waves[1]), rest[1].triangles},
+                                            {{"H_difference", (coarse - fine) / 2},
+                                             {"principal_curvature", fine},
+                                             {"principal_curvature_other", coarse}}));
       const double factor = method == "pcs" ? 1 : 10;
       entry["consistency"].push_back({{"coarse", 0},
                                       {"fine", 1},
@@ -232,7 +232,7 @@ TEST_CASE("a report of a partial run has what there is") {
                     fs::file_size(run.folder / "levels/newton_l1.ply") / 2);
     TriangleMesh mesh = read_mesh(run.folder / "levels/pcs_l1.ply");
     mesh.vertices(5, 1) = std::nan("");
-    write_ply(run.folder / "levels/pcs_l1.ply", mesh);
+    write_mesh(run.folder / "levels/pcs_l1.ply", mesh);
     const std::string notes = run.data(true)["notes"].dump();
     CHECK(contains(notes, "newton_l1.ply"));
     CHECK(contains(notes, "pcs_l1.ply: vertex 5 (counted from 0) has a coordinate that is not finite"));

@@ -192,7 +192,7 @@ TEST_CASE("grain: a PLY file's faces may have directions of their own, which tur
     return warp;
   };
   mesh.warp = turning(0);
-  write_ply(folder / "cut.ply", mesh);
+  write_mesh(folder / "cut.ply", mesh);
   const auto rest_of = [&](const std::string& more) {
     return scene_from(experiment("{shape: file, file: " + (folder / "cut.ply").string() + more + "}"))
         .scene->hierarchy.levels[0]
