@@ -113,7 +113,7 @@ py::dict evaluate_metric(const SceneHandle& s, const std::string& name, int leve
   MetricResult result = without_gil([&] { return found->second->evaluate(input); });
   py::dict values;
   for (const MetricValue& value : result.values) values[py::str(value.name)] = value.value;
-  for (MetricField& field : result.fields) values[py::str(field.name)] = std::move(field.values);
+  for (VertexField& field : result.fields) values[py::str(field.name)] = std::move(field.values);
   return values;
 }
 

@@ -48,8 +48,7 @@ Recorder::Json Recorder::compare(int level, const Positions& x, const Positions&
     const MetricResult result =
         measure(name, *metric, {scene_.hierarchy.levels[level], *scene_.model(level), x, &other}, row);
     for (const MetricValue& v : result.values) at_dotted(row, v.name) = finite_or_null(v.value);
-    if (!fields) continue;
-    for (const MetricField& f : result.fields) fields->push_back({f.name, f.values});
+    if (fields) fields->insert(fields->end(), result.fields.begin(), result.fields.end());
   }
   return row;
 }

@@ -28,8 +28,8 @@ void require_values(const MetricDeclaration& declared, const std::vector<MetricV
   }
 }
 
-void require_fields(int vertices, const std::vector<MetricField>& fields) {
-  for (const MetricField& field : fields) {
+void require_fields(int vertices, const VertexFields& fields) {
+  for (const VertexField& field : fields) {
     if (!is_word(field.name) || field.name == "x" || field.name == "y" || field.name == "z")
       throw std::runtime_error("the field \"" + field.name +
                                "\" needs a name of letters, digits and underscores, other than x, y and z");

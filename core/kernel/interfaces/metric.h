@@ -1,6 +1,5 @@
 #pragma once
 
-#include <Eigen/Core>
 #include <algorithm>
 #include <string>
 #include <vector>
@@ -68,17 +67,11 @@ struct MetricValue {
   double value = 0;
 };
 
-/// One scalar for each vertex of the level. Those of pairs are written to fields/, for pictures; those of
-/// states are for callers of the library.
-struct MetricField {
-  std::string name;  ///< letters, digits and underscores, other than x, y and z
-  Eigen::VectorXd values;
-  std::string unit;
-};
-
 struct MetricResult {
   std::vector<MetricValue> values;
-  std::vector<MetricField> fields;
+  /// Of the level's vertices, with names of letters, digits and underscores. Those of pairs are written to
+  /// fields/, for pictures; those of states are for callers of the library.
+  VertexFields fields;
 };
 
 /// What a metric measures.

@@ -2,6 +2,8 @@
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
+#include <string>
+#include <vector>
 
 namespace drape {
 
@@ -34,6 +36,13 @@ struct TriangleMesh {
   CornerUv uv = {};     ///< m×6, or without rows
   Positions warp = {};  ///< m×3 unit vectors along a cloth's warp in its triangles; without rows, along x
 };
+
+/// A named scalar per vertex.
+struct VertexField {
+  std::string name;        ///< not empty, no white space; each of a mesh its own, none x, y or z
+  Eigen::VectorXd values;  ///< n
+};
+using VertexFields = std::vector<VertexField>;
 
 /// m×3 normals of the triangles, of the length of twice the area [m²].
 inline Positions area_vectors(const TriangleMesh& mesh) {

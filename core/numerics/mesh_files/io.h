@@ -1,6 +1,5 @@
 #pragma once
 
-#include <Eigen/Core>
 #include <filesystem>
 #include <string>
 #include <utility>
@@ -9,13 +8,6 @@
 #include "core/kernel/interfaces/triangle_mesh.h"
 
 namespace drape {
-
-/// A named scalar per vertex.
-struct VertexField {
-  std::string name;        ///< not empty, no white space; each of a mesh its own, none x, y or z
-  Eigen::VectorXd values;  ///< n
-};
-using VertexFields = std::vector<VertexField>;
 
 /// The extension, which names a file's format, in small letters.
 std::string lower_extension(const std::filesystem::path& path);

@@ -109,9 +109,9 @@ class CurvatureConsistency : public Metric {
              {"d_H_ddg", integral(other_ddg.mean, ddg.mean)},
              {"d_K_fit", integral(other_fit.gaussian, fit.gaussian)},
              {"d_K_ddg", integral(other_ddg.gaussian, ddg.gaussian)}},
-            {{"H_difference", other_fit.mean - fit.mean, "1/m"},
-             {"principal_curvature", strongest_curvature(fit), "1/m"},
-             {"principal_curvature_other", strongest_curvature(other_fit), "1/m"}}};
+            {{"H_difference", other_fit.mean - fit.mean},
+             {"principal_curvature", strongest_curvature(fit)},
+             {"principal_curvature_other", strongest_curvature(other_fit)}}};
   }
 
   RecentCurvatures curvatures_;

@@ -38,7 +38,7 @@ class Stretch : public Metric {
     return {{{"largest_stretch", largest},
              {"smallest_stretch", smallest},
              {"mean_stretch", weighted_sum / area_sum}},
-            {{"stretch", largest_stretch(input.level, x), "1"}}};
+            {{"stretch", largest_stretch(input.level, x)}}};
   }
 };
 

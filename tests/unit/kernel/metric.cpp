@@ -46,10 +46,10 @@ TEST_CASE("a metric's values are those that it declares, each in a place of its 
 }
 
 TEST_CASE("a metric's fields have a value for each vertex, and a name that a PLY file can have") {
-  CHECK(refusal({{}, {{"height", of_level, "m"}}}).empty());
-  CHECK(refusal({{}, {{"height", Eigen::VectorXd::Zero(3), "m"}}}) ==
+  CHECK(refusal({{}, {{"height", of_level}}}).empty());
+  CHECK(refusal({{}, {{"height", Eigen::VectorXd::Zero(3)}}}) ==
         "the field \"height\" has 3 values, the level 9 vertices");
-  CHECK_THAT(refusal({{}, {{"height", Eigen::VectorXd(), "m"}}}), Contains("has 0 values"));
+  CHECK_THAT(refusal({{}, {{"height", Eigen::VectorXd()}}}), Contains("has 0 values"));
   for (const char* name : {"", "x", "two words", "two\nlines"})
-    CHECK_THAT(refusal({{}, {{name, of_level, "m"}}}), Contains("needs a name of letters, digits"));
+    CHECK_THAT(refusal({{}, {{name, of_level}}}), Contains("needs a name of letters, digits"));
 }
