@@ -14,7 +14,7 @@ class SnapshotFile {
  public:
   SnapshotFile() = default;  ///< of no states
   /// Reads a file of `count` states of n vertices. Throws std::runtime_error if it is missing, has another
-  /// size or another checksum than the recorded one. Runs of earlier versions have recorded none.
+  /// size or another checksum than the recorded one, if there is one.
   SnapshotFile(const std::filesystem::path& file, std::size_t count, Eigen::Index n,
                std::optional<std::uint32_t> checksum);
 

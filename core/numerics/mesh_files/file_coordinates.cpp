@@ -1,7 +1,5 @@
 #include "core/numerics/mesh_files/file_coordinates.h"
 
-#include <stdexcept>
-
 namespace drape {
 
 void FileCoordinates::convert(Positions& x) const {
@@ -12,9 +10,6 @@ void FileCoordinates::convert(Positions& x) const {
     x /= 100;
   else if (unit == "inch")
     x *= 0.0254;
-  else if (unit != "m")
-    throw std::logic_error("no unit " + unit);
-  if (up != "y" && up != "z") throw std::logic_error("no axis " + up);
   if (up != "y") return;
   // A quarter turn about x, without the rounding of a sine: what is flat stays flat.
   x.col(1).swap(x.col(2));

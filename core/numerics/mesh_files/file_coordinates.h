@@ -12,7 +12,7 @@ struct FileCoordinates {
   std::string unit = "m";  ///< "mm", "cm", "m" or "inch"
   std::string up = "z";    ///< "y" or "z"
 
-  /// Converts coordinates of the file to metres with z up. Throws std::logic_error for another word.
+  /// Converts coordinates of the file to metres with z up.
   void convert(Positions& x) const;
   bool operator==(const FileCoordinates&) const = default;
 };

@@ -44,10 +44,7 @@ class PlyBody {
     end_line();
     const bool more = format_ == PlyFormat::ascii ? reader_.next_line()
                                                   : bytes_.find_first_not_of(" \t\r\n") != bytes_.npos;
-    if (!more) return;
-    const std::string message = "the file has data after the elements that its header declares";
-    if (format_ == PlyFormat::ascii) reader_.fail(message);
-    refuse_path(path_, message + reader_.note());
+    if (more) refuse("the file has data after the elements that its header declares");
   }
 
   double next(PlyType type) {
@@ -65,12 +62,15 @@ class PlyBody {
     return ply_decoders[static_cast<int>(type)](bytes);
   }
 
-  [[noreturn]] void fail(const std::string& message) const {
-    if (format_ == PlyFormat::ascii) reader_.fail(place() + ": " + message);
-    refuse_path(path_, place() + ": " + message + reader_.note());
-  }
+  /// The message begins with the element.
+  [[noreturn]] void fail(const std::string& message) const { refuse(place() + ": " + message); }
 
  private:
+  [[noreturn]] void refuse(const std::string& message) const {
+    if (format_ == PlyFormat::ascii) reader_.fail(message);
+    refuse_path(path_, message + reader_.note());
+  }
+
   /// An element of a text may take several lines, but shares none.
   void end_line() const {
     if (format_ == PlyFormat::ascii && reader_.has_words_left())
