@@ -2,7 +2,6 @@
 
 #include <Eigen/Core>
 #include <array>
-#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
@@ -17,9 +16,8 @@
 
 namespace drape {
 
-static_assert(std::endian::native == std::endian::little, "numbers are written as memory holds them");
-
-/// Takes values as bytes. `pass` below goes through a value in the same way to write and to read it.
+/// Takes values as bytes, as memory holds them. `pass` below goes through a value in the same way to write and
+/// to read it.
 struct ArchiveWriter {
   static constexpr bool reads = false;
   std::string bytes;

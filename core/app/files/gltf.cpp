@@ -1,21 +1,18 @@
 #include "core/app/files/gltf.h"
 
-#include <bit>
 #include <cstdint>
-#include <cstring>
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 #include <type_traits>
 
 #include "core/app/files/json_file.h"
+#include "core/kernel/files/file.h"
 #include "core/kernel/version.h"
 
 namespace drape {
 
 namespace {
-
-static_assert(std::endian::native == std::endian::little, "numbers are written as memory holds them");
 
 using Json = nlohmann::ordered_json;
 template <class Number, int columns>
@@ -81,10 +78,7 @@ class GlbWriter {
                                " MiB, and glTF takes 4096; export a single level, or without --frames");
     std::string all;
     all.reserve(size);
-    const auto number = [&](std::uint64_t value) {
-      const auto word = static_cast<std::uint32_t>(value);
-      all.append(reinterpret_cast<const char*>(&word), sizeof word);
-    };
+    const auto number = [&](std::uint64_t value) { append_bytes(all, static_cast<std::uint32_t>(value)); };
     all += "glTF";
     number(2);
     number(size);

@@ -1,13 +1,10 @@
 #include "core/app/files/snapshot_file.h"
 
-#include <bit>
 #include <cstring>
 
 #include "core/kernel/files/file.h"
 
 namespace drape {
-
-static_assert(std::endian::native == std::endian::little, "snapshots are written as they lie in memory");
 
 namespace {
 

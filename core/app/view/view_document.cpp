@@ -9,6 +9,7 @@
 #include <stdexcept>
 #include <tuple>
 
+#include "core/kernel/files/file.h"
 #include "core/numerics/elements/green_strain.h"
 #include "core/numerics/elements/vertex_fields.h"
 #include "core/numerics/mesh_files/base64.h"
@@ -31,12 +32,6 @@ ViewDocument::Json warp_arrows(const Level& level) {
 }
 
 constexpr double steps = 65535;
-
-template <class T>
-void append(std::string& bytes, T value) {
-  static_assert(__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__);
-  bytes.append(reinterpret_cast<const char*>(&value), sizeof value);
-}
 
 }  // namespace
 
@@ -129,15 +124,15 @@ std::string encode_positions(const Positions& x) {
   const Eigen::AlignedBox3f box = bounds.cast<float>();
   std::string bytes;
   bytes.reserve(24 + 6 * x.rows());
-  for (int k = 0; k < 3; ++k) append(bytes, box.min()[k]);
-  for (int k = 0; k < 3; ++k) append(bytes, box.sizes()[k]);
+  for (int k = 0; k < 3; ++k) append_bytes(bytes, box.min()[k]);
+  for (int k = 0; k < 3; ++k) append_bytes(bytes, box.sizes()[k]);
   for (int k = 0; k < 3; ++k) {
     const double lower = box.min()[k], size = box.sizes()[k];
     std::uint16_t before = 0;
     for (Eigen::Index i = 0; i < x.rows(); ++i) {
       const double place = size > 0 && std::isfinite(x(i, k)) ? (x(i, k) - lower) / size : 0;
       const auto q = static_cast<std::uint16_t>(std::lround(std::clamp(place, 0.0, 1.0) * steps));
-      append(bytes, static_cast<std::uint16_t>(q - before));
+      append_bytes(bytes, static_cast<std::uint16_t>(q - before));
       before = q;
     }
   }
@@ -150,7 +145,7 @@ std::string encode_triangles(const Triangles& triangles) {
   for (int k = 0; k < 3; ++k) {
     std::int32_t before = 0;
     for (Eigen::Index t = 0; t < triangles.rows(); ++t) {
-      append(bytes, static_cast<std::int32_t>(triangles(t, k) - before));
+      append_bytes(bytes, static_cast<std::int32_t>(triangles(t, k) - before));
       before = triangles(t, k);
     }
   }
@@ -160,11 +155,11 @@ std::string encode_triangles(const Triangles& triangles) {
 std::string encode_scalars(const Eigen::VectorXd& values, double low, double high) {
   std::string bytes;
   bytes.reserve(8 + values.size());
-  append(bytes, static_cast<float>(low));
-  append(bytes, static_cast<float>(high));
+  append_bytes(bytes, static_cast<float>(low));
+  append_bytes(bytes, static_cast<float>(high));
   for (const double value : values) {
     const double place = std::clamp((value - low) / (high - low), 0.0, 1.0);
-    append(bytes, static_cast<std::uint8_t>(std::isnan(place) ? 255 : std::lround(place * 254)));
+    append_bytes(bytes, static_cast<std::uint8_t>(std::isnan(place) ? 255 : std::lround(place * 254)));
   }
   return bytes;
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <bit>
 #include <cstdint>
 #include <filesystem>
 #include <stdexcept>
@@ -7,6 +8,14 @@
 #include <string_view>
 
 namespace drape {
+
+static_assert(std::endian::native == std::endian::little, "binary files hold numbers as memory does");
+
+/// Appends a number as memory holds it.
+template <class Number>
+void append_bytes(std::string& bytes, Number number) {
+  bytes.append(reinterpret_cast<const char*>(&number), sizeof number);
+}
 
 /// A file that cannot be read. `what()` names it; `cause` alone does not.
 struct FileError : std::runtime_error {

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <bit>
 #include <filesystem>
 #include <string>
 #include <string_view>
@@ -8,8 +7,6 @@
 #include "core/kernel/interfaces/triangle_mesh.h"
 
 namespace drape {
-
-static_assert(std::endian::native == std::endian::little, "binary formats hold numbers as memory does");
 
 // The formats behind read_mesh and write_mesh; bytes are a file's whole contents, the path is for errors.
 

@@ -1,6 +1,7 @@
 // PLY out: binary little endian, double.
 #include <cstdint>
 
+#include "core/kernel/files/file.h"
 #include "core/numerics/mesh_files/io.h"
 
 namespace drape {
@@ -17,9 +18,7 @@ std::string ply_bytes(const TriangleMesh& mesh, const VertexFields& fields) {
   const bool with_warp = mesh.warp.rows() > 0;
   if (with_warp) bytes += "property double warp_x\nproperty double warp_y\nproperty double warp_z\n";
   bytes += "end_header\n";
-  const auto append = [&](auto number) {
-    bytes.append(reinterpret_cast<const char*>(&number), sizeof number);
-  };
+  const auto append = [&](auto number) { append_bytes(bytes, number); };
   for (int v = 0; v < mesh.vertices.rows(); ++v) {
     for (int k = 0; k < 3; ++k) append(mesh.vertices(v, k));
     for (const VertexField& field : fields) append(field.values[v]);
