@@ -23,9 +23,7 @@ std::vector<fs::path> libraries_of(const fs::path& directory) {
   std::error_code error;
   for (const auto& file : fs::directory_iterator(directory, error))
     if (file.path().extension() == ".so") libraries.push_back(file.path());
-  if (error)
-    throw std::runtime_error(directory.string() +
-                             ": the folder of plugins cannot be read: " + error.message());
+  if (error) refuse_path(directory, "the folder of plugins cannot be read: " + error.message());
   std::sort(libraries.begin(), libraries.end());
   return libraries;
 }
@@ -69,27 +67,27 @@ auto call(const std::string& path, const char* what, const Call& function) {
 void load(Registry& registry, const fs::path& library) {
   const std::string path = library.string();
   const std::string unfit = fault_of(library);
-  if (!unfit.empty()) throw std::runtime_error(path + ": cannot be loaded: " + unfit);
+  if (!unfit.empty()) refuse_path(library, "cannot be loaded: " + unfit);
   // A name without a slash would be looked for in the system's folders.
   void* handle = dlopen(fs::absolute(library).c_str(), RTLD_NOW | RTLD_LOCAL);
-  if (!handle) throw std::runtime_error(path + ": cannot be loaded: " + dlerror());
+  if (!handle) refuse_path(library, std::string("cannot be loaded: ") + dlerror());
   const auto entry_point =
       reinterpret_cast<const DrapePluginDescriptor* (*)()>(dlsym(handle, "drape_plugin"));
   const auto refuse = [&](const std::string& why) {
-    throw std::runtime_error(path + ": is not a drape plugin: " + why +
+    refuse_path(library, "is not a drape plugin: " + why +
                              " (see DRAPE_PLUGIN in core/kernel/plugin/plugin.h)");
   };
   if (!entry_point) refuse("it exports no function drape_plugin");
   const DrapePluginDescriptor* descriptor = call(path, "function drape_plugin", entry_point);
   if (!descriptor) refuse("its function drape_plugin returns null");
   const std::string fault = mismatch(*descriptor);
-  if (!fault.empty()) throw std::runtime_error(path + ": does not fit this drape, rebuild it: " + fault);
+  if (!fault.empty()) refuse_path(library, "does not fit this drape, rebuild it: " + fault);
   if (!descriptor->register_entries) refuse("its descriptor has no function that names its entries");
   registry.current_library = path;
   const std::size_t before = registry.entries().size();
   call(path, "DRAPE_PLUGIN", [&] { descriptor->register_entries(registry); });
   if (registry.entries().size() == before)
-    throw std::runtime_error(path + ": names no entries; add some in its DRAPE_PLUGIN");
+    refuse_path(library, "names no entries; add some in its DRAPE_PLUGIN");
 }
 
 }  // namespace
