@@ -66,7 +66,8 @@ TEST_CASE("parallel_sum has the same bits with any number of threads") {
       return s;
     });
   };
-  REQUIRE(same_with_any_threads(sum, {1, 2, 2, 2, 3, 3, 3, 5, 5, 5}) != 0);
+  const double same = same_with_any_threads(sum, {1, 2, 2, 2, 3, 3, 3, 5, 5, 5});
+  REQUIRE(same != 0);
   CHECK(parallel_sum(0, 5, [](int, int) { return 1.0; }) == 0);
 }
 
