@@ -79,9 +79,7 @@ py::array_t<double> real_array(const py::handle& values, const std::string& name
   return py::array_t<double>::ensure(array_of_kind(values, "fiu", name, "real numbers"));
 }
 
-Eigen::Matrix<int, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> integer_rows(const py::handle& values,
-                                                                                 Eigen::Index columns,
-                                                                                 const std::string& name) {
+Stencils integer_rows(const py::handle& values, Eigen::Index columns, const std::string& name) {
   const auto array = py::array_t<std::int64_t>::ensure(array_of_kind(values, "iu", name, "integers"));
   if (array.ndim() != 2 || (columns >= 0 && array.shape(1) != columns))
     throw py::value_error(name + " must have the shape (m, " +

@@ -6,6 +6,7 @@
 
 #include <string>
 
+#include "core/kernel/interfaces/block_sink.h"
 #include "core/kernel/interfaces/triangle_mesh.h"
 #include "core/kernel/plugin/config_node.h"
 #include "core/numerics/linear_algebra/block_matrix.h"
@@ -35,9 +36,7 @@ T cast_to(const py::handle& value, const std::string& what, const std::string& w
 py::array_t<double> real_array(const py::handle& values, const std::string& name);
 /// Rows of integers, all within int. Throws TypeError, or ValueError for another shape: `columns` -1 allows
 /// any number.
-Eigen::Matrix<int, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> integer_rows(const py::handle& values,
-                                                                                 Eigen::Index columns,
-                                                                                 const std::string& name);
+Stencils integer_rows(const py::handle& values, Eigen::Index columns, const std::string& name);
 
 /// Positions that Python gives: n×3 real numbers of any type. A wrong type raises TypeError, a wrong shape
 /// ValueError.
