@@ -101,11 +101,11 @@ std::string status_without_results(const RunRecord& run) {
 }
 
 bool passes(const RunRecord& run, const std::string& status, const TableRow& row) {
-  const Json energy = row.value("energy_released", Json()), crossing = row.value("intersections", Json());
+  const Json &energy = member_of(row, "energy_released"), &crossing = member_of(row, "intersections");
   if (!run.data && has_converged(status)) return false;  // its results are gone
   if (run.data && (energy.is_null() || (crossing.is_number() && crossing.get<double>() > 0))) return false;
   const bool expected = status == run.expected || (run.expected == "converged" && has_converged(status));
-  return expected && row.value("message", "").find(run.expected_message) != std::string::npos;
+  return expected && text_member(row, "message").find(run.expected_message) != std::string::npos;
 }
 
 /// The keys that the variations of sweeps set. Methods and seeds have columns of their own.

@@ -40,7 +40,7 @@ std::string csv_cell(const Json& value) {
 /// Whether the column has words: it is aligned to the left.
 bool is_text(const RunTable& table, const std::string& column) {
   return std::any_of(table.rows.begin(), table.rows.end(), [&](const TableRow& row) {
-    const Json value = row.value(column, Json());
+    const Json& value = member_of(row, column);
     return value.is_string() || value.is_boolean();
   });
 }
@@ -56,15 +56,13 @@ std::vector<std::string> chosen_columns(const RunTable& table, const std::vector
   }
   if (!chosen.empty()) return chosen;
   std::vector<std::string> columns;
-  const auto left_out = [&](const std::string& column) {
-    return format == TableFormat::markdown && is_one_of(column, table.in_files);
-  };
-  for (const std::string& column : known)
-    if (!left_out(column) && std::any_of(table.rows.begin(), table.rows.end(), [&](const TableRow& row) {
-          const auto cell = row.find(column);
-          return cell != row.end() && !cell->is_null() && !cell_text(*cell, true).empty();
-        }))
-      columns.push_back(column);
+  for (const std::string& column : known) {
+    if (format == TableFormat::markdown && is_one_of(column, table.in_files)) continue;
+    const auto is_filled = [&](const TableRow& row) {
+      return !cell_text(member_of(row, column), true).empty();
+    };
+    if (std::any_of(table.rows.begin(), table.rows.end(), is_filled)) columns.push_back(column);
+  }
   return columns;
 }
 
@@ -76,7 +74,7 @@ std::string table_text(const RunTable& table, std::vector<std::string> columns, 
     Json chosen = Json::array();
     for (const TableRow& row : table.rows) {
       Json& one = chosen.emplace_back(Json::object());
-      for (const std::string& column : columns) one[column] = row.value(column, Json());
+      for (const std::string& column : columns) one[column] = member_of(row, column);
     }
     return json_text(chosen, 1) + "\n";
   }
@@ -93,7 +91,7 @@ std::string table_text(const RunTable& table, std::vector<std::string> columns, 
         line([&](const std::string& column) { return std::string(is_text(table, column) ? "---" : "---:"); });
   for (const TableRow& row : table.rows)
     text += line([&](const std::string& column) {
-      const Json value = row.value(column, Json());
+      const Json& value = member_of(row, column);
       return csv ? csv_cell(value) : markdown_cell(value);
     });
   return text;
@@ -107,10 +105,8 @@ std::string methods_text(const RunTable& table) {
   for (const TableRow& row : table.rows) {
     std::vector<std::string>& cells = lines.emplace_back();
     for (const std::string& column : columns) {
-      const Json value = row.value(column, Json());
-      cells.push_back(value.is_string() ? value.get<std::string>()
-                                        : number_text(value.is_number() ? OptionalNumber(value.get<double>())
-                                                                        : std::nullopt));
+      const Json& value = member_of(row, column);
+      cells.push_back(value.is_null() ? number_text({}) : cell_text(value, true));
     }
   }
   return text_table(lines);
