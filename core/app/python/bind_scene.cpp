@@ -14,8 +14,6 @@ namespace drape::python {
 
 namespace {
 
-constexpr auto shared_view = py::return_value_policy::reference_internal;
-
 std::shared_ptr<Level> make_level(const State& rest, const py::object& triangles) {
   TriangleMesh mesh{rest.x, integer_rows(triangles, 3, "triangles")};
   std::string faults;
@@ -146,7 +144,8 @@ void bind_scene(py::module_& m) {
           [](const SceneHandle& s, int level) -> const Positions& {
             return s.scene->starts[s.checked(level)];
           },
-          shared_view, py::arg("level"), "The initial state of a level, n×3 [m], read-only.")
+          py::return_value_policy::reference_internal, py::arg("level"),
+          "The initial state of a level, n×3 [m], read-only.")
       .def_property_readonly(
           "prolongations", [](const SceneHandle& s) { return read_only(s.scene->hierarchy.prolongations); },
           "n_{l+1}×n_l weights of the refiner from level l to the next, scipy.sparse.csr_matrix, read-only.")

@@ -4,7 +4,6 @@
 
 #include <pybind11/stl.h>
 
-#include <algorithm>
 #include <vector>
 
 #include "core/app/python/values.h"
@@ -31,7 +30,7 @@ Registry& mutable_registry() {
 
 std::vector<std::pair<std::string, std::string>> plugins(const std::string& kind) {
   const std::vector<std::string>& kinds = plugin_kinds();
-  if (std::find(kinds.begin(), kinds.end(), kind) == kinds.end())
+  if (!is_one_of(kind, kinds))
     throw py::value_error("there is no kind \"" + kind + "\"; the kinds are " + joined(kinds));
   std::vector<std::pair<std::string, std::string>> names;
   for (const RegistryEntry* entry : registry().of_kind(kind)) names.emplace_back(entry->name, entry->summary);

@@ -105,15 +105,15 @@ fs::path own_report(const RunRecord& run) {
   return fs::absolute(run.folder / "report.html").lexically_normal();
 }
 
-Json run_json(const RunRecord& run, std::size_t rows, std::map<std::string, int>& physics,
-              const fs::path& from) {
+/// `physics` numbers the models, which runs of a page share.
+Json run_json(const RunRecord& run, std::map<std::string, int>& physics, const fs::path& from) {
   const fs::path report = own_report(run);
   Json entry = {
       {"variation", run.variation},
       {"seed", run.seed ? Json(*run.seed) : Json()},
       {"status", run.status},
       {"error", run.error},
-      {"count", rows},
+      {"count", run.data ? run.data->methods.size() : 1},
       {"report", fs::is_regular_file(report) ? Json(url_path(report.lexically_relative(from))) : Json()},
       {"pictures", Json::array()},
       {"errors", csv_json(run.data ? run.data->errors : Csv())},
@@ -189,7 +189,7 @@ void write_runs_report(const std::vector<fs::path>& folders, const fs::path& fil
   const RunTable table = table_of(collection);
   Json runs = Json::array();
   for (const RunRecord& run : collection.runs)
-    runs.push_back(run_json(run, run.data ? run.data->methods.size() : 1, physics, place.parent_path()));
+    runs.push_back(run_json(run, physics, place.parent_path()));
   write_file(file, page(collection.name.empty() ? "Several runs" : collection.name,
                         {{"kind", "runs"},
                          {"name", collection.name},
