@@ -13,7 +13,7 @@ export const targets = {reference: 'the reference', own: 'the method’s own end
 
 /// All columns that the metrics of results.json declare, with their scope.
 export const metricColumns = (metrics, scope) => Object.values(metrics || {}).filter(metric => metric.scope === scope).flatMap(metric => metric.columns);
-export const withUnit = ({name, label, unit}) => (label || name) + (unit && unit !== '1' ? ` [${unit}]` : '');
+const withUnit = ({name, label, unit}) => (label || name) + (unit && unit !== '1' ? ` [${unit}]` : '');
 
 /// {title, text, better} of a column by its name. `text` is the title without marks, for plots and lists.
 export function describe(name, {measures = [], metrics = {}} = {}) {

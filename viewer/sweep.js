@@ -2,11 +2,11 @@
 import {Chart, distancePlot, methodLook, otherLook} from './charts.js';
 import {columnsOf, describe, ranking} from './columns.js';
 import {dataTable, matcher} from './tables.js';
-import {about, choice, converged, count, counted, explained, fold, grouped, h, known, rowsOf, spread, unique, words} from './text.js';
+import {about, choice, converged, count, counted, explained, fold, grouped, h, known, rowsOf, spread, tick, unique, words} from './text.js';
 
 /// Median and extremes over repeats of a curve of error over cost, a step function, at costs in geometric progression from that
 /// at which all have a state to the largest.
-export function medianCurve(repeats, points = 40) {
+function medianCurve(repeats, points = 40) {
   const curves = repeats.map(curve => curve.filter(p => p.x > 0 && p.y > 0)).filter(curve => curve.length);
   if (!curves.length) return [];
   const from = Math.max(...curves.map(curve => curve[0].x)), to = Math.max(...curves.map(curve => curve.at(-1).x));
@@ -104,7 +104,7 @@ function table(all) {
   return h('section', {id: 'summary'}, h('h2', {}, 'All runs'), explained('A row per method and variation: the median over the starts that converged, with the range; or a row per method and run. ' +
     'Time counts the levels that the end builds on. The best value is bold among rows of the same physics (cloth, levels, material, pins, schedule, energies, refiner, contact, obstacles): ' +
     'times and energies of different physics do not compare.', own.length ? ` Ends that were the reference themselves are not compared with it: ${own.join(', ')}.` : ''),
-  all.seeds.length > 1 ? h('p', {class: 'controls'}, h('label', {}, h('input', {type: 'checkbox', id: 'medians', checked: true, change: event => { Object.assign(state, {medians: event.target.checked, table: {}}); draw(); }}), ' medians over starts')) : null, frame);
+  all.seeds.length > 1 ? h('p', {class: 'controls'}, tick('medians over starts', true, on => { Object.assign(state, {medians: on, table: {}}); draw(); }, 'medians')) : null, frame);
 }
 
 function failures(all) {

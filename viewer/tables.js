@@ -1,5 +1,5 @@
 /// Tables that sort, with few columns at first, and filters.
-import {badge, fold, grouped, h, number, saving, words} from './text.js';
+import {badge, fold, grouped, h, number, saving, tick, words} from './text.js';
 
 /// The value of a cell: a number, a word, or a spread over repeats.
 const value = cell => cell !== null && typeof cell === 'object' ? cell.median : cell;
@@ -77,11 +77,11 @@ export function dataTable(name, what, columns, rows, rivals = () => '', state = 
       'data-name': column.text ?? column.name}, best.get(row)?.has(column.name) ? h('strong', {}, content(column, row[column.name])) : content(column, row[column.name])))))));
   };
   draw();
-  const ticks = filled.map(column => h('label', {}, h('input', {type: 'checkbox', checked: chosen.has(column.name), change: event => {
-    chosen[event.target.checked ? 'add' : 'delete'](column.name);
+  const ticks = filled.map(column => tick(column.text ?? column.name, chosen.has(column.name), on => {
+    chosen[on ? 'add' : 'delete'](column.name);
     draw();
-  }}), ' ' + (column.text ?? column.name)));
-  const all = h('button', {type: 'button', click: () => ticks.forEach(tick => { if (!tick.firstChild.checked) tick.firstChild.click(); })}, 'All');
+  }));
+  const all = h('button', {type: 'button', click: () => ticks.forEach(({firstChild: box}) => { if (!box.checked) box.click(); })}, 'All');
   return h('div', {class: 'table', id: name}, filled.some(column => !column.few) ? fold('Columns', h('p', {class: 'controls'}, all, ticks)) : '', frame,
     saving(name, 'the table ' + what, () => shownRows().map(row => plain(row, filled))));
 }

@@ -87,3 +87,8 @@ export function choice(label, options, value, change, id) {
   select.value = value;
   return h('label', {}, label + ' ', select);
 }
+
+/// A box to tick with its label; `change` is called with whether it is ticked.
+export function tick(label, on, change, id = null) {
+  return h('label', {}, h('input', {type: 'checkbox', id, checked: on, change: event => change(event.target.checked)}), ' ' + label);
+}

@@ -1,7 +1,7 @@
 /// The 3D view and its controls: which states are shown, in which colours, in which panels.
 import {embedded, gradient, paint, positions, scalars, triangles} from './blocks.js';
 import {Scene} from './scene.js';
-import {choice, count, fold, h, save} from './text.js';
+import {choice, count, fold, h, save, tick} from './text.js';
 
 /// So many digits, or a whole number where these do not suffice: no exponent.
 const digits = (value, n) => value < 10 ** n - .5 ? value.toPrecision(n) : count(value);
@@ -13,7 +13,6 @@ export class View {
     Object.assign(this, {load, live, beside, blocks: new Map(), stops: [], stop: -1, panels: [], obstacles: true,
       hidden: new Set(first === null ? [] : view.methods.map(m => m.name).filter(name => name !== first)), fieldName: ''});
     const button = (id, text, click) => h('button', {type: 'button', id, click}, text);
-    const tick = (id, text, on, change) => h('label', {}, h('input', {type: 'checkbox', id, checked: on, change: event => change(event.target.checked)}), ' ' + text);
     const range = (id, label, input) => h('input', {type: 'range', id, 'aria-label': label, min: 0, max: 0, step: 1, value: 0, input: event => input(Number(event.target.value))});
     this.canvas = h('canvas', {id: 'viewer-canvas', tabindex: 0, role: 'application', 'aria-describedby': 'viewer-keys',
       'aria-label': 'The cloth in 3D, panels side by side, turned together'});
@@ -31,9 +30,9 @@ export class View {
     this.controls = h('div', {class: 'viewer-controls'},
       h('p', {class: 'controls'}, this.playing, this.scrubber, h('label', {}, 'Level ', this.level, this.levelText)),
       h('p', {class: 'controls'}, this.fields, this.ticks,
-        tick('viewer-beside', 'beside its end', beside, on => { this.beside = on; this.listPanels(); this.show(this.stop); }),
-        tick('viewer-obstacles', 'obstacles', true, on => { this.obstacles = on; this.show(this.stop); }),
-        tick('viewer-xray', 'x-ray', false, on => this.scene.setXray(on)),
+        tick('beside its end', beside, on => { this.beside = on; this.listPanels(); this.show(this.stop); }, 'viewer-beside'),
+        tick('obstacles', true, on => { this.obstacles = on; this.show(this.stop); }, 'viewer-obstacles'),
+        tick('x-ray', false, on => this.scene.setXray(on), 'viewer-xray'),
         button('viewer-reset', 'Reset', () => this.scene.resetView()), button('viewer-png', 'PNG', () => this.savePicture())),
       this.legend,
       fold('Keys and precision', h('p', {class: 'note', id: 'viewer-keys'}, 'All panels share a camera. Drag to turn, with Shift or two fingers to pan; the wheel zooms ' +
@@ -104,12 +103,11 @@ export class View {
     const known = JSON.stringify([names, this.live && this.data.methods.map(method => method.levels.length > 0)]);
     if (this.ticks.dataset.names === known) return;
     this.ticks.dataset.names = known;
-    this.ticks.replaceChildren(...(names.length < 2 ? [] : names).map(name => h('label', {}, h('input', {type: 'checkbox', checked: !this.hidden.has(name),
-      change: event => {
-        this.hidden[event.target.checked ? 'delete' : 'add'](name);
-        this.listPanels();
-        this.show(this.stop);
-      }}), ' ' + name)));
+    this.ticks.replaceChildren(...(names.length < 2 ? [] : names).map(name => tick(name, !this.hidden.has(name), on => {
+      this.hidden[on ? 'delete' : 'add'](name);
+      this.listPanels();
+      this.show(this.stop);
+    })));
     this.listPanels();
   }
 
