@@ -1,7 +1,6 @@
 """`drape figures`: what it writes of a run and of a sweep."""
 
 import csv
-import pathlib
 import subprocess
 
 import pandas
@@ -14,10 +13,21 @@ SWEEP = """name: two
 base: {base}
 seeds: [1, 2]
 methods: [pcs, newton]
-ablation:
-  grid:
-    newton.step_growth: [1.5, 3]
 """
+GRID = "ablation: {grid: {newton.step_growth: [1.5, 3]}}\n"
+NOTHING_PINNED = "set: {pins: [{region: ball, point: [9, 9, 9], radius: 0.1}]}"
+
+
+@pytest.fixture
+def swept(tmp_path, command, small_file):
+    """The folder of a sweep of the small experiment, whose file ends with this text."""
+
+    def sweep(text, succeeds=True):
+        (tmp_path / "two.yaml").write_text(SWEEP.format(base=small_file) + text)
+        subprocess.run([command, "sweep", tmp_path / "two.yaml", "-o", tmp_path / "sweep"], check=succeeds, stdout=subprocess.DEVNULL)
+        return tmp_path / "sweep"
+
+    return sweep
 
 
 @pytest.fixture
@@ -48,10 +58,8 @@ def test_figures_of_a_run(written, command, small_file, tmp_path):
     assert "pcs & 1 of 1 & " in table
 
 
-def test_figures_of_a_sweep(written, command, small_file, tmp_path):
-    (tmp_path / "two.yaml").write_text(SWEEP.format(base=pathlib.Path(small_file).resolve()))
-    subprocess.run([command, "sweep", tmp_path / "two.yaml", "-o", tmp_path / "sweep"], check=True, stdout=subprocess.DEVNULL)
-    files = written(tmp_path / "sweep")
+def test_figures_of_a_sweep(written, swept):
+    files = written(swept(GRID))
     assert {"seconds_by_step_growth.svg", "preview_rms_by_step_growth.png"} <= set(files)
     with files["table.csv"].open(newline="") as lines:
         rows = list(csv.DictReader(lines))
@@ -60,19 +68,14 @@ def test_figures_of_a_sweep(written, command, small_file, tmp_path):
     assert r"1.5 & pcs & 2 of 2 & " in files["table.tex"].read_text()
 
 
-def test_plots_of_keys_with_one_last_part_are_apart(written, command, small_file, tmp_path):
-    grid = "grid: {newton.step_size: [0.1, 0.2], methods.newton.newton.step_size: [0.1, 0.2]}"
-    sweep = SWEEP.format(base=pathlib.Path(small_file).resolve()).replace("grid:\n    newton.step_growth: [1.5, 3]", grid)
-    (tmp_path / "two.yaml").write_text(sweep)
-    subprocess.run([command, "sweep", tmp_path / "two.yaml", "-o", tmp_path / "sweep"], check=True, stdout=subprocess.DEVNULL)
-    assert {"seconds_by_newton_step_size.svg", "seconds_by_methods_newton_newton_step_size.svg"} <= set(written(tmp_path / "sweep"))
+def test_plots_of_keys_with_one_last_part_are_apart(written, swept):
+    files = written(swept("ablation: {grid: {newton.step_size: [0.1, 0.2], methods.newton.newton.step_size: [0.1, 0.2]}}\n"))
+    assert {"seconds_by_newton_step_size.svg", "seconds_by_methods_newton_newton_step_size.svg"} <= set(files)
 
 
-def test_a_sweep_without_results_has_no_figures(command, small_file, tmp_path):
-    sweep = SWEEP.format(base=pathlib.Path(small_file).resolve())
-    (tmp_path / "two.yaml").write_text(sweep + "set: {pins: [{region: ball, point: [9, 9, 9], radius: 0.1}]}\n")
-    subprocess.run([command, "sweep", tmp_path / "two.yaml", "-o", tmp_path / "sweep"], stdout=subprocess.DEVNULL)
-    ended = subprocess.run([command, "figures", tmp_path / "sweep", "-o", tmp_path / "out"], capture_output=True, text=True)
+def test_a_sweep_without_results_has_no_figures(swept, command, tmp_path):
+    sweep = swept(GRID + NOTHING_PINNED, succeeds=False)
+    ended = subprocess.run([command, "figures", sweep, "-o", tmp_path / "out"], capture_output=True, text=True)
     assert ended.returncode == 2 and "no run has written results yet" in ended.stderr
 
 
@@ -87,19 +90,13 @@ def test_a_method_has_converged_if_all_its_levels_have():
     assert r"pcs & 2 of 4 & 1 \\" in latex_table(rows)
 
 
-def test_runs_without_results_are_in_the_tables(written, command, small_file, tmp_path):
-    head = SWEEP.format(base=pathlib.Path(small_file).resolve()).split("ablation:")[0]
-    far = "{name: far, set: {pins: [{region: ball, point: [9, 9, 9], radius: 0.1}]}}"
-    (tmp_path / "two.yaml").write_text(head + "ablation: [{name: whole}, " + far + "]\n")
-    subprocess.run([command, "sweep", tmp_path / "two.yaml", "-o", tmp_path / "sweep"], stdout=subprocess.DEVNULL)
-    files = written(tmp_path / "sweep")
+def test_runs_without_results_are_in_the_tables(written, swept):
+    files = written(swept(f"ablation: [{{name: whole}}, {{name: far, {NOTHING_PINNED}}}]", succeeds=False))
     with files["table.csv"].open(newline="") as lines:
         assert len(list(csv.DictReader(lines))) == 6
     assert " & -- & 0 of 2 & " in files["table.tex"].read_text()
 
 
-def test_a_key_that_is_null_in_some_runs_keeps_them_in_its_plots(written, command, small_file, tmp_path):
-    sweep = SWEEP.format(base=pathlib.Path(small_file).resolve()).replace("newton.step_growth: [1.5, 3]", "material.warp_bending: [null, 1e-6]")
-    (tmp_path / "two.yaml").write_text(sweep)
-    subprocess.run([command, "sweep", tmp_path / "two.yaml", "-o", tmp_path / "sweep"], check=True, stdout=subprocess.DEVNULL)
-    assert ">--<" in written(tmp_path / "sweep")["seconds_by_warp_bending.svg"].read_text()
+def test_a_key_that_is_null_in_some_runs_keeps_them_in_its_plots(written, swept):
+    files = written(swept("ablation: {grid: {material.warp_bending: [null, 1e-6]}}"))
+    assert ">--<" in files["seconds_by_warp_bending.svg"].read_text()
