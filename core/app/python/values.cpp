@@ -8,6 +8,7 @@
 #include "core/app/experiment/experiment_path.h"
 #include "core/app/files/json_file.h"
 #include "core/app/files/yaml_file.h"
+#include "core/kernel/interfaces/topology.h"
 
 namespace drape::python {
 
@@ -110,35 +111,27 @@ State state_of(const py::handle& values) {
 
 py::object bsr_matrix(const BlockMatrix& matrix) {
   const BlockPattern& pattern = *matrix.pattern;
-  const int n = pattern.rows();
-  py::array_t<int> starts(n + 1);
-  int* const start = starts.mutable_data();
-  std::fill(start, start + n + 1, 0);
-  const auto for_each_block = [&](const auto& body) {
-    for (int i = 0; i < n; ++i)
-      for (int b = pattern.row_start[i]; b < pattern.row_start[i + 1]; ++b) body(i, pattern.columns[b], b);
-  };
-  for_each_block([&](int i, int j, int) {
-    ++start[i + 1];
-    if (j > i) ++start[j + 1];
-  });
-  for (int i = 0; i < n; ++i) start[i + 1] += start[i];
-  py::array_t<int> columns(start[n]);
-  py::array_t<double> blocks({static_cast<py::ssize_t>(start[n]), py::ssize_t{3}, py::ssize_t{3}});
-  std::vector<int> next(start, start + n);
+  const AdjacencyList rows = pattern.neighbours();
+  py::array_t<double> blocks({static_cast<py::ssize_t>(rows.items.size()), py::ssize_t{3}, py::ssize_t{3}});
+  std::vector<int> next = rows.start;
   using Block = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
-  const auto put = [&](int row, int column, const Block& values) {
-    const int at = next[row]++;
-    columns.mutable_data()[at] = column;
-    Eigen::Map<Block>(blocks.mutable_data() + 9 * static_cast<std::ptrdiff_t>(at)) = values;
+  const auto put = [&](int row, const Block& values) {
+    Eigen::Map<Block>(blocks.mutable_data() + 9 * static_cast<std::ptrdiff_t>(next[row]++)) = values;
   };
-  // Columns ascend: all those left of the diagonal first.
-  for_each_block([&](int i, int j, int b) {
-    if (j > i) put(j, i, Eigen::Map<const Block>(matrix.block(b)).transpose());
-  });
-  for_each_block([&](int i, int j, int b) { put(i, j, Eigen::Map<const Block>(matrix.block(b))); });
-  const py::object make = py::module_::import("scipy.sparse").attr("bsr_matrix");
-  return make(py::make_tuple(blocks, columns, starts), py::arg("shape") = py::make_tuple(3 * n, 3 * n));
+  // Within each row by ascending columns, as neighbours() has them.
+  for (int i = 0; i < pattern.rows(); ++i)
+    for (int b = pattern.row_start[i]; b < pattern.row_start[i + 1]; ++b) {
+      const Eigen::Map<const Block> block(matrix.block(b));
+      put(i, block);
+      if (pattern.columns[b] != i) put(pattern.columns[b], block.transpose());
+    }
+  const auto array_of = [](const std::vector<int>& integers) {
+    return py::array_t<int>(static_cast<py::ssize_t>(integers.size()), integers.data());
+  };
+  const int size = 3 * pattern.rows();
+  return py::module_::import("scipy.sparse")
+      .attr("bsr_matrix")(py::make_tuple(blocks, array_of(rows.items), array_of(rows.start)),
+                          py::arg("shape") = py::make_tuple(size, size));
 }
 
 ConfigNode node_of(const py::handle& value) { return nested_node(value, 0); }
