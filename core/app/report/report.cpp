@@ -188,8 +188,7 @@ void write_runs_report(const std::vector<fs::path>& folders, const fs::path& fil
   std::map<std::string, int> physics;
   const RunTable table = table_of(collection);
   Json runs = Json::array();
-  for (const RunRecord& run : collection.runs)
-    runs.push_back(run_json(run, physics, place.parent_path()));
+  for (const RunRecord& run : collection.runs) runs.push_back(run_json(run, physics, place.parent_path()));
   write_file(file, page(collection.name.empty() ? "Several runs" : collection.name,
                         {{"kind", "runs"},
                          {"name", collection.name},
