@@ -52,36 +52,23 @@ struct SampleRun {
     const TriangleMesh rest[2] = {grid({1, 1}, 13, 13, Diagonals::one_way),
                                   split(grid({1, 1}, 13, 13, Diagonals::one_way))};
     for (int l = 0; l < 2; ++l) write_mesh(folder / "rest" / ("l" + std::to_string(l) + ".ply"), rest[l]);
-    results = {{"experiment", "sample"},
-               {"description", "A rippled sheet."},
-               {"complete", true},
-               {"machine", {{"cpu", "test processor"}, {"cores", 2}, {"threads", 1}}},
-               {"version", "drape 0.0.0"},
-               {"tolerance", {{"force_residual", 1e-3}}},
-               {"metrics", json_of(sample_metrics())}};
+    results = {{"experiment", "sample"}, {"complete", true}, {"metrics", json_of(sample_metrics())}};
     std::string steps =
         "method,level,step,iteration,seconds,energy,decrement,force_residual,step_length,proxy_energy,step_"
         "size\n";
     for (const std::string method : {"newton", "pcs"}) {
       const double waves[2] = {20, method == "pcs" ? 20.0 : 11.0};
       Json& entry = results["methods"][method];
-      entry = {{"status", "converged"}, {"seconds", 12.345}, {"peak_memory_bytes", 123456789}};
+      entry = {{"status", "converged"}};
       for (int l = 0; l < 2; ++l) {
         const std::string mesh = "levels/" + method + "_l" + std::to_string(l) + ".ply";
         write_mesh(folder / mesh, {rippled(rest[l].vertices, waves[l]), rest[l].triangles});
         entry["levels"].push_back({{"level", l},
                                    {"vertices", rest[l].vertices.rows()},
-                                   {"triangles", rest[l].triangles.rows()},
                                    {"status", "converged"},
-                                   {"steps", 17},
                                    {"iterations", 1234},
                                    {"seconds", 6.1},
-                                   {"seconds_by_phase", {{"factorise", 3.5}, {"assemble", 1.5}}},
-                                   {"energy", -0.7654 - l},
                                    {"energy_released", method == "pcs" ? 1.7654 : 1.5432},
-                                   {"force_residual", 8.76e-4},
-                                   {"largest_stretch", 1.0432},
-                                   {"intersections", nullptr},
                                    {"energy_parts_released", {{"membrane", -0.4321}, {"gravity", 2.345}}},
                                    {"mesh", mesh}});
         for (int k = 0; k < 3; ++k) {
