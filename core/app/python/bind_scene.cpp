@@ -103,11 +103,12 @@ void bind_level(py::module_& m) {
 
 py::dict evaluate_metric(const SceneHandle& s, const std::string& name, int level, const State& state,
                          const std::optional<State>& other) {
-  const int l = s.checked(level), n = s.level(l).vertex_count();
+  const LevelModel& model = *s.scene->models[s.checked(level)];
+  const int n = model.level().vertex_count();
   const auto& all = s.experiment->metrics;
   const auto found = std::find_if(all.begin(), all.end(), [&](const auto& m) { return m.first == name; });
   if (found == all.end()) throw py::key_error("the experiment has no metric \"" + name + "\"");
-  const MetricInput input{s.level(l), *s.scene->models[l], state.of(n), other ? &other->of(n) : nullptr};
+  const MetricInput input{model.level(), model, state.of(n), other ? &other->of(n) : nullptr};
   MetricResult result = without_gil([&] { return found->second->evaluate(input); });
   py::dict values;
   for (const MetricValue& value : result.values) values[py::str(value.name)] = value.value;
@@ -116,10 +117,9 @@ py::dict evaluate_metric(const SceneHandle& s, const std::string& name, int leve
 }
 
 std::string page(const SceneHandle& s, const State& state, int level) {
-  const int l = s.checked(level);
-  const Positions& x = state.of(s.level(l).vertex_count());
-  const LevelModel& model = *s.scene->models[l];
-  return viewer_page(s.experiment->parameters.name, s.level(l), x, obstacles_of(model.contacts()),
+  const LevelModel& model = *s.scene->models[s.checked(level)];
+  const Positions& x = state.of(model.level().vertex_count());
+  return viewer_page(s.experiment->parameters.name, model.level(), x, obstacles_of(model.contacts()),
                      x.allFinite() ? model.contact_pressure(x) : Eigen::VectorXd());
 }
 

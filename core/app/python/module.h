@@ -117,7 +117,6 @@ struct SceneHandle {
       throw py::index_error("the scene has the levels 0 … " + std::to_string(scene->models.size() - 1));
     return level;
   }
-  const Level& level(int l) const { return scene->hierarchy.levels[checked(l)]; }
   ModelHandle model(int l) const { return {scene->models[checked(l)], scene}; }
 };
 
