@@ -122,7 +122,7 @@ Json run_json(const RunRecord& run, std::map<std::string, int>& physics, const f
   entry["physics"] =
       physics.emplace(model_of(run.data->config), static_cast<int>(physics.size())).first->second;
   entry["pictures"] = thumbnails(*run.data);
-  entry["reference"] = run.data->reference_is_file ? "" : run.data->reference;
+  entry["reference"] = run.data->reference;
   for (const MethodRecord& method : run.data->methods)
     entry["first_levels"][method.name] = method.first_level();
   entry["version"] = member_of(run.data->results, "version");

@@ -169,9 +169,7 @@ RunData read_run(const std::filesystem::path& folder) {
   run.obstacles = texts(member_of(json, "obstacles"));
   run.obstacle_names = texts(member_of(json, "obstacle_names"));
   run.obstacle_names.resize(run.obstacles.size());
-  const Json& reference = member_of(json, "reference");
-  run.reference_is_file = !text_member(reference, "file").empty();
-  run.reference = text_member(reference, run.reference_is_file ? "file" : "method");
+  run.reference = text_member(member_of(json, "reference"), "method");
   run.metrics = declared_metrics(member_of(json, "metrics"));
   run.error_measures = error_measures(run.metrics);
   if (const std::filesystem::path config = folder / "config.yaml"; std::filesystem::is_regular_file(config)) {

@@ -69,8 +69,7 @@ struct RunData {
   std::vector<ErrorMeasure> error_measures;
   std::vector<MethodRecord> methods;
   Csv iterations, errors;  ///< iterations.csv and errors.csv; empty without them
-  std::string reference;   ///< method or file of the state that errors are measured against
-  bool reference_is_file = false;
+  std::string reference;   ///< method whose end errors are measured against; empty for a file or none
 
   /// Whether the run is complete and every method converged.
   bool converged() const;

@@ -155,7 +155,7 @@ TableRow row_of(const RunData& run, const MethodRecord& method) {
   row["intersections"] = count_of(iterations.intersections);
   row["preview_seconds"] = json_of(first.of("seconds"));
   // The error of the reference against itself says nothing.
-  const bool is_reference = !run.reference_is_file && run.reference == method.name;
+  const bool is_reference = run.reference == method.name;
   for (const ErrorMeasure& m : run.error_measures) {
     if (m.use < ErrorUse::summary) continue;
     row[error_name(m)] =
