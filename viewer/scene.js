@@ -24,7 +24,7 @@ export class Scene {
   constructor(canvas, labels) {
     const context = ['webgl2', 'webgl'].reduce((gl, kind) => gl || canvas.getContext(kind, {antialias: false}), null);
     if (!context) throw new Error('no WebGL');
-    Object.assign(this, {canvas, labels, views: [], renders: 0, waiting: false});
+    Object.assign(this, {canvas, labels, views: [], waiting: false});
     this.renderer = new THREE.WebGLRenderer({canvas, context});
     this.renderer.setScissorTest(true);
     this.camera = new THREE.PerspectiveCamera(28, 1, .01, 100);
@@ -219,6 +219,5 @@ export class Scene {
       this.renderer.setViewport(...place);
       this.renderer.render(view.scene, camera);
     });
-    ++this.renders;
   }
 }

@@ -283,11 +283,10 @@ export class View {
   state() {
     const stop = this.stops[this.stop], sum = values => values.reduce((a, b) => a + b, 0);
     return {
-      level: stop ? stop.level : -1, stop: this.stop, stops: this.stops.length, playing: !!this.plays,
-      field: this.fieldName, renders: this.scene ? this.scene.renders : 0, webgl: !!this.scene,
+      level: stop ? stop.level : -1, stop: this.stop, stops: this.stops.length, playing: !!this.plays, field: this.fieldName,
       camera: this.scene && {...this.scene.view},
       panels: this.panels.map(({method, end, found, shape, obstacles}) => ({method: method.name, end: !!end, level: found ? found.level.level : -1,
-        vertices: shape ? shape.x.length / 3 : 0, triangles: shape ? shape.index.count / 3 : 0,
+        vertices: shape ? shape.x.length / 3 : 0,
         sum: shape ? shape.x.reduce((a, b) => a + Math.abs(b), 0) : 0, tints: shape && shape.tints ? sum(shape.tints) : null,
         obstacles: obstacles.map(({x}) => sum(x))})),
     };
