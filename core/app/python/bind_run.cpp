@@ -95,7 +95,6 @@ void observed(Callbacks& callbacks, RunOptions options, const Action& action) {
   options.stop = [&] { return callbacks.stop_requested(); };  // of solves that are not observed too
   options.method_started = [&](const std::string& method) { callbacks.method_started(method); };
   options.observer = &callbacks;
-  forget_failure();
   std::exception_ptr error;
   without_gil([&] {
     const OwnCalls calls;

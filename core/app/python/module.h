@@ -34,6 +34,7 @@ class PythonCall {
 };
 
 /// For the life of a run, whose calls nest from here: none of the Python that is under way sees them fail.
+/// What was stored before is forgotten.
 class OwnCalls {
  public:
   OwnCalls();
@@ -47,7 +48,6 @@ class OwnCalls {
 
 /// Whether an exception is stored in this thread.
 bool has_failed();
-void forget_failure();
 /// Raises the exception that is stored, if any. Call with the GIL held.
 void raise_failure();
 

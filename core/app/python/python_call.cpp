@@ -36,11 +36,6 @@ SharedObject share(py::object object) {
 
 bool has_failed() { return raised || thrown; }
 
-void forget_failure() {
-  raised = nullptr;
-  thrown = nullptr;
-}
-
 void raise_failure() {
   if (const SharedObject exception = std::exchange(raised, nullptr)) {
     PyErr_SetObject(py::type::of(*exception).ptr(), exception->ptr());
@@ -49,7 +44,10 @@ void raise_failure() {
   if (thrown) std::rethrow_exception(std::exchange(thrown, nullptr));
 }
 
-OwnCalls::OwnCalls() : outer_(std::exchange(depth, 0)) {}
+OwnCalls::OwnCalls() : outer_(std::exchange(depth, 0)) {
+  raised = nullptr;
+  thrown = nullptr;
+}
 OwnCalls::~OwnCalls() { depth = outer_; }
 
 PythonCall::PythonCall() { ++depth; }
