@@ -60,7 +60,7 @@ void add_method(Side& side, const std::string& name, const RunData& run, const M
   };
   side.converged[name] = has_converged(method.status);
   const TableRow row = row_of(run, method);
-  for (const std::string& key : summary_quantities(run.error_measures))
+  for (const std::string& key : summary_quantities(error_measures(run.metrics)))
     if (row[key].is_number()) add(name, key, row[key].get<double>());
   const bool several = method.levels.size() > 1;
   for (const LevelRecord& level : method.levels) {

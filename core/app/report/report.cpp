@@ -161,7 +161,7 @@ std::vector<std::string> write_report(const fs::path& folder, const std::functio
   const Json data = {{"kind", "run"},
                      {"results", run.results},
                      {"table", table_json(table_of(collection))},
-                     {"measures", measures_json(run.error_measures)},
+                     {"measures", measures_json(error_measures(run.metrics))},
                      {"styles", styles_json(collection)},
                      {"step_sizes", step_sizes},
                      {"tolerances", tolerances},

@@ -171,7 +171,6 @@ RunData read_run(const std::filesystem::path& folder) {
   run.obstacle_names.resize(run.obstacles.size());
   run.reference = text_member(member_of(json, "reference"), "method");
   run.metrics = declared_metrics(member_of(json, "metrics"));
-  run.error_measures = error_measures(run.metrics);
   if (const std::filesystem::path config = folder / "config.yaml"; std::filesystem::is_regular_file(config)) {
     run.configuration = read_file(config);
     ConfigErrors unread;

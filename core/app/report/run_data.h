@@ -66,7 +66,6 @@ struct RunData {
   std::vector<std::string> obstacles;       ///< meshes, relative to the folder
   std::vector<std::string> obstacle_names;  ///< of each of them; empty for an obstacle without a name
   std::vector<DeclaredMetric> metrics;
-  std::vector<ErrorMeasure> error_measures;
   std::vector<MethodRecord> methods;
   Csv iterations, errors;  ///< iterations.csv and errors.csv; empty without them
   std::string reference;   ///< method whose end errors are measured against; empty for a file or none

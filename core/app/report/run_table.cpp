@@ -156,7 +156,7 @@ TableRow row_of(const RunData& run, const MethodRecord& method) {
   row["preview_seconds"] = json_of(first.of("seconds"));
   // The error of the reference against itself says nothing.
   const bool is_reference = run.reference == method.name;
-  for (const ErrorMeasure& m : run.error_measures) {
+  for (const ErrorMeasure& m : error_measures(run.metrics)) {
     if (m.use < ErrorUse::summary) continue;
     row[error_name(m)] =
         is_reference ? Json() : json_of(last_error(run, method, false, "reference_" + m.name));
