@@ -30,6 +30,18 @@ SMALL = {
 }
 
 
+def with_membrane(experiment, energy):
+    """The experiment with this energy in Python in place of its first."""
+    drape.register("own_membrane", energy)
+    return {**experiment, "energies": ["own_membrane", *experiment["energies"][1:]]}
+
+
+def solved_by(experiment, solver):
+    """The experiment with this solver in Python, own_solver, as its only method."""
+    drape.register("own_solver", solver)
+    return {**experiment, "methods": {"own_solver": {}}, "reference": {}}
+
+
 def pytest_configure():
     """A test that hangs is sent SIGTERM (tests/support/limited.cpp): it says where it is, past pytest's capture of the output."""
     faulthandler.register(signal.SIGTERM, file=os.fdopen(os.dup(sys.__stderr__.fileno()), "w"), chain=True)

@@ -10,6 +10,7 @@ from prototypes import NumpyStvk
 from waiting import completed, wait_until
 
 import drape
+from conftest import with_membrane
 
 
 class Luck(Exception):
@@ -69,9 +70,8 @@ def test_ctrl_c_in_a_prototype_leaves_its_method_to_be_resumed(small, tmp_path):
     def interrupt(_):
         Interrupted.due = True
 
-    drape.register("interrupted", Interrupted)
-    small["energies"][0] = "interrupted"
-    experiment, folder, methods = drape.Experiment(small), tmp_path / "r", ["pcs", "newton"]
+    experiment = drape.Experiment(with_membrane(small, Interrupted))
+    folder, methods = tmp_path / "r", ["pcs", "newton"]
     with pytest.raises(KeyboardInterrupt):
         experiment.run(methods=methods, out=folder, report=False, progress=False, on_level=interrupt)
     resumed = drape.resume(folder, report=False, progress=False)
@@ -85,10 +85,7 @@ def test_a_run_is_resumed_to_the_same_bits(small, tmp_path):
     class Own(NumpyStvk):
         """A prototype, which the command does not know."""
 
-    drape.register("own_stvk", Own)
-    small["energies"][0] = "own_stvk"
-    experiment, folder = drape.Experiment(small), tmp_path / "r"
-    seen = []
+    experiment, folder, seen = drape.Experiment(with_membrane(small, Own)), tmp_path / "r", []
     experiment.run(out=folder, report=False, progress=False, on_iteration=lambda i: "stop" if i.level == 1 else None)
     assert not drape.read_run(folder).complete
     resumed = drape.resume(folder, report=False, progress=False, on_level=seen.append)

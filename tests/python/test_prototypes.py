@@ -10,6 +10,7 @@ import scipy.sparse
 
 import drape
 import prototypes
+from conftest import solved_by, with_membrane
 
 
 @pytest.fixture(autouse=True)
@@ -163,15 +164,14 @@ def test_metrics_refiners_and_solvers(small):
 
 
 def test_a_solver_steps_and_stops(small):
-    small["methods"], small["reference"] = {"python_newton": {}}, {}
-    experiment = drape.Experiment(small)
-    solver = experiment.solver("python_newton")
+    experiment = drape.Experiment(solved_by(small, prototypes.ProjectedNewton))
+    solver = experiment.solver()
     first = next(solver)
     assert first.level == 0 and first.step == 1
     solver.stop()
     assert list(solver) == []
     assert solver.levels[0].status == "cancelled"
-    again = experiment.solver("python_newton")
+    again = experiment.solver()
     next(again)
     again.set("material.density", 900)  # the coarsest level begins anew, from this state
     assert next(iteration for iteration in again if iteration.level == 1)
@@ -207,10 +207,8 @@ def test_a_prototype_is_replaced_and_earlier_experiments_stay(small):
     ("value", lambda self, x, rest: None, TypeError),
 ])
 def test_what_a_prototype_raises_is_raised(small, function, answer, error):
-    drape.register("bad", type("Bad", (prototypes.Springs,), {function: answer}))
-    small["energies"][0] = "bad"
     small["methods"]["python_newton"] = {}  # through a solver in Python it keeps its type
-    experiment = drape.Experiment(small)
+    experiment = drape.Experiment(with_membrane(small, type("Bad", (prototypes.Springs,), {function: answer})))
     for method in ("pcs", "newton", "python_newton"):
         with pytest.raises(error):
             experiment.run(methods=[method], progress=False)
@@ -220,10 +218,9 @@ def test_what_a_prototype_raises_is_raised(small, function, answer, error):
 
 def test_elements_are_checked(small):
     for elements in ([[0, 36]], [[-1, 0]], [0, 1], numpy.zeros((3, 0), int), [[0.5, 1]]):
-        drape.register("bad", type("Bad", (prototypes.Springs,), {"elements": lambda self, level: elements}))
-        small["energies"][0] = "bad"
+        bad = type("Bad", (prototypes.Springs,), {"elements": lambda self, level: elements})
         with pytest.raises(drape.ConfigError, match="what Bad.elements returns must"):
-            drape.Experiment(small).check()
+            drape.Experiment(with_membrane(small, bad)).check()
 
 
 @pytest.mark.parametrize("none", [[], numpy.zeros((0, 2), int)])
@@ -338,8 +335,7 @@ def test_what_a_solver_keeps_is_not_used_after_its_end(small):
             kept.append((problem, problem.model(0), problem.start(0)))
             super().solve(problem)
 
-    drape.register("keeps", Keeps)
-    drape.Experiment({**small, "methods": {"keeps": {}}, "reference": {}}).run(progress=False)
+    drape.Experiment(solved_by(small, Keeps)).run(progress=False)
     problem, model, x = kept[0]
     assert x.shape == (36, 3)
     with pytest.raises(RuntimeError, match="has ended"):
@@ -364,9 +360,8 @@ def test_a_solver_reports_finite_states(small):
             problem.begin(1)  # the level that does not exist has not begun
             problem.end(problem.start(1), "infeasible", "not tried")
 
-    drape.register("lost", Lost)
-    result = drape.Experiment({**small, "methods": {"lost": {}}, "reference": {}}).run(progress=False)
-    assert [(level.status, level.message) for level in result["lost"].levels] == [
+    result = drape.Experiment(solved_by(small, Lost)).run(progress=False)
+    assert [(level.status, level.message) for level in result["own_solver"].levels] == [
         ("stalled", ""), ("infeasible", "not tried")]
 
 
@@ -377,12 +372,12 @@ def test_a_solver_reports_finite_states(small):
     (lambda problem: [whole(problem, level) for level in (0, 0)], "level 0 cannot begin after level 0"),
 ])
 def test_a_solver_reports_every_level_once_from_coarse_to_fine(small, solve, error):
-    drape.register("careless", type("Careless", (drape.Solver,), {"solve": lambda self, problem: solve(problem)}))
-    experiment = drape.Experiment({**small, "methods": {"careless": {}}, "reference": {}})
+    careless = type("Careless", (drape.Solver,), {"solve": lambda self, problem: solve(problem)})
+    experiment = drape.Experiment(solved_by(small, careless))
     with pytest.raises(ValueError, match=error):
         experiment.run(progress=False)
     with pytest.raises(ValueError, match=error):
-        list(experiment.solver("careless"))
+        list(experiment.solver())
 
 
 def whole(problem, level):
@@ -403,11 +398,9 @@ def test_the_end_of_a_level_has_the_plain_models_residual(small):
                     problem.iteration(x, force_residual=given)
                 problem.end(x if ends_where_it_was else x + [0, 0, 0.01], "stalled")
 
-    drape.register("ends", Ends)
-    small.update(methods={"ends": {}}, reference={}, contact="shapes",
-                 obstacles=[{"shape": "sphere", "radius": 0.1, "translate": [0.5, 0.5, -0.1005]}])
-    experiment = drape.Experiment(small)
-    levels = experiment.run(progress=False)["ends"].levels
+    small.update(contact="shapes", obstacles=[{"shape": "sphere", "radius": 0.1, "translate": [0.5, 0.5, -0.1005]}])
+    experiment = drape.Experiment(solved_by(small, Ends))
+    levels = experiment.run(progress=False)["own_solver"].levels
     model = experiment.scene()[0]
     assert levels[0].force_residual == pytest.approx(model.force_residual(levels[0].x), rel=1e-12) != 0
     assert levels[1].force_residual == given
@@ -421,9 +414,8 @@ def test_a_solver_may_skip_levels_and_recover(small):
             with pytest.raises(ValueError, match="level 0 cannot begin after level 1"):
                 problem.begin(0)
 
-    drape.register("skips", Skips)
-    result = drape.Experiment({**small, "methods": {"skips": {}}, "reference": {}}).run(progress=False)
-    assert result.complete and [level.level for level in result["skips"].levels] == [1]
+    result = drape.Experiment(solved_by(small, Skips)).run(progress=False)
+    assert result.complete and [level.level for level in result["own_solver"].levels] == [1]
 
 
 def test_what_python_handles_is_not_raised(small):
@@ -433,17 +425,13 @@ def test_what_python_handles_is_not_raised(small):
                 raise ArithmeticError("not a number")
             return super().value(x, rest)
 
-    drape.register("picky", Picky)
-    small["energies"][0] = "picky"
-
     class Careful(prototypes.ProjectedNewton):
         def solve(self, problem):
             with pytest.raises(ArithmeticError):
                 problem.model(0).energy(numpy.nan * problem.start(0))
             super().solve(problem)
 
-    drape.register("careful", Careful)
-    experiment = drape.Experiment({**small, "methods": {"careful": {}}, "reference": {}})
+    experiment = drape.Experiment(solved_by(with_membrane(small, Picky), Careful))
     model, start = experiment.scene()[0], experiment.scene().start(0)
 
     def ask(iteration):
@@ -462,8 +450,7 @@ def test_a_run_in_a_callback_raises_what_its_prototypes_raise(small):
                 raise ArithmeticError("too late")
             return super().gradient(x, rest)
 
-    drape.register("late", Late)
-    inner, seen = drape.Experiment({**small, "energies": ["late", *small["energies"][1:]]}), []
+    inner, seen = drape.Experiment(with_membrane(small, Late)), []
     inner.scene()
 
     def ask(level):
