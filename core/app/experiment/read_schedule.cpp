@@ -44,20 +44,6 @@ std::vector<std::vector<double>> values_of(const ScheduleKey& key) {
   return values;
 }
 
-/// The values of a key, then one between each two that differ: increments set such values too, also where a
-/// step of a key has to be made in parts. None is a round fraction, which an integer might take.
-std::vector<std::vector<double>> with_values_between(const ScheduleKey& key) {
-  constexpr double fraction = 0.38196601125;
-  std::vector<std::vector<double>> all = key.values;
-  for (std::size_t i = 0; i + 1 < key.values.size(); ++i) {
-    if (key.values[i] == key.values[i + 1]) continue;
-    std::vector<double>& between = all.emplace_back(key.values[i]);
-    for (std::size_t c = 0; c < between.size(); ++c)
-      between[c] += fraction * (key.values[i + 1][c] - between[c]);
-  }
-  return all;
-}
-
 class KeyReader {
  public:
   KeyReader(Experiment& experiment, ConfigErrors& errors)
@@ -142,7 +128,9 @@ class KeyReader {
     if (key.parameter == "friction")
       own.push_back({where, refusal_of_friction(*e_.registry)});
     else if (set_parameter(config, key.parameter, key.written.items[0], where, own))
-      own.push_back({where, "it must name a number, or a list of as many numbers as each of its values"});
+      own.push_back({where,
+                     "it must name a number that is no integer, or a list of as many such numbers as each of "
+                     "its values"});
     errors_.push_back({where, name(key) + ": " + own[0].message});
   }
 
@@ -152,9 +140,7 @@ class KeyReader {
     for (std::size_t k = 0; k < keys_.size(); ++k) {
       for (const KeyTarget& target : keys_[k].targets)
         for (std::size_t c = 0; c < target.numbers.count(); ++c)
-          if (const double* number =
-                  target.numbers.at(parameters_of(e_, target.part, target.item).values.get(), c))
-            numbers[k].insert(number);
+          numbers[k].insert(target.numbers.at(parameters_of(e_, target.part, target.item).values.get(), c));
       for (std::size_t j = 0; j < k; ++j)
         if (std::ranges::any_of(numbers[k], [&](const double* own) { return numbers[j].contains(own); }))
           refuse(keys_[k], "sets what key \"" + excerpt(keys_[j].parameter) + "\" sets; remove one of them");
@@ -176,7 +162,7 @@ class KeyReader {
   /// Appends the faults of the first value of a key that a part of the experiment refuses.
   void check_values(const ScheduleKey& key) {
     const Location& where = key.written.where;
-    for (const std::vector<double>& value : with_values_between(key)) {
+    for (const std::vector<double>& value : key.values) {
       ConfigErrors own;
       for (const KeyTarget& target : key.targets)
         if (own.empty()) check_value(target, value, own);

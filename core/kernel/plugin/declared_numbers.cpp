@@ -39,8 +39,7 @@ std::optional<DeclaredNumbers> DeclaredNumbers::find(const Schema& outermost, vo
       continue;
     }
     const ConfigNode all = p->write(object);
-    const bool numeric = p->type.ends_with("number") || p->type.ends_with("numbers") ||
-                         p->type.ends_with("integer") || p->type.ends_with("integers");
+    const bool numeric = p->type.ends_with("number") || p->type.ends_with("numbers");
     if (k + 1 < words.size() || !numeric || (is_map && !item) || all.kind == NodeKind::null)
       return std::nullopt;
     found.parameter_ = p;
@@ -67,8 +66,7 @@ void DeclaredNumbers::set(void* object, const double* values, ConfigErrors& erro
       errors.push_back({{}, labels_[c] + " must be " + fault + ", not " + ConfigNode::of(values[c]).scalar});
   if (errors.size() != before) return;
   void* own = owner(object);
-  for (std::size_t c = 0; c < count_; ++c)
-    if (double* number = parameter_->number(own, first_ + c)) *number = values[c];
+  for (std::size_t c = 0; c < count_; ++c) *parameter_->number(own, first_ + c) = values[c];
   if (const std::string fault = schema_->unread_fault(*parameter_, own); !fault.empty())
     errors.push_back({{}, fault});
 }

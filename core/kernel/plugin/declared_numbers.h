@@ -9,7 +9,7 @@
 namespace drape {
 
 /// A declared number of a struct, or a list of them: found once by its path, then written often, as numbers.
-/// Refers to the schema.
+/// Not an integer, which would jump. Refers to the schema.
 class DeclaredNumbers {
  public:
   /// Follows the words of a path, such as "obstacles", "plate", "translate", "2", in a struct with this
@@ -20,7 +20,7 @@ class DeclaredNumbers {
                                              const std::vector<std::string>& words);
 
   std::size_t count() const { return count_; }
-  /// Number k in a struct whose lists are as long as in find's; null for an integer.
+  /// Number k in a struct whose lists are as long as in find's.
   double* at(void* object, std::size_t k) const { return parameter_->number(owner(object), first_ + k); }
   /// Writes `count` values. Appends an error, without a location, for each that the parameter refuses, and
   /// then writes none.
