@@ -41,7 +41,7 @@ std::string text_member(const nlohmann::ordered_json& object, const std::string&
 /// The value that a JSON text describes; discarded (nlohmann's is_discarded(), of no type) if it is none.
 nlohmann::ordered_json parse_json(const std::string& text);
 /// The JSON's text, on one line without `indent`. Bytes that are not UTF-8, as in a file's name, are
-/// replaced.
+/// replaced; a number that is not finite, which JSON does not have, becomes null.
 std::string json_text(const nlohmann::ordered_json& json, int indent = -1);
 /// The same on one line of ASCII, other characters escaped: for scripts of a page, whatever its encoding.
 std::string ascii_json_text(const nlohmann::ordered_json& json);

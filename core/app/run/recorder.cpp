@@ -190,12 +190,10 @@ void Recorder::iteration(const IterationRow& r, const Positions& x) {
 Recorder::Json Recorder::state_entry(const LevelResult& r, const Cost& cost) {
   const Level& level = scene_.hierarchy.levels[r.level];
   const LevelModel model = scene_.model(r.level)->with_stiffness(r.contact_stiffness);
-  const double energy = model.energy(r.x);
   Json parts = Json::object(), released_parts = parts;
-  for (const auto& [name, joules] : model.energy_parts(r.x)) parts[name] = finite_or_null(joules);
+  for (const auto& [name, joules] : model.energy_parts(r.x)) parts[name] = joules;
   for (const auto& [name, joules] : model.energy_parts(scene_.placed[r.level]))
-    released_parts[name] =
-        parts[name].is_null() ? Json() : finite_or_null(joules - parts[name].get<double>());
+    released_parts[name] = joules - parts[name].get<double>();
   const std::optional<int> crossing = intersections(r.level, r.x);
   const bool apart = crossing.value_or(0) == 0;
   const double on_finest =
@@ -213,15 +211,15 @@ Recorder::Json Recorder::state_entry(const LevelResult& r, const Cost& cost) {
           {"analyses", r.analyses},
           {"seconds", cost.seconds},
           {"seconds_by_phase", r.seconds_by_phase},
-          {"energy", finite_or_null(energy)},
+          {"energy", model.energy(r.x)},
           {"energy_parts", parts},
-          {"energy_on_finest", finite_or_null(on_finest)},
-          {"energy_released", finite_or_null(energy_of_start(scene_) - on_finest)},
+          {"energy_on_finest", on_finest},
+          {"energy_released", energy_of_start(scene_) - on_finest},
           {"energy_parts_released", released_parts},
-          {"decrement", finite_or_null(r.decrement)},
-          {"force_residual", finite_or_null(r.force_residual)},
+          {"decrement", r.decrement},
+          {"force_residual", r.force_residual},
           {"intersections", crossing ? Json(*crossing) : Json()},
-          {"smallest_gap", r.smallest_gap ? finite_or_null(*r.smallest_gap) : Json()},
+          {"smallest_gap", r.smallest_gap ? Json(*r.smallest_gap) : Json()},
           {"contact_stiffness", r.contact_stiffness},
           {"mesh", level_file(s_.method, r.level, ".ply")}};
 }
@@ -244,9 +242,9 @@ void Recorder::increment_finished(const IncrementRow& r, const Positions& x) {
        {"steps", r.steps},
        {"iterations", r.iterations},
        {"seconds", seconds},
-       {"energy", finite_or_null(r.energy)},
-       {"energy_released", finite_or_null(model.value(scene_.placed[r.level]) - model.value(x))},
-       {"force_residual", finite_or_null(r.force_residual)},
+       {"energy", r.energy},
+       {"energy_released", model.value(scene_.placed[r.level]) - model.value(x)},
+       {"force_residual", r.force_residual},
        {"max_constraint_violation", r.max_constraint_violation}});
   exclude(watch.seconds());
 }

@@ -85,7 +85,7 @@ const Positions* Recorder::find_reference(Observer& observer, bool cancelled) {
   }
   entry.update({{"status", to_string(solved_reference_->outcome)},
                 {"message", solved_reference_->message},
-                {"force_residual", finite_or_null(solved_reference_->force_residual)},
+                {"force_residual", solved_reference_->force_residual},
                 {"iterations", solved_reference_->iterations},
                 {"seconds", solved_reference_->seconds}});
   log({{"event", "reference_solved"}, {"status", to_string(solved_reference_->outcome)}});

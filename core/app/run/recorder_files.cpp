@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstring>
 #include <fstream>
+#include <nlohmann/json.hpp>
 
 #include "core/app/files/json_file.h"
 #include "core/app/report/run_data.h"
@@ -13,10 +14,6 @@
 #include "core/numerics/mesh_files/io.h"
 
 namespace drape {
-
-nlohmann::ordered_json finite_or_null(double value) {
-  return std::isfinite(value) ? nlohmann::ordered_json(value) : nlohmann::ordered_json();
-}
 
 std::string number_cell(const std::optional<double>& value, int digits) {
   return value && std::isfinite(*value) ? general_text(*value, digits) : "";

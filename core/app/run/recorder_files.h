@@ -2,7 +2,6 @@
 
 #include <cstdint>
 #include <filesystem>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <vector>
@@ -12,9 +11,6 @@
 namespace drape {
 
 // Operations on a run's files. All throw WriteError if a file cannot be written.
-
-/// The value, or null if it is not finite: JSON has no such number.
-nlohmann::ordered_json finite_or_null(double value);
 
 /// A cell of a CSV file, to so many significant digits; empty for a number that is absent or not finite.
 std::string number_cell(const std::optional<double>& value, int digits);

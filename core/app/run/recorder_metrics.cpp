@@ -47,7 +47,7 @@ Recorder::Json Recorder::compare(int level, const Positions& x, const Positions&
     if (metric->scope() != MetricScope::pair) continue;
     const MetricResult result =
         measure(name, *metric, {scene_.hierarchy.levels[level], *scene_.model(level), x, &other}, row);
-    for (const MetricValue& v : result.values) at_dotted(row, v.name) = finite_or_null(v.value);
+    for (const MetricValue& v : result.values) at_dotted(row, v.name) = v.value;
     if (fields) fields->insert(fields->end(), result.fields.begin(), result.fields.end());
   }
   return row;
@@ -82,7 +82,7 @@ void Recorder::method_finished(const std::vector<LevelResult>& results,
       if (metric->scope() == MetricScope::state)
         for (const MetricValue& v :
              measure(name, *metric, {scene_.hierarchy.levels[r.level], model, r.x}, state).values)
-          at_dotted(state, v.name) = finite_or_null(v.value);
+          at_dotted(state, v.name) = v.value;
   }
   write_collection(s_.method);
   std::vector<Json> of_start;  // the start compared with each level's state
