@@ -36,12 +36,6 @@ std::uint32_t write_snapshots(const std::filesystem::path& file, const std::vect
 
 double energy_of_start(const Scene& scene) { return scene.finest_model().value(scene.placed.back()); }
 
-Positions prolonged(const Experiment& experiment, const Scene& scene, const std::string& method,
-                    const Positions& x, int from, int to) {
-  const auto& weights = scene.hierarchy.weights(experiment.solver_of(method).interpolation());
-  return scene.hierarchy.prolong(x, from, to, weights);
-}
-
 StateError state_error(const std::vector<ErrorMeasure>& measures, const Experiment& experiment,
                        const Scene& scene, const Positions& x, double energy, const ErrorTarget& target,
                        const std::function<void(const std::string&)>& fault) {

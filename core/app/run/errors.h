@@ -64,10 +64,6 @@ StateError state_error(const std::vector<ErrorMeasure>& measures, const Experime
                        const Scene& scene, const Positions& x, double energy, const ErrorTarget& target,
                        const std::function<void(const std::string&)>& fault);
 
-/// A state of a method on one level as it is on another, finer one, by the method's own interpolation.
-Positions prolonged(const Experiment& experiment, const Scene& scene, const std::string& method,
-                    const Positions& x, int from, int to);
-
 /// The snapshots of one level, whose positions are in a file; nothing if none are recorded.
 struct LevelSnapshots {
   std::vector<Cost> cost;        ///< of each snapshot, with what it builds on

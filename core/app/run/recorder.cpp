@@ -196,8 +196,7 @@ Recorder::Json Recorder::state_entry(const LevelResult& r, const Cost& cost) {
     released_parts[name] = joules - parts[name].get<double>();
   const std::optional<int> crossing = intersections(r.level, r.x);
   const bool apart = crossing.value_or(0) == 0;
-  const double on_finest =
-      scene_.finest_model().value(prolonged(experiment_, scene_, s_.method, r.x, r.level, scene_.finest()));
+  const double on_finest = energy_on_finest(r.level, r.x);
   return {{"level", r.level},
           {"vertices", level.vertex_count()},
           {"triangles", level.triangle_count()},

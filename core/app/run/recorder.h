@@ -104,6 +104,10 @@ class Recorder : public Observer {
   /// Throws WriteError if the last write to iterations.csv or log.jsonl failed.
   void require_written(const std::ofstream& stream, const char* name) const;
   Json& method_entry() { return results_["methods"][s_.method]; }
+  /// A state of a method on one level as it is on another, finer one, by the method's own interpolation.
+  Positions prolonged(const std::string& method, const Positions& x, int from, int to) const;
+  /// The energy of the finest level at a state of the current method, prolonged to it [J].
+  double energy_on_finest(int level, const Positions& x) const;
   Json state_entry(const LevelResult& result, const Cost& cost);
   /// Counts intersecting pairs and logs the first ones; nothing without contact.
   std::optional<int> intersections(int level, const Positions& x);

@@ -101,8 +101,7 @@ Recorder::Json Recorder::add_snapshots(const LevelResult& r, const Cost& cost, R
   for (const Snapshot& snapshot : snapshots) {
     own.cost.push_back(before + snapshot.cost);
     own.iterations.push_back(snapshot.cost.iterations);
-    own.energies.push_back(scene_.finest_model().value(
-        prolonged(experiment_, scene_, s_.method, snapshot.x, r.level, scene_.finest())));
+    own.energies.push_back(energy_on_finest(r.level, snapshot.x));
     entry["iterations"].push_back(snapshot.cost.iterations);
     entry["seconds"].push_back(own.cost.back().seconds);
   }
@@ -145,7 +144,7 @@ void Recorder::write_errors(const Positions* reference, const std::function<bool
     }
     for (std::size_t k = 0; k < states.count() && !stop(); ++k) {
       const Positions state = k + 1 < states.count() ? states.positions(k) : level.x;
-      const Positions x = prolonged(experiment_, scene_, level.method, state, level.level, finest);
+      const Positions x = prolonged(level.method, state, level.level, finest);
       const double energy = energies[k];
       const auto against = [&](const std::optional<ErrorTarget>& target) {
         return target ? state_error(measures, experiment_, scene_, x, energy, *target, fault)

@@ -26,6 +26,15 @@ std::string fields_file(const std::string& method, int coarse, int fine) {
 
 }  // namespace
 
+Positions Recorder::prolonged(const std::string& method, const Positions& x, int from, int to) const {
+  const Interpolation interpolation = experiment_.solver_of(method).interpolation();
+  return scene_.hierarchy.prolong(x, from, to, scene_.hierarchy.weights(interpolation));
+}
+
+double Recorder::energy_on_finest(int level, const Positions& x) const {
+  return scene_.finest_model().value(prolonged(s_.method, x, level, scene_.finest()));
+}
+
 MetricResult Recorder::measure(const std::string& name, const Metric& metric, const MetricInput& input,
                                Json& entry) {
   std::string cause;
@@ -54,7 +63,7 @@ Recorder::Json Recorder::compare(int level, const Positions& x, const Positions&
 }
 
 Recorder::Json Recorder::pair_entry(const RecordedState& coarse, const RecordedState& fine) {
-  const Positions x = prolonged(experiment_, scene_, fine.method, coarse.x, coarse.level, fine.level);
+  const Positions x = prolonged(fine.method, coarse.x, coarse.level, fine.level);
   Json row = {{"coarse", coarse.level}, {"fine", fine.level}};
   VertexFields fields;
   row.update(compare(fine.level, fine.x, x, &fields));
