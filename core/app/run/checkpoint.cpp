@@ -23,12 +23,10 @@ struct Header {
   std::uint64_t size = 0;
 };
 
-std::filesystem::path newest(const std::filesystem::path& folder) { return folder / "checkpoint/state.bin"; }
-std::filesystem::path previous(const std::filesystem::path& folder) {
-  return folder / "checkpoint/previous.bin";
-}
-/// What the next save writes, whole if it was cut between its renames.
-std::filesystem::path next_of(const std::filesystem::path& folder) { return folder / "checkpoint/next.bin"; }
+/// The files of a run's checkpoints. A save writes `upcoming`, which is whole if it was cut between its
+/// renames.
+constexpr std::string_view newest = "checkpoint/state.bin", previous = "checkpoint/previous.bin",
+                           upcoming = "checkpoint/next.bin";
 
 }  // namespace
 
@@ -76,25 +74,26 @@ Checkpoint decode_body(std::string_view bytes) {
 }
 
 void save_checkpoint(const std::filesystem::path& folder, const Checkpoint& checkpoint) {
-  const std::filesystem::path file = newest(folder), next = next_of(folder);
+  const std::filesystem::path file = folder / newest, next = folder / upcoming;
   make_folder(file.parent_path());
   write_file(next, encode(checkpoint));
   sync_to_disk(next);
   std::error_code none;
-  if (std::filesystem::exists(file, none)) rename_file(file, previous(folder));
+  if (std::filesystem::exists(file, none)) rename_file(file, folder / previous);
   rename_file(next, file);
   sync_to_disk(file.parent_path());
 }
 
 bool has_checkpoint(const std::filesystem::path& folder) {
   std::error_code none;  // between the two renames of a save there is the previous one alone
-  return std::filesystem::exists(newest(folder), none) || std::filesystem::exists(previous(folder), none);
+  return std::filesystem::exists(folder / newest, none) || std::filesystem::exists(folder / previous, none);
 }
 
 Checkpoint load_checkpoint(const std::filesystem::path& folder, std::vector<std::string>& warnings) {
   std::string faults;
-  for (const auto& file : {newest(folder), previous(folder), next_of(folder)}) {
-    if (!std::filesystem::exists(file) || (faults.empty() && file == next_of(folder))) continue;
+  for (const std::string_view name : {newest, previous, upcoming}) {
+    const std::filesystem::path file = folder / name;
+    if (!std::filesystem::exists(file) || (faults.empty() && name == upcoming)) continue;
     try {
       Checkpoint checkpoint = decode(read_file(file));
       if (!faults.empty()) warnings.push_back(faults + "; going on from " + file.string());
@@ -113,8 +112,8 @@ Checkpoint load_checkpoint(const std::filesystem::path& folder, std::vector<std:
 
 void remove_checkpoints(const std::filesystem::path& folder) {
   std::error_code error;
-  for (const auto& file : {newest(folder), previous(folder), next_of(folder)})
-    std::filesystem::remove(file, error);
+  for (const std::string_view name : {newest, previous, upcoming})
+    std::filesystem::remove(folder / name, error);
 }
 
 }  // namespace drape

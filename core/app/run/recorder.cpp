@@ -234,17 +234,16 @@ void Recorder::increment_finished(const IncrementRow& r, const Positions& x) {
   }
   const double seconds = std::max(s_.last.seconds - *increments_, 0.0);  // without what recording took
   *increments_ += seconds;
-  increments.push_back(
-      {{"level", r.level},
-       {"increment", r.increment},
-       {"time", r.time},
-       {"steps", r.steps},
-       {"iterations", r.iterations},
-       {"seconds", seconds},
-       {"energy", r.energy},
-       {"energy_released", model.value(scene_.placed[r.level]) - model.value(x)},
-       {"force_residual", r.force_residual},
-       {"max_constraint_violation", r.max_constraint_violation}});
+  increments.push_back({{"level", r.level},
+                        {"increment", r.increment},
+                        {"time", r.time},
+                        {"steps", r.steps},
+                        {"iterations", r.iterations},
+                        {"seconds", seconds},
+                        {"energy", r.energy},
+                        {"energy_released", model.value(scene_.placed[r.level]) - model.value(x)},
+                        {"force_residual", r.force_residual},
+                        {"max_constraint_violation", r.max_constraint_violation}});
   exclude(watch.seconds());
 }
 
