@@ -59,13 +59,11 @@ LevelResult audited(const Scene& scene, LevelResult result, double force_toleran
     result.outcome = outcome;
     result.message = "the method says that it converged; " + fault;
   };
+  const LevelModel& model = *scene.model(result.level);
   if (scene.load_stepping && !scene.load_stepping->finished()) {
     refuse(Outcome::infeasible, "the schedule has not come to its end");
-    return result;
-  }
-  const LevelModel& model = *scene.model(result.level);
-  if (const double distance = distance_of_pins(model, result.x);
-      !(distance <= max_pin_distance * bounding_box_diagonal(result.x))) {
+  } else if (const double distance = distance_of_pins(model, result.x);
+             !(distance <= max_pin_distance * bounding_box_diagonal(result.x))) {
     refuse(Outcome::infeasible, "a pin is " + three_digits(distance) + " m off its target");
   } else if (result.level == scene.finest() && result.outcome == Outcome::converged) {
     const double residual =
