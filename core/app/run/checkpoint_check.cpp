@@ -150,15 +150,12 @@ class Check {
 
   void recorder(const Recorder::State& s) const {
     const Json results = parse_json(s.results);
-    const bool has_methods =
-        results.is_object() && results.contains("methods") && results["methods"].is_object();
-    require(has_methods, "results.json as it was");
-    for (const auto& [name, method] : results["methods"].items())
-      require(method.is_object() && method.contains("levels") && method["levels"].is_array() &&
-                  method.contains("seconds") && method["seconds"].is_number() &&
-                  method.contains("peak_memory_bytes") && method["peak_memory_bytes"].is_number(),
+    const Json& entries = member_of(results, "methods");
+    require(entries.is_object(), "results.json as it was");
+    for (const auto& [name, method] : entries.items())
+      require(member_of(method, "levels").is_array() && member_of(method, "seconds").is_number() &&
+                  member_of(method, "peak_memory_bytes").is_number(),
               "results.json as it was, of method " + name);
-    const auto& entries = results["methods"];
     require(s.method.empty() || (entries.contains(s.method) && s.method == c_.methods[c_.method] &&
                                  entries[s.method]["levels"].size() == c_.state.finished.size()),
             "results.json as it was, of the method under way");
