@@ -212,26 +212,25 @@ SavedState saved_state(const fs::path& folder, const std::string& method, std::o
     for (const auto& [name, entry] : results["methods"].items()) state.method = name;
   if (!checkpoint) refuse_damaged_results(folder, state.method);
   const bool current = checkpoint && checkpoint->methods.at(checkpoint->method) == state.method;
-  const std::optional<NewtonState>& under_way = current ? checkpoint->state.under_way : std::nullopt;
-  constexpr int max_levels = 32;  // more than an experiment can have
-  std::vector<int> levels;
-  for (int l = 0; l < max_levels; ++l)
-    if (saved_in(checkpoint, state.method, l) || fs::exists(folder / level_file(state.method, l, ".ply")) ||
-        (under_way && checkpoint->state.level == l))
-      levels.push_back(l);
-  const std::string whose = folder.string() + ": holds no state of method " + state.method;
-  if (levels.empty()) throw std::runtime_error(whose + "; name another with --method");
-  state.level = level.value_or(levels.back());
-  if (std::ranges::find(levels, state.level) == levels.end())
-    throw std::runtime_error(whose + " on level " + std::to_string(state.level) +
-                             "; the last level that it has is " + std::to_string(levels.back()));
-  const RecordedState* finished = saved_in(checkpoint, state.method, state.level);  // its mesh may be damaged
-  if (under_way && checkpoint->state.level == state.level)
-    state.x = under_way->so_far.x;
-  else if (finished)
-    state.x = finished->x;
+  const auto mesh_of = [&](int l) { return folder / level_file(state.method, l, ".ply"); };
+  const auto under_way = [&](int l) { return current ? checkpoint->state.of(l) : nullptr; };
+  const auto has = [&](int l) {
+    return under_way(l) || saved_in(checkpoint, state.method, l) || fs::exists(mesh_of(l));
+  };
+  int last = 32;  // more levels than an experiment can have
+  while (last >= 0 && !has(last)) --last;
+  const std::string whose = "holds no state of method " + state.method;
+  if (last < 0) refuse_path(folder, whose + "; name another with --method");
+  state.level = level.value_or(last);
+  if (!has(state.level))
+    refuse_path(folder, whose + " on level " + std::to_string(state.level) +
+                            "; the last level that it has is " + std::to_string(last));
+  if (const NewtonState* unfinished = under_way(state.level))
+    state.x = unfinished->so_far.x;
+  else if (const RecordedState* finished = saved_in(checkpoint, state.method, state.level))
+    state.x = finished->x;  // its mesh may be damaged
   else
-    state.x = read_mesh(folder / level_file(state.method, state.level, ".ply")).vertices;
+    state.x = read_mesh(mesh_of(state.level)).vertices;
   return state;
 }
 
