@@ -26,7 +26,7 @@ class LocalEngine {
     waiting_.assign(missing.begin(), missing.end());
     to_run_ = missing.size();
     while (!waiting_.empty() || !running_.empty()) {
-      if (options_.stop && options_.stop()) stop();
+      if (options_.stop()) stop();
       start_what_fits();
       collect();
       std::this_thread::sleep_for(std::chrono::milliseconds(5));

@@ -158,7 +158,7 @@ bool wait_for(const SweepFolder& folder, const SlurmJobs& jobs, const std::funct
       std::fprintf(stderr, "[%zu/%zu] done, %zu failed\n", done, sweep["runs"].size(), failed);
     told = done;
     for (int k = 0; k < 10; ++k) {
-      if (stop && stop()) return false;
+      if (stop()) return false;
       std::this_thread::sleep_for(std::chrono::milliseconds(100));
     }
   }
