@@ -130,7 +130,7 @@ void write_fit(const SweepFolder& folder, const FitRequest& request, const std::
       {"target", request.target},   {"tolerance", request.tolerance}, {"starts", setup.starts},
       {"reached", reached}};
   json.update(json_of(best));
-  for (const ScaledKey& key : setup.keys) json["fitted"][key.path] = best.scaled(key);
+  for (const ScaledKey& key : setup.keys) json["fitted"][key.path] = key.times(best.factor);
   json["samples"] = nlohmann::ordered_json::array();
   for (const FitSample& sample : samples) json["samples"].push_back(json_of(sample));
   write_file(folder.path() / "fit.json", json_text(json, 1) + "\n");
@@ -150,7 +150,7 @@ int show_result(const SweepFolder& folder, const FitRequest& request, const FitR
             << digits(best->values.back()) << " in " << best->values.size() << " of " << setup.starts
             << " starts) with\n ";
   for (const ScaledKey& key : setup.keys)
-    std::cout << " --set " << key.path << "=" << ConfigNode::of(best->scaled(key)).scalar;
+    std::cout << " --set " << key.path << "=" << ConfigNode::of(key.times(best->factor)).scalar;
   std::cout << "\nexperiment: " << (folder.path() / "fitted.yaml").string() << "\n";
   if (!reached) std::cerr << "error: " << shortfall(end, request, runs.samples()) << "\n";
   return reached && best->left_out.empty() ? exit_done : exit_not_converged;

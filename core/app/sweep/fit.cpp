@@ -78,9 +78,6 @@ std::string name_of(double factor) { return prefix + ConfigNode::of(factor).scal
 /// To so many significant digits.
 double rounded(double value, int digits) { return parse_number(general_text(value, digits)).value(); }
 
-/// What a person reads, and far finer than any fit.
-constexpr int digits_of_values = 6;
-
 const double first_step = std::log(4), last_place = std::log(1024);
 constexpr double least_step = 0.05;      ///< towards a factor that is not known
 constexpr double least_interval = 1e-3;  ///< of the logarithm
@@ -118,6 +115,8 @@ FitEnd search_between(Place low, Place high, const At& at, const int& left) {
 
 }  // namespace
 
+double ScaledKey::times(double factor) const { return rounded(value * factor, 6); }
+
 std::vector<ScaledKey> scaled_keys(const Experiment& experiment, const std::vector<std::string>& paths,
                                    const std::string& option, ConfigErrors& errors) {
   std::vector<ScaledKey> keys;
@@ -149,8 +148,7 @@ std::optional<Sweep> FitSetup::sweep(const std::set<double>& factors, const Regi
   source.add("methods", methods);
   for (const double factor : factors) {
     ConfigNode variation, values;
-    for (const ScaledKey& key : keys)
-      values.add(key.path, ConfigNode::of(rounded(key.value * factor, digits_of_values)));
+    for (const ScaledKey& key : keys) values.add(key.path, ConfigNode::of(key.times(factor)));
     variation.add("name", ConfigNode::of(name_of(factor)));
     variation.add("set", values);
     variations.items.push_back(variation);
@@ -163,8 +161,6 @@ double FitSample::median() const {
   const std::size_t half = values.size() / 2;
   return values.size() % 2 == 1 ? values[half] : (values[half - 1] + values[half]) / 2;
 }
-
-double FitSample::scaled(const ScaledKey& key) const { return rounded(key.value * factor, digits_of_values); }
 
 FitRuns::FitRuns(const FitSetup& setup, const SweepFolder& folder, const SweepOptions& options,
                  const Registry& registry)
@@ -199,8 +195,7 @@ const FitSample& FitRuns::at(double factor) {
   begun_ = true;
   std::erase_if(missing, [&](std::size_t k) { return sweep->runs[k].name != name_of(factor); });
   run_locally(*sweep, folder_, missing, options_);
-  folder_.refresh();
-  if (options_.stop && options_.stop()) throw FitStopped();
+  if (options_.stop()) throw FitStopped();
   return samples_.emplace_back(measured(*sweep, factor));
 }
 

@@ -12,6 +12,8 @@ namespace drape {
 struct ScaledKey {
   std::string path;
   double value;  ///< in the experiment
+
+  double times(double factor) const;  ///< to six significant digits, far finer than any fit
 };
 
 /// The numbers that paths name, each once. A path may also be that of a section with a part of its keys'
@@ -43,7 +45,6 @@ struct FitSample {
   std::string config;                 ///< of the first start: an experiment in YAML
 
   double median() const;
-  double scaled(const ScaledKey& key) const;  ///< its value with this factor
 };
 
 /// Thrown when a stop was requested; the runs have saved their states.
