@@ -7,6 +7,7 @@
 
 #include "core/app/files/json_file.h"
 #include "core/app/run/checkpoint.h"
+#include "core/kernel/files/string_utils.h"
 
 namespace drape {
 
@@ -52,7 +53,7 @@ class Check {
     require(c_.method >= 0 && c_.method < static_cast<int>(c_.methods.size()), "the method under way");
     const std::vector<std::string> known = experiment_.method_names();
     for (const std::string& name : c_.methods)
-      require(std::ranges::find(known, name) != known.end(), "the experiment has no method " + name);
+      require(is_one_of(name, known), "the experiment has no method " + name);
   }
 
   void levels() const {

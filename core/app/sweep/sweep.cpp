@@ -1,6 +1,5 @@
 #include "core/app/sweep/sweep.h"
 
-#include <algorithm>
 #include <map>
 #include <set>
 
@@ -22,7 +21,7 @@ using NodeKind = ConfigNode::Kind;
 /// them.
 void keep_methods(ConfigNode& resolved, const std::vector<std::string>& chosen) {
   const auto is_left_out = [&](const std::string& name) {
-    return !chosen.empty() && std::ranges::find(chosen, name) == chosen.end();
+    return !chosen.empty() && !is_one_of(name, chosen);
   };
   ConfigNode methods;
   for (const auto& [name, method] : resolved.find("methods")->entries)
@@ -146,7 +145,7 @@ class Reader {
                             const Location& where, ConfigErrors& errors) {
     const std::vector<std::string> known = experiment.method_names();
     for (const std::string& name : chosen)
-      if (std::ranges::find(known, name) == known.end())
+      if (!is_one_of(name, known))
         errors.push_back({where, "there is no method \"" + excerpt(name) +
                                      "\"; the experiment's methods are " + joined(known)});
   }
