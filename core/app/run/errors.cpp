@@ -2,8 +2,6 @@
 
 #include <utility>
 
-#include "core/app/files/snapshot_file.h"
-#include "core/kernel/files/file.h"
 #include "core/kernel/files/message_text.h"
 
 namespace drape {
@@ -25,13 +23,6 @@ std::vector<Snapshot> SnapshotRecorder::end_level(const Cost& cost, const Positi
   if (!snapshots.empty() && snapshots.back().cost.iterations == cost.iterations) snapshots.pop_back();
   snapshots.push_back({cost, last});
   return std::exchange(snapshots, {});
-}
-
-std::uint32_t write_snapshots(const std::filesystem::path& file, const std::vector<Snapshot>& snapshots) {
-  std::string bytes;
-  for (const Snapshot& snapshot : snapshots) bytes += SnapshotFile::bytes_of(snapshot.x);
-  write_file(file, bytes);
-  return checksum_of(bytes);
 }
 
 double energy_of_start(const Scene& scene) { return scene.finest_model().value(scene.placed.back()); }

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstdint>
-#include <filesystem>
 #include <functional>
 #include <optional>
 #include <string>
@@ -41,9 +40,6 @@ struct SnapshotRecorder {
   /// The level's snapshots, ending with `last`.
   std::vector<Snapshot> end_level(const Cost& cost, const Positions& last);
 };
-
-/// Writes positions as a SnapshotFile. Returns the checksum of the file. Throws WriteError.
-std::uint32_t write_snapshots(const std::filesystem::path& file, const std::vector<Snapshot>& snapshots);
 
 /// One value per measure; absent if it could not be measured.
 using StateError = std::vector<std::optional<double>>;

@@ -94,11 +94,12 @@ const Positions* Recorder::find_reference(Observer& observer, bool cancelled) {
 
 Recorder::Json Recorder::add_snapshots(const LevelResult& r, const Cost& cost, RecordedState& state) {
   const Cost before = r.from_initial_state ? Cost() : s_.spent;
-  const std::vector<Snapshot> snapshots = s_.snapshots.end_level(cost, r.x);
   const std::string file = snapshots_file(state);
   LevelSnapshots& own = state.snapshots;
   Json entry = {{"file", file}};
-  for (const Snapshot& snapshot : snapshots) {
+  std::string bytes;
+  for (const Snapshot& snapshot : s_.snapshots.end_level(cost, r.x)) {
+    bytes += SnapshotFile::bytes_of(snapshot.x);
     own.cost.push_back(before + snapshot.cost);
     own.iterations.push_back(snapshot.cost.iterations);
     own.energies.push_back(energy_on_finest(r.level, snapshot.x));
@@ -107,7 +108,8 @@ Recorder::Json Recorder::add_snapshots(const LevelResult& r, const Cost& cost, R
   }
   make_folder(folder_.file("snapshots"));
   own.converged = has_converged(r.outcome);
-  own.checksum = write_snapshots(folder_.file(file), snapshots);
+  write_file(folder_.file(file), bytes);
+  own.checksum = checksum_of(bytes);
   entry["checksum"] = own.checksum;
   sync_to_disk(folder_.file(file));
   return entry;
