@@ -133,9 +133,7 @@ void write_status(const RunFiles& files, const RunStatus& status) {
 RunStatus resolve_status(const RunFiles& files, RunStatus status) {
   if (status.has_results()) return with_sound_results(files, std::move(status));
   // A refused run has not begun: results in its folder may be of another experiment.
-  const bool had_begun = status.state == RunState::running || status.state == RunState::cancelled ||
-                         (status.state == RunState::failed && !status.refused());
-  if (!had_begun) return status;
+  if (status.state == RunState::pending || status.refused()) return status;
   if (status.state == RunState::running) {
     status.state = RunState::cancelled;
     status.seconds += seconds_to_checkpoint(files);
