@@ -64,8 +64,7 @@ class Recorder : public Observer {
   void exclude(double seconds) { s_.overhead += seconds; }
   /// Evaluates the metrics on all finished levels and pairs of them, and writes results.json. A failed method
   /// keeps the results of its earlier levels.
-  void method_finished(const std::vector<LevelResult>& results,
-                       const std::optional<MethodFailure>& failure = std::nullopt);
+  void method_finished(const std::vector<LevelResult>& results, const std::optional<MethodFailure>& failure);
   /// Finds the reference, if necessary by a further solve under `observer`, and measures the errors of every
   /// method's finest state and of every snapshot. After a `cancelled` run it solves nothing further. Returns
   /// false if the observer requested a stop meanwhile.
