@@ -15,6 +15,18 @@ inline nlohmann::json runs_of(const std::filesystem::path& sweep) {
   return json_in(sweep / "sweep.json")["runs"];
 }
 
+/// A folder with a sweep of the small experiment: coarsest_by_newton and what follows it.
+struct SmallSweep : Scratch {
+  explicit SmallSweep(const std::string& rest = "") : Scratch(small_experiment()) {
+    write("s.yaml", coarsest_by_newton + rest);
+  }
+  /// Runs what is missing in the folder "out".
+  Ended sweep(int exit_code = 0, const std::string& options = "") const {
+    return drape_ends("sweep s.yaml --out out" + options, *this, exit_code);
+  }
+  nlohmann::json runs() const { return runs_of(path / "out"); }
+};
+
 /// What a sweep computed: every level's mesh and every energy, by file and method.
 inline std::map<std::string, std::string> outcome_of(const std::filesystem::path& sweep) {
   std::map<std::string, std::string> all;

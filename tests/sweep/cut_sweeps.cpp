@@ -90,13 +90,12 @@ TEST_CASE("a run that another process was resuming when its sweep began is one o
 }
 
 TEST_CASE("a sweep that was cut while its runs' files were written goes on") {
-  const Scratch folder(small_experiment());
-  folder.write("s.yaml", "name: s\nbase: e.yaml\nset: {levels: 1}\nmethods: [newton]\n");
+  const SmallSweep folder;
   fs::create_directories(folder / "out/runs/base/seed_1.yaml.part");  // no file can be written here
   folder.write("out/sweep.lock", "");
   CHECK(drape_with("sweep s.yaml --out out", folder.path).exit_code > 1);
   fs::remove_all(folder / "out/runs/base/seed_1.yaml.part");
-  drape_ends("sweep s.yaml --out out", folder);
+  folder.sweep();
 }
 
 TEST_CASE("a run that was resumed without its sweep is one of the sweep's results, although it had failed") {
@@ -146,10 +145,8 @@ TEST_CASE("the time of a start that was killed counts") {
 }
 
 TEST_CASE("a sweep starts no run once its program was replaced, and the same command runs the rest") {
-  const Scratch folder;
+  const SmallSweep folder("repeats: 20\n");
   copy_program(folder);
-  folder.write("e.yaml", small_experiment());
-  folder.write("s.yaml", coarsest_by_newton + "repeats: 20\n");
   Command command("exec bin/drape sweep s.yaml --out out --workers 1", folder.path);
   wait_for(command, folder / "out", "converged", 1);
   replace_program(folder);
@@ -157,10 +154,10 @@ TEST_CASE("a sweep starts no run once its program was replaced, and the same com
   CHECK(ended.exit_code == 3);
   CHECK_THAT(ended.err,
              Catch::Contains("bin/drape or a library of it was replaced or removed while the sweep ran"));
-  CHECK(count_of(runs_of(folder / "out"), "failed") == 0);
-  CHECK(count_of(runs_of(folder / "out"), "pending") > 0);
-  drape_ends("sweep s.yaml --out out", folder);
-  CHECK(count_of(runs_of(folder / "out"), "converged") == 20);
+  CHECK(count_of(folder.runs(), "failed") == 0);
+  CHECK(count_of(folder.runs(), "pending") > 0);
+  folder.sweep();
+  CHECK(count_of(folder.runs(), "converged") == 20);
 }
 
 TEST_CASE("a sweep's folders may have wildcards in their names, and bytes that are not UTF-8") {

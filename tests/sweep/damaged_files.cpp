@@ -9,9 +9,8 @@ using Json = nlohmann::json;
 using Catch::Contains;
 
 TEST_CASE("a value of the wrong kind in a sweep's files is named with its file and its key") {
-  const Scratch folder(small_experiment());
-  folder.write("s.yaml", coarsest_by_newton);
-  drape_ends("sweep s.yaml --out out", folder);
+  const SmallSweep folder;
+  folder.sweep();
   // With this value, or without one, there in the file.
   const auto said = [&](const std::string& file, const std::string& path, const std::string& value) {
     const std::string sound = text_of(folder / file);
@@ -54,14 +53,13 @@ TEST_CASE("a value of the wrong kind in a sweep's files is named with its file a
         of_results + "\"status\" must be a text, not [1]" + rerun);
   // Results that do not say whether they are complete count as none.
   folder.write(results, replaced(text_of(folder / results), "\"complete\": true", "\"complete\": \"yes\""));
-  drape_ends("sweep s.yaml --out out", folder);
-  CHECK(runs_of(folder / "out")[0]["starts"] == 2);
+  folder.sweep();
+  CHECK(folder.runs()[0]["starts"] == 2);
 }
 
 TEST_CASE("a run whose results are cut short has failed, and the sweep's others are as they were") {
-  const Scratch folder(small_experiment());
-  folder.write("s.yaml", coarsest_by_newton + "seeds: [1, 2]\n");
-  drape_ends("sweep s.yaml --out out", folder);
+  const SmallSweep folder("seeds: [1, 2]\n");
+  folder.sweep();
   const std::string run = "out/runs/base/seed_1", results = run + "/results.json";
   folder.write(results, "{");
 
@@ -70,48 +68,43 @@ TEST_CASE("a run whose results are cut short has failed, and the sweep's others 
   CHECK_THAT(table.out, Contains("| 1 | failed | NO | " + why + "run the experiment again |") &&
                             Contains("| 2 | converged | yes |"));
   drape_ends("report out", folder);
-  CHECK_THAT(drape_ends("sweep s.yaml --out out --dry-run", folder).out,
-             Contains("failed     " + run.substr(4)));
+  CHECK_THAT(folder.sweep(0, " --dry-run").out, Contains("failed     " + run.substr(4)));
 
-  CHECK_THAT(drape_ends("sweep s.yaml --out out", folder, 1).out,
-             Contains("    " + why + "--retry-failed runs it again\n"));
-  Json runs = runs_of(folder / "out");
+  CHECK_THAT(folder.sweep(1).out, Contains("    " + why + "--retry-failed runs it again\n"));
+  Json runs = folder.runs();
   CHECK(runs[0]["status"] == "failed");
   CHECK(runs[0]["exit_code"] == 3);
   CHECK(runs[1]["status"] == "converged");
   folder.write(results, R"({"complete": true})");
-  drape_ends("sweep s.yaml --out out", folder, 1);
-  drape_ends("sweep s.yaml --out out --retry-failed", folder);
-  runs = runs_of(folder / "out");
+  folder.sweep(1);
+  folder.sweep(0, " --retry-failed");
+  runs = folder.runs();
   CHECK(runs[0]["starts"] == 2);
   CHECK(runs[1]["starts"] == 1);
   folder.write(results, replaced(text_of(folder / results), "\"complete\": true", "\"complete\": false"));
-  CHECK_THAT(drape_ends("sweep s.yaml --out out", folder, 1).out,
-             Contains("is of a run that is not complete"));
-  CHECK(runs_of(folder / "out")[0]["status"] == "failed");
+  CHECK_THAT(folder.sweep(1).out, Contains("is of a run that is not complete"));
+  CHECK(folder.runs()[0]["status"] == "failed");
 }
 
 TEST_CASE("a sweep whose sweep.json is gone or empty keeps its finished runs") {
   const bool is_empty = GENERATE(false, true);
-  const Scratch folder(small_experiment());
-  folder.write("s.yaml", coarsest_by_newton);
-  drape_ends("sweep s.yaml --out out", folder);
+  const SmallSweep folder;
+  folder.sweep();
   const std::string log = "out/runs/base/seed_1/log.jsonl", before = text_of(folder / log);
   if (is_empty)
     folder.write("out/sweep.json", "");
   else
     std::filesystem::remove(folder / "out/sweep.json");
-  drape_ends("sweep s.yaml --out out", folder);
+  folder.sweep();
   CHECK(text_of(folder / log) == before);
-  CHECK(runs_of(folder / "out")[0]["status"] == "converged");
+  CHECK(folder.runs()[0]["status"] == "converged");
 }
 
 TEST_CASE("a run whose folder is removed is run again") {
-  const Scratch folder(small_experiment());
-  folder.write("s.yaml", coarsest_by_newton);
-  drape_ends("sweep s.yaml --out out", folder);
+  const SmallSweep folder;
+  folder.sweep();
   std::filesystem::remove_all(folder / "out/runs/base/seed_1");
-  drape_ends("sweep s.yaml --out out", folder);
-  CHECK(runs_of(folder / "out")[0]["starts"] == 2);
+  folder.sweep();
+  CHECK(folder.runs()[0]["starts"] == 2);
   CHECK(std::filesystem::exists(folder / "out/runs/base/seed_1/results.json"));
 }

@@ -29,16 +29,11 @@ void wait_for_endless(Command& command, const Scratch& folder) {
                      [&] { return fs::exists(folder / "out/runs/endless/seed_1/iterations.csv"); });
 }
 
-/// A folder with two runs that converge at once and, between them, one that never does.
-void write_endless(const Scratch& folder) {
-  folder.write("e.yaml", small_experiment());
-  folder.write(
-      "s.yaml",
-      coarsest_by_newton +
-          "ablation:\n  - {name: first}\n"
-          "  - {name: endless, set: {newton: {step_size: 1e-7, step_growth: 1, max_steps: 100000000}}}\n"
-          "  - {name: last, set: {refiner: midpoint}}\n");
-}
+/// Two runs that converge at once and, between them, one that never does.
+const std::string with_endless =
+    "ablation:\n  - {name: first}\n"
+    "  - {name: endless, set: {newton: {step_size: 1e-7, step_growth: 1, max_steps: 100000000}}}\n"
+    "  - {name: last, set: {refiner: midpoint}}\n";
 
 }  // namespace
 
@@ -138,8 +133,7 @@ TEST_CASE("kill -9 loses only the active runs") {
 }
 
 TEST_CASE("Ctrl-C stops the runs, which save their state, and the same command resumes") {
-  const Scratch folder;
-  write_endless(folder);
+  const SmallSweep folder(with_endless);
   DrapeAtWork command("sweep s.yaml --out out --workers 1", folder);
   wait_for_endless(command, folder);
   CHECK_THAT(refused_by("sweep s.yaml --out out", folder.path),
@@ -151,7 +145,7 @@ TEST_CASE("Ctrl-C stops the runs, which save their state, and the same command r
   CHECK(ended.exit_code == 130);
   CHECK_THAT(ended.err, Contains("stopping: 1 run is saving its state\n"));
   CHECK_THAT(ended.err, Catch::EndsWith("stopped on request; the same command runs what is missing\n"));
-  const Json stopped = runs_of(folder / "out");
+  const Json stopped = folder.runs();
   CHECK(stopped[0]["status"] == "converged");
   CHECK(stopped[1]["status"] == "cancelled");
   CHECK(stopped[2]["status"] == "pending");
@@ -161,8 +155,8 @@ TEST_CASE("Ctrl-C stops the runs, which save their state, and the same command r
 
   // With fewer steps it ends, though not converged: those are results, and the exit code says so.
   folder.write("s.yaml", replaced(text_of(folder / "s.yaml"), "max_steps: 100000000", "max_steps: 3"));
-  drape_ends("sweep s.yaml --out out", folder, 1);
-  const Json after = runs_of(folder / "out");
+  folder.sweep(1);
+  const Json after = folder.runs();
   CHECK(after[0]["starts"] == 1);
   CHECK(after[1]["status"] == "not_converged");
   CHECK(after[1]["exit_code"] == 1);
@@ -172,36 +166,33 @@ TEST_CASE("Ctrl-C stops the runs, which save their state, and the same command r
 }
 
 TEST_CASE("a failed run is listed with its error, does not stop the others, and is retried only on request") {
-  const Scratch folder(small_experiment());
-  folder.write("s.yaml", coarsest_by_newton +
-                             "ablation:\n  - {name: unheld, set: {pins: [{region: ball, point: [5, 5, "
-                             "5]}]}}\n  - {name: fine}\n");
+  const SmallSweep folder(
+      "ablation:\n  - {name: unheld, set: {pins: [{region: ball, point: [5, 5, 5]}]}}\n  - {name: fine}\n");
   const std::string error = "pin 0 (ball) selects no vertex of the coarsest level; widen its region";
-  const Ended ended = drape_ends("sweep s.yaml --out out", folder, 1);
+  const Ended ended = folder.sweep(1);
   CHECK_THAT(ended.out, Contains(error) && Contains("unheld") && Contains("failed"));
   CHECK_THAT(ended.err, Contains("; 1 failed") && Contains(error));
-  Json runs = runs_of(folder / "out");
+  Json runs = folder.runs();
   CHECK(runs[0]["status"] == "failed");
   CHECK(runs[0]["exit_code"] == 2);
   CHECK_THAT(runs[0]["error"].get<std::string>(), Contains(error));
   CHECK(runs[1]["status"] == "converged");
 
-  CHECK_THAT(drape_ends("sweep s.yaml --out out", folder, 1).out, Contains(error));
-  CHECK(runs_of(folder / "out")[0]["starts"] == 1);
-  drape_ends("sweep s.yaml --out out --retry-failed", folder, 1);
-  runs = runs_of(folder / "out");
+  CHECK_THAT(folder.sweep(1).out, Contains(error));
+  CHECK(folder.runs()[0]["starts"] == 1);
+  folder.sweep(1, " --retry-failed");
+  runs = folder.runs();
   CHECK(runs[0]["starts"] == 2);
   CHECK(runs[1]["starts"] == 1);
   // Once its experiment is another, it is no longer the one that failed.
   folder.write("s.yaml",
                replaced(text_of(folder / "s.yaml"), "point: [5, 5, 5]", "point: [0, 0, 0], radius: 0.3"));
-  drape_ends("sweep s.yaml --out out", folder);
-  CHECK(runs_of(folder / "out")[0]["starts"] == 3);
+  folder.sweep();
+  CHECK(folder.runs()[0]["starts"] == 3);
 }
 
 TEST_CASE("a killed run has failed, with the name of the signal") {
-  const Scratch folder;
-  write_endless(folder);
+  const SmallSweep folder(with_endless);
   DrapeAtWork command("sweep s.yaml --out out --workers 1", folder);
   wait_for_endless(command, folder);
   // The one process whose command names this run's folder.
@@ -215,18 +206,16 @@ TEST_CASE("a killed run has failed, with the name of the signal") {
       kill(std::stoi(name), SIGKILL);
   }
   CHECK(command.wait().exit_code == 1);
-  const Json runs = runs_of(folder / "out");
+  const Json runs = folder.runs();
   CHECK(runs[1]["status"] == "failed");
   CHECK(runs[1]["error"] == "ended by signal 9 (Killed)");
   CHECK(runs[2]["status"] == "converged");
 }
 
 TEST_CASE("a sweep that no longer fits its results is refused, and the results stay") {
-  const Scratch folder(small_experiment());
-  const std::string sweep =
-      coarsest_by_newton + "ablation: [{name: a}, {name: b, set: {refiner: midpoint}}]\n";
-  folder.write("s.yaml", sweep);
-  drape_ends("sweep s.yaml --out out", folder);
+  const SmallSweep folder("ablation: [{name: a}, {name: b, set: {refiner: midpoint}}]\n");
+  const std::string sweep = text_of(folder / "s.yaml");
+  folder.sweep();
   const std::string before = text_of(folder / "out/sweep.json");
   const std::string ways =
       "; give the new sweep another folder with --out, or undo the change, or delete that run's files to run "
@@ -250,18 +239,16 @@ TEST_CASE("a sweep that no longer fits its results is refused, and the results s
               ways + "out/runs/a/seed_1*\n");
   // What was added is run; what was there is not.
   folder.write("s.yaml", replaced(sweep, "{name: a}, ", "{name: a}, {name: c, levels: 2}, "));
-  drape_ends("sweep s.yaml --out out", folder);
-  for (const Json& run : runs_of(folder / "out")) CHECK(run["starts"] == 1);
+  folder.sweep();
+  for (const Json& run : folder.runs()) CHECK(run["starts"] == 1);
 }
 
 TEST_CASE("a foreign folder in the place of a run's stays") {
-  const Scratch folder(small_experiment());
-  const std::string sweep = coarsest_by_newton + "ablation:\n  - {name: a}\n";
-  folder.write("s.yaml", sweep);
-  drape_ends("sweep s.yaml --out out", folder);
+  const SmallSweep folder("ablation:\n  - {name: a}\n");
+  folder.sweep();
   fs::create_directories(folder / "out/runs/b/seed_1");
   folder.write("out/runs/b/seed_1/notes", "mine");
-  folder.write("s.yaml", sweep + "  - {name: b, levels: 2}\n");
+  folder.write("s.yaml", text_of(folder / "s.yaml") + "  - {name: b, levels: 2}\n");
   CHECK(refused_by("sweep s.yaml --out out", folder.path) ==
         "error: out/runs/b/seed_1: is there already, and not from this sweep; move it away, or name another "
         "folder with --out\n");
@@ -270,13 +257,12 @@ TEST_CASE("a foreign folder in the place of a run's stays") {
 
 TEST_CASE("runs that exceed the memory together run one after another, with a warning") {
   if (drape::core_count() < 2) return;
-  const Scratch folder(small_experiment());
-  folder.write("s.yaml", coarsest_by_newton + "repeats: 4\n");
-  const Ended ended = drape_ends("sweep s.yaml --out out --workers 2 --memory-limit 0.001", folder);
+  const SmallSweep folder("repeats: 4\n");
+  const Ended ended = folder.sweep(0, " --workers 2 --memory-limit 0.001");
   CHECK_THAT(ended.err, Contains("warning: base, seed 1 may need 0.1 GB where 0.0 GB are to be had; it runs "
                                  "alone\n"));
   double last_end = 0;
-  for (const Json& run : runs_of(folder / "out")) {
+  for (const Json& run : folder.runs()) {
     const fs::path log = folder / ("out/" + run["folder"].get<std::string>() + "/log.jsonl");
     std::istringstream lines(text_of(log));
     std::string first, last;
@@ -288,17 +274,15 @@ TEST_CASE("runs that exceed the memory together run one after another, with a wa
 }
 
 TEST_CASE("a complete run without a final status keeps its results and is not repeated") {
-  const Scratch folder(small_experiment());
-  folder.write("s.yaml",
-               coarsest_by_newton + "ablation:\n  - {name: a}\n  - {name: b, set: {newton.max_steps: 2}}\n");
-  drape_ends("sweep s.yaml --out out", folder, 1);
+  const SmallSweep folder("ablation:\n  - {name: a}\n  - {name: b, set: {newton.max_steps: 2}}\n");
+  folder.sweep(1);
   for (const std::string name : {"a", "b"}) {
     const std::string status = "out/runs/" + name + "/seed_1.status.json";
     const std::string word = name == "a" ? "converged" : "not_converged";
     folder.write(status, replaced(text_of(folder / status), "\"" + word + "\"", "\"running\""));
   }
-  CHECK(drape_ends("sweep s.yaml --out out", folder, 1).err == "");
-  const Json runs = runs_of(folder / "out");
+  CHECK(folder.sweep(1).err == "");
+  const Json runs = folder.runs();
   CHECK(runs[0]["status"] == "converged");
   CHECK(runs[1]["status"] == "not_converged");
   for (const Json& run : runs) CHECK(run["starts"] == 1);
