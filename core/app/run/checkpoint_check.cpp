@@ -139,13 +139,13 @@ class Check {
     if (a.count == 0) return;
     if (a.fixed.empty() && a.ordering.empty() && a.reused_ordering.empty()) return;
     require(static_cast<int>(a.fixed.size()) == n, "the factor's ordering");
+    std::vector<int> free;
+    for (int v = 0; v < n; ++v)
+      if (!a.fixed[v]) free.push_back(v);
     for (const std::vector<int>* ordering : {&a.reused_ordering, &a.ordering}) {
-      if (ordering->empty()) continue;
-      std::vector<int> sorted = *ordering, free;
+      std::vector<int> sorted = *ordering;
       std::sort(sorted.begin(), sorted.end());
-      for (int v = 0; v < n; ++v)
-        if (!a.fixed[v]) free.push_back(v);
-      require(sorted == free, "the factor's ordering");
+      require(sorted.empty() || sorted == free, "the factor's ordering");
     }
   }
 
