@@ -1,6 +1,7 @@
 #include "core/app/sweep/slurm_engine.h"
 
 #include <algorithm>
+#include <boost/algorithm/string/replace.hpp>
 #include <chrono>
 #include <cmath>
 #include <thread>
@@ -31,15 +32,12 @@ std::string ranges(const std::vector<std::size_t>& sorted) {
 
 /// In single quotes, for a shell.
 std::string quoted(const std::string& text) {
-  std::string safe = "'";
-  for (const char c : text) safe += c == '\'' ? std::string("'\\''") : std::string(1, c);
-  return safe + "'";
+  return "'" + boost::replace_all_copy(text, "'", "'\\''") + "'";
 }
 
 std::string one_line(std::string text) {
   while (!text.empty() && text.back() == '\n') text.pop_back();
-  std::replace(text.begin(), text.end(), '\n', ' ');
-  return text;
+  return boost::replace_all_copy(text, "\n", " ");
 }
 
 std::string directives(const std::vector<std::string>& options) {
