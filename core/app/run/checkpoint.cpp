@@ -1,5 +1,7 @@
 #include "core/app/run/checkpoint.h"
 
+#include <utility>
+
 #include "core/app/files/archive.h"
 #include "core/kernel/files/file.h"
 
@@ -30,23 +32,28 @@ constexpr std::string_view newest = "checkpoint/state.bin", previous = "checkpoi
 
 }  // namespace
 
-const std::size_t checkpoint_header_size = magic.size() + 16;
+std::string encode_body(const Checkpoint& checkpoint) {
+  ArchiveWriter body;
+  pass(body, const_cast<Checkpoint&>(checkpoint));  // which writing does not change
+  return std::move(body.bytes);
+}
 
 std::string encode(const Checkpoint& checkpoint) {
-  ArchiveWriter body, whole;
-  pass(body, const_cast<Checkpoint&>(checkpoint));  // which writing does not change
+  const std::string body = encode_body(checkpoint);
   Header header;
-  header.size = body.bytes.size();
-  header.checksum = checksum_of(body.bytes);
+  header.size = body.size();
+  header.checksum = checksum_of(body);
+  ArchiveWriter whole;
   whole.bytes = magic;
   pass(whole, header);
-  return whole.bytes + body.bytes;
+  return whole.bytes + body;
 }
 
 Checkpoint decode(std::string_view bytes) {
   if (!bytes.starts_with(magic.substr(0, std::min(bytes.size(), magic.size()))))
     throw std::runtime_error("is no checkpoint of drape");
-  if (bytes.size() < checkpoint_header_size) throw std::runtime_error("is cut short");
+  constexpr std::size_t header_size = magic.size() + 16;
+  if (bytes.size() < header_size) throw std::runtime_error("is cut short");
   Header header;
   ArchiveReader header_reader{bytes.substr(magic.size())};
   pass(header_reader, header);
@@ -54,7 +61,7 @@ Checkpoint decode(std::string_view bytes) {
     throw std::runtime_error("is a checkpoint of format " + std::to_string(header.format) +
                              ", but this drape reads format " + std::to_string(format) +
                              "; resume it with the drape that wrote it");
-  bytes.remove_prefix(checkpoint_header_size);
+  bytes.remove_prefix(header_size);
   if (bytes.size() < header.size) throw std::runtime_error("is cut short");
   if (bytes.size() > header.size || checksum_of(bytes) != header.checksum)
     throw std::runtime_error("is damaged: its checksum does not fit");

@@ -38,11 +38,10 @@ struct Checkpoint {
 std::string encode(const Checkpoint& checkpoint);
 /// The inverse of `encode`. Throws std::runtime_error for bytes that are damaged or of another format.
 Checkpoint decode(std::string_view bytes);
-/// `decode` without header and checksum, for untrusted bytes. Every value is valid for its type;
+/// The same without header and checksum, for untrusted bytes. Every value that is read is valid for its type;
 /// require_fitting checks it against an experiment.
+std::string encode_body(const Checkpoint& checkpoint);
 Checkpoint decode_body(std::string_view bytes);
-/// Size of the header [bytes].
-extern const std::size_t checkpoint_header_size;
 
 /// Throws std::runtime_error unless every index and size fits the experiment's scene and every position is
 /// finite.
