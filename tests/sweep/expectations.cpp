@@ -167,11 +167,8 @@ TEST_CASE("an expectation needs a message") {
 
 TEST_CASE("a sweep over several experiments names each run by its experiment") {
   const Scratch folder;
-  const std::string small = small_experiment();
-  const auto called = [&](const std::string& name) {
-    std::string text = small;
-    const std::size_t at = text.find("name: ");
-    return text.replace(at, text.find('\n', at) - at, "name: " + name);
+  const auto called = [](const std::string& name) {
+    return replaced(small_experiment(), "name: small", "name: " + name);
   };
   std::filesystem::create_directory(folder / "scenes");
   std::filesystem::create_directory(folder / "sweeps");
