@@ -89,10 +89,9 @@ Variation named(const ConfigNode& node, ConfigErrors& errors) {
                       "expected message then"});
   check_settings(v.set, errors);
   if (v.levels) {
-    for (std::size_t k = 0; k < v.set.entries.size(); ++k)
-      if (v.set.entries[k].first == "levels")
-        errors.push_back({v.set.key_locations[k],
-                          "\"levels\" is given twice in variation \"" + v.name + "\"; take one of them out"});
+    if (const std::optional<Location> other = v.set.remove("levels"))
+      errors.push_back(
+          {*other, "\"levels\" is given twice in variation \"" + v.name + "\"; take one of them out"});
     v.set.add("levels", *node.find("levels"));  // it comes first
     std::ranges::rotate(v.set.entries, v.set.entries.end() - 1);
     std::ranges::rotate(v.set.key_locations, v.set.key_locations.end() - 1);
