@@ -75,8 +75,8 @@ Recorder::Recorder(const RunFolder& folder, const Experiment& experiment, const 
   save();
   write_scene();
   save();
-  log({{"event", "run_started"}, {"experiment", p.name}});
-  for (const std::string& line : remarks) log({{"event", "remark"}, {"message", line}});
+  log("run_started", {{"experiment", p.name}});
+  for (const std::string& line : remarks) log("remark", {{"message", line}});
 }
 
 Recorder::Recorder(const RunFolder& folder, const Experiment& experiment, const Scene& scene,
@@ -100,8 +100,8 @@ Recorder::Recorder(const RunFolder& folder, const Experiment& experiment, const 
   write_again();
   restored_ = std::exchange(written_, {});
   save();
-  log({{"event", "run_resumed"}, {"method", s_.method}});
-  for (const std::string& file : restored_) log({{"event", "file_restored"}, {"file", file}});
+  log("run_resumed", {{"method", s_.method}});
+  for (const std::string& file : restored_) log("file_restored", {{"file", file}});
 }
 
 Recorder::State Recorder::state() const {
@@ -123,7 +123,9 @@ void Recorder::require_written(const std::ofstream& stream, const char* name) co
   if (!stream) throw WriteError("cannot write " + folder_.file(name).string() + ": is the disk full?");
 }
 
-void Recorder::log(Json entry) {
+void Recorder::log(const char* event, const Json& more) {
+  Json entry = {{"event", event}};
+  entry.update(more);
   entry["time"] = wall_clock();
   log_ << json_text(entry) << std::endl;
   require_written(log_, "log.jsonl");
@@ -141,7 +143,7 @@ void Recorder::method_started(const std::string& method) {
                     {"seconds", 0.0},          {"peak_memory_bytes", 0},
                     {"levels", Json::array()}, {"consistency", Json::array()}};
   save();
-  log({{"event", "method_started"}, {"method", method}});
+  log("method_started", {{"method", method}});
 }
 
 void Recorder::level_started(int level) {
@@ -149,7 +151,7 @@ void Recorder::level_started(int level) {
   s_.last = Cost();
   s_.overhead_before = s_.overhead;
   increments_ = 0;
-  log({{"event", "level_started"}, {"method", s_.method}, {"level", level}});
+  log("level_started", {{"method", s_.method}, {"level", level}});
 }
 
 std::optional<int> Recorder::intersections(int level, const Positions& x) {
@@ -160,10 +162,7 @@ std::optional<int> Recorder::intersections(int level, const Positions& x) {
   for (const auto& contact : contacts) {
     const std::vector<Intersection> found = contact->intersections(x);
     for (std::size_t k = 0; k < std::min(found.size(), max_logged); ++k)
-      log({{"event", "intersection"},
-           {"method", s_.method},
-           {"level", level},
-           {"pair", to_string(found[k])}});
+      log("intersection", {{"method", s_.method}, {"level", level}, {"pair", to_string(found[k])}});
     count += static_cast<int>(found.size());
   }
   if (count > 0) s_.intersection_free = s_.method_intersection_free = false;
@@ -266,19 +265,18 @@ void Recorder::level_finished(const LevelResult& r) {
   entry["seconds"] = entry["seconds"].get<double>() + cost.seconds;
   entry["peak_memory_bytes"] = std::max(entry["peak_memory_bytes"].get<std::int64_t>(), peak_memory_bytes());
   save();
-  log({{"event", "level_finished"},
-       {"method", s_.method},
-       {"level", r.level},
-       {"status", to_string(r.outcome)},
-       {"message", r.message},
-       {"seconds", cost.seconds}});
+  log("level_finished", {{"method", s_.method},
+                         {"level", r.level},
+                         {"status", to_string(r.outcome)},
+                         {"message", r.message},
+                         {"seconds", cost.seconds}});
   exclude(watch.seconds());
 }
 
 void Recorder::run_finished(bool complete) {
   results_["complete"] = complete;
   save();
-  log({{"event", "run_finished"}, {"complete", complete}});
+  log("run_finished", {{"complete", complete}});
 }
 
 }  // namespace drape

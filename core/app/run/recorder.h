@@ -131,7 +131,7 @@ class Recorder : public Observer {
   /// to `fault`. Once `stop` returns true it measures no more and writes what it has.
   void write_errors(const Positions* reference, const std::function<bool()>& stop,
                     const std::function<void(const std::string&)>& fault) const;
-  void log(Json entry);
+  void log(const char* event, const Json& more);
   void save() const;
 
   const RunFolder& folder_;

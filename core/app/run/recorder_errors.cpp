@@ -80,7 +80,7 @@ const Positions* Recorder::find_reference(Observer& observer, bool cancelled) {
     solved_reference_ = solve_to_tolerance(experiment_, scene_, state->x, observer);
   } catch (const std::exception& error) {
     entry.update({{"status", failed}, {"message", error.what()}});
-    log({{"event", "reference_solved"}, {"status", failed}, {"message", error.what()}});
+    log("reference_solved", {{"status", failed}, {"message", error.what()}});
     return &state->x;
   }
   entry.update({{"status", to_string(solved_reference_->outcome)},
@@ -88,7 +88,7 @@ const Positions* Recorder::find_reference(Observer& observer, bool cancelled) {
                 {"force_residual", solved_reference_->force_residual},
                 {"iterations", solved_reference_->iterations},
                 {"seconds", solved_reference_->seconds}});
-  log({{"event", "reference_solved"}, {"status", to_string(solved_reference_->outcome)}});
+  log("reference_solved", {{"status", to_string(solved_reference_->outcome)}});
   return &solved_reference_->x;
 }
 
@@ -188,9 +188,7 @@ bool Recorder::measure_errors(Observer& observer, bool cancelled) {
   const auto stop = [&] {
     return cancelled ? watch.seconds() > seconds_after_stop : observer.stop_requested();
   };
-  const auto fault = [&](const std::string& message) {
-    log({{"event", "not_measured"}, {"message", message}});
-  };
+  const auto fault = [&](const std::string& message) { log("not_measured", {{"message", message}}); };
   try {
     write_errors(reference, stop, fault);
   } catch (const WriteError&) {

@@ -45,7 +45,7 @@ MetricResult Recorder::measure(const std::string& name, const Metric& metric, co
   }
   not_measured_.emplace(name, cause);
   entry["not_measured"][name] = cause;
-  log({{"event", "not_measured"}, {"method", s_.method}, {"metric", name}, {"message", cause}});
+  log("not_measured", {{"method", s_.method}, {"metric", name}, {"message", cause}});
   return {};
 }
 
@@ -112,13 +112,10 @@ void Recorder::method_finished(const std::vector<LevelResult>& results,
                                {"triangles", level.triangle_count()},
                                {"status", failed},
                                {"message", failure->cause}});
-    log({{"event", "method_failed"},
-         {"method", s_.method},
-         {"level", failure->level},
-         {"message", failure->cause}});
+    log("method_failed", {{"method", s_.method}, {"level", failure->level}, {"message", failure->cause}});
   }
   save();
-  log({{"event", "method_finished"}, {"method", s_.method}, {"status", entry["status"]}});
+  log("method_finished", {{"method", s_.method}, {"status", entry["status"]}});
 }
 
 void Recorder::restore_fields() {
