@@ -127,10 +127,9 @@ class Recorder : public Observer {
   Json add_snapshots(const LevelResult& result, const Cost& cost, RecordedState& state);
   /// Measures every snapshot against the finest state of its method, if that converged, and against the
   /// reference, if there is one, and writes errors.csv: once all methods have ended, because measuring must
-  /// not count as time of a method. Leaves out snapshots whose file is damaged or missing, and reports them
-  /// to `fault`. Once `stop` returns true it measures no more and writes what it has.
-  void write_errors(const Positions* reference, const std::function<bool()>& stop,
-                    const std::function<void(const std::string&)>& fault) const;
+  /// not count as time of a method. Leaves out snapshots whose file is damaged or missing, and logs them.
+  /// Once `stop` returns true it measures no more and writes what it has.
+  void write_errors(const Positions* reference, const std::function<bool()>& stop);
   void log(const char* event, const Json& more);
   void save() const;
 

@@ -115,8 +115,8 @@ Recorder::Json Recorder::add_snapshots(const LevelResult& r, const Cost& cost, R
   return entry;
 }
 
-void Recorder::write_errors(const Positions* reference, const std::function<bool()>& stop,
-                            const std::function<void(const std::string&)>& fault) const {
+void Recorder::write_errors(const Positions* reference, const std::function<bool()>& stop) {
+  const auto fault = [&](const std::string& message) { log("not_measured", {{"message", message}}); };
   const int finest = scene_.finest();
   const std::vector<ErrorMeasure> measures = error_measures(declared_metrics(experiment_.metrics));
   std::string text = "method,level,level_iterations,seconds,iterations,flops,vertices";
@@ -182,19 +182,18 @@ bool Recorder::measure_errors(Observer& observer, bool cancelled) {
       }
   }
   save();
-  const bool any = experiment_.parameters.snapshots > 0 && !s_.states.empty();
-  if (!any) return !observer.stop_requested() || cancelled;
+  if (experiment_.parameters.snapshots == 0 || s_.states.empty())
+    return !observer.stop_requested() || cancelled;
   const Stopwatch watch;
   const auto stop = [&] {
     return cancelled ? watch.seconds() > seconds_after_stop : observer.stop_requested();
   };
-  const auto fault = [&](const std::string& message) { log("not_measured", {{"message", message}}); };
   try {
-    write_errors(reference, stop, fault);
+    write_errors(reference, stop);
   } catch (const WriteError&) {
     throw;
   } catch (const std::exception& error) {
-    fault(std::string("errors.csv: ") + error.what());
+    log("not_measured", {{"message", std::string("errors.csv: ") + error.what()}});
   }
   return !stop();
 }
