@@ -89,7 +89,7 @@ int run_local(const Sweep& sweep, const SweepFolder& folder, SweepRequest r) {
 
 int run_on_slurm(const Sweep& sweep, const SweepFolder& folder, const SweepRequest& r) {
   if (r.cancel) {
-    cancel_jobs(folder, r.stop);
+    cancel_jobs(folder, r);
     std::cout << printable_lines(list_of_runs(folder.refresh()));
     return exit_done;
   }
@@ -110,7 +110,7 @@ int run_on_slurm(const Sweep& sweep, const SweepFolder& folder, const SweepReque
   }
   if (jobs && !r.wait) return exit_done;
   return begun(folder, [&] {
-    if (jobs && !wait_for(folder, *jobs, r.stop, r.quiet)) {
+    if (jobs && !wait_for(folder, *jobs, r)) {
       std::cerr << "no longer waiting; the jobs go on\n";
       return exit_by_signal + stop_signal();
     }

@@ -141,8 +141,7 @@ SlurmJobs submit(const Sweep& sweep, const SweepFolder& folder, const std::vecto
   return jobs;
 }
 
-bool wait_for(const SweepFolder& folder, const SlurmJobs& jobs, const std::function<bool()>& stop,
-              bool quiet) {
+bool wait_for(const SweepFolder& folder, const SlurmJobs& jobs, const SweepOptions& options) {
   std::size_t told = 0;
   for (int silent = 0; still_in_queue(jobs, silent);) {
     std::size_t done = 0, failed = 0;
@@ -152,18 +151,18 @@ bool wait_for(const SweepFolder& folder, const SlurmJobs& jobs, const std::funct
       done += state == RunState::converged || state == RunState::not_converged || state == RunState::failed;
       failed += state == RunState::failed;
     }
-    if (done != told && !quiet)
+    if (done != told && !options.quiet)
       std::fprintf(stderr, "[%zu/%zu] done, %zu failed\n", done, sweep["runs"].size(), failed);
     told = done;
     for (int k = 0; k < 10; ++k) {
-      if (stop()) return false;
+      if (options.stop()) return false;
       std::this_thread::sleep_for(std::chrono::milliseconds(100));
     }
   }
   return true;
 }
 
-void cancel_jobs(const SweepFolder& folder, const std::function<bool()>& stop) {
+void cancel_jobs(const SweepFolder& folder, const SweepOptions& options) {
   const auto jobs = submitted_jobs(folder);
   if (!jobs || !in_queue(*jobs))
     refuse_path(folder.path(), "has no jobs in Slurm's queue; there is nothing to cancel");
@@ -171,7 +170,7 @@ void cancel_jobs(const SweepFolder& folder, const std::function<bool()>& stop) {
   if (!jobs->collector.empty()) words.push_back(jobs->collector);
   const ProgramOutput said = run_program(words);
   if (said.exit.code != 0) throw std::runtime_error("scancel: " + one_line(said.err));
-  if (wait_for(folder, *jobs, stop)) collect_tasks(folder);
+  if (wait_for(folder, *jobs, options)) collect_tasks(folder);
 }
 
 int run_task(const SweepFolder& folder, int index, const SweepOptions& options) {

@@ -19,11 +19,10 @@ SlurmJobs submit(const Sweep& sweep, const SweepFolder& folder, const std::vecto
 
 /// Waits until no job is in the queue, with progress on standard error unless `quiet`; false if `stop` came
 /// first.
-bool wait_for(const SweepFolder& folder, const SlurmJobs& jobs, const std::function<bool()>& stop,
-              bool quiet = false);
+bool wait_for(const SweepFolder& folder, const SlurmJobs& jobs, const SweepOptions& options);
 
 /// Cancels the folder's jobs and waits until they are off the queue. Throws std::runtime_error without any.
-void cancel_jobs(const SweepFolder& folder, const std::function<bool()>& stop);
+void cancel_jobs(const SweepFolder& folder, const SweepOptions& options);
 
 /// A task of the array, on its node: executes the run with this index in sweep.json, unless it has results.
 /// Returns the task's exit code.
