@@ -11,7 +11,7 @@ using Catch::Contains;
 TEST_CASE("a value of the wrong kind in a sweep's files is named with its file and its key") {
   const SmallSweep folder;
   folder.sweep();
-  // With this value, or without one, there in the file.
+  // What the sweep says of the file with this value there, or without one.
   const auto said = [&](const std::string& file, const std::string& path, const std::string& value) {
     const std::string sound = text_of(folder / file);
     Json json = Json::parse(sound);
@@ -23,34 +23,30 @@ TEST_CASE("a value of the wrong kind in a sweep's files is named with its file a
     folder.write(file, json.dump());
     const std::string ended = refused_by("sweep s.yaml --out out", folder.path);
     folder.write(file, sound);
-    return ended;
+    return replaced(ended, "error: " + file + ": ", "");
   };
-  const std::string status = "out/runs/base/seed_1.status.json", of_status = "error: " + status + ": ",
+  const std::string status = "out/runs/base/seed_1.status.json",
                     remove = "; remove it and the run's folder\n";
-  CHECK(said(status, "/status", "\"done\"") == of_status + "no status is called \"done\"" + remove);
-  CHECK(said(status, "/status", "3") == of_status + "\"status\" must be a text, not 3" + remove);
-  CHECK(said(status, "/threads", "1e300") ==
-        of_status + "\"threads\" must be a whole number, not 1e+300" + remove);
-  CHECK(said(status, "/seconds", "") == of_status + "\"seconds\" is missing" + remove);
+  CHECK(said(status, "/status", "\"done\"") == "no status is called \"done\"" + remove);
+  CHECK(said(status, "/status", "3") == "\"status\" must be a text, not 3" + remove);
+  CHECK(said(status, "/threads", "1e300") == "\"threads\" must be a whole number, not 1e+300" + remove);
+  CHECK(said(status, "/seconds", "") == "\"seconds\" is missing" + remove);
 
-  const std::string sweep = "out/sweep.json",
-                    of_sweep = "error: out/sweep.json: ", another = "; name another folder with --out\n";
-  CHECK(said(sweep, "/sweep", "1") == of_sweep + "\"sweep\" must be a text, not 1" + another);
-  CHECK(said(sweep, "/runs", "\"none\"") == of_sweep + "\"runs\" must be a list" + another);
-  CHECK(said(sweep, "/runs/0", "null") == of_sweep + "\"name\" is missing" + another);
-  CHECK(said(sweep, "/runs/0/folder", "") == of_sweep + "\"folder\" is missing" + another);
-  CHECK(said(sweep, "/runs/0/seed", "-1e300") ==
-        of_sweep + "\"seed\" must be a whole number, not -1e+300" + another);
+  const std::string sweep = "out/sweep.json", another = "; name another folder with --out\n";
+  CHECK(said(sweep, "/sweep", "1") == "\"sweep\" must be a text, not 1" + another);
+  CHECK(said(sweep, "/runs", "\"none\"") == "\"runs\" must be a list" + another);
+  CHECK(said(sweep, "/runs/0", "null") == "\"name\" is missing" + another);
+  CHECK(said(sweep, "/runs/0/folder", "") == "\"folder\" is missing" + another);
+  CHECK(said(sweep, "/runs/0/seed", "-1e300") == "\"seed\" must be a whole number, not -1e+300" + another);
   CHECK(said(sweep, "/runs/0/expect", "{\"status\": true}") ==
-        of_sweep + "\"status\" must be a text, not true" + another);
+        "\"status\" must be a text, not true" + another);
 
-  const std::string results = "out/runs/base/seed_1/results.json", of_results = "error: " + results + ": ",
+  const std::string results = "out/runs/base/seed_1/results.json",
                     rerun = "; remove the run's folder, and the sweep runs it again\n";
   CHECK(said(results, "/methods/newton/peak_memory_bytes", "\"all\"") ==
-        of_results + "\"peak_memory_bytes\" must be a number, not \"all\"" + rerun);
+        "\"peak_memory_bytes\" must be a number, not \"all\"" + rerun);
   folder.write(status, replaced(text_of(folder / status), "\"converged\"", "\"running\""));
-  CHECK(said(results, "/methods/newton/status", "[1]") ==
-        of_results + "\"status\" must be a text, not [1]" + rerun);
+  CHECK(said(results, "/methods/newton/status", "[1]") == "\"status\" must be a text, not [1]" + rerun);
   // Results that do not say whether they are complete count as none.
   folder.write(results, replaced(text_of(folder / results), "\"complete\": true", "\"complete\": \"yes\""));
   folder.sweep();
