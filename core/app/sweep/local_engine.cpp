@@ -24,7 +24,6 @@ class LocalEngine {
 
   void run(const std::vector<std::size_t>& missing) {
     waiting_.assign(missing.begin(), missing.end());
-    to_run_ = missing.size();
     while (!waiting_.empty() || !running_.empty()) {
       if (options_.stop()) stop();
       start_what_fits();
@@ -115,7 +114,7 @@ class LocalEngine {
                        (expected ? "refused, as expected," : to_string(status.state)) + " after " +
                        duration_text(status.seconds);
     if (failed_) line += "; " + std::to_string(failed_) + " failed";
-    const std::size_t rest = to_run_ - ended_;
+    const std::size_t rest = waiting_.size() + running_.size();
     if (rest > 0 && !stopping_)
       line += "; " + std::to_string(rest) + " to go, about " +
               duration_text(clock_.seconds() / double(ended_) * double(rest));
@@ -130,7 +129,7 @@ class LocalEngine {
   Stopwatch clock_;
   std::deque<std::size_t> waiting_;
   std::list<Running> running_;
-  std::size_t had_ = 0, to_run_ = 0, ended_ = 0, failed_ = 0;
+  std::size_t had_ = 0, ended_ = 0, failed_ = 0;
   bool stopping_ = false, replaced_ = false;
 };
 
