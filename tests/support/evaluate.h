@@ -6,7 +6,6 @@
 #include "core/numerics/mesh/grain.h"
 #include "core/numerics/model/hessian_assembler.h"
 #include "core/numerics/model/objective.h"
-#include "tests/support/dense_matrix.h"
 
 inline drape::Positions gradient_of(const drape::BoundEnergy& energy, const drape::Positions& x) {
   drape::Positions g = drape::Positions::Zero(x.rows(), 3);

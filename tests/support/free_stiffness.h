@@ -24,17 +24,16 @@ inline Eigen::SparseMatrix<double> stiffness_of(const drape::BlockMatrix& h, con
                                                 const std::vector<int>& axes) {
   const int n = static_cast<int>(axes.size());
   std::vector<Eigen::Triplet<double>> entries;
-  for (int i = 0; i < h.pattern->rows(); ++i)
-    for (int b = h.pattern->row_start[i]; b < h.pattern->row_start[i + 1]; ++b) {
-      const int j = h.pattern->columns[b], row = free.number[i], column = free.number[j];
-      if (row < 0 || column < 0) continue;
-      for (int p = 0; p < n; ++p)
-        for (int q = 0; q < n; ++q) {
-          const double value = h.block(b)[3 * axes[p] + axes[q]];
-          entries.emplace_back(n * row + p, n * column + q, value);
-          if (i != j) entries.emplace_back(n * column + q, n * row + p, value);
-        }
-    }
+  h.pattern->for_each_block([&](int i, int j, int b) {
+    const int row = free.number[i], column = free.number[j];
+    if (row < 0 || column < 0) return;
+    for (int p = 0; p < n; ++p)
+      for (int q = 0; q < n; ++q) {
+        const double value = h.block(b)[3 * axes[p] + axes[q]];
+        entries.emplace_back(n * row + p, n * column + q, value);
+        if (i != j) entries.emplace_back(n * column + q, n * row + p, value);
+      }
+  });
   Eigen::SparseMatrix<double> k(n * free.count, n * free.count);
   k.setFromTriplets(entries.begin(), entries.end());
   return k;

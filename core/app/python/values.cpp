@@ -119,12 +119,11 @@ py::object bsr_matrix(const BlockMatrix& matrix) {
     Eigen::Map<Block>(blocks.mutable_data() + 9 * static_cast<std::ptrdiff_t>(next[row]++)) = values;
   };
   // Within each row by ascending columns, as neighbours() has them.
-  for (int i = 0; i < pattern.rows(); ++i)
-    for (int b = pattern.row_start[i]; b < pattern.row_start[i + 1]; ++b) {
-      const Eigen::Map<const Block> block(matrix.block(b));
-      put(i, block);
-      if (pattern.columns[b] != i) put(pattern.columns[b], block.transpose());
-    }
+  pattern.for_each_block([&](int i, int j, int b) {
+    const Eigen::Map<const Block> block(matrix.block(b));
+    put(i, block);
+    if (j != i) put(j, block.transpose());
+  });
   const auto array_of = [](const std::vector<int>& integers) {
     return py::array_t<int>(static_cast<py::ssize_t>(integers.size()), integers.data());
   };

@@ -62,11 +62,10 @@ BlockPattern::BlockPattern(std::vector<int> row_start_in, std::vector<int> colum
 
 AdjacencyList BlockPattern::neighbours() const {
   return AdjacencyList::of(rows(), [&](const auto& add) {
-    for (int i = 0; i < rows(); ++i)
-      for (const int j : row(i)) {
-        add(i, j);
-        if (j != i) add(j, i);
-      }
+    for_each_block([&](int i, int j, int) {
+      add(i, j);
+      if (j != i) add(j, i);
+    });
   });
 }
 
@@ -85,12 +84,11 @@ void BlockMatrix::set_zero() {
                [&](int begin, int end) { std::fill(block(begin), block(end), 0.0); });
 }
 
-void BlockMatrix::multiply(const Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor>& x,
-                           Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor>& y) const {
+void BlockMatrix::multiply(const Positions& x, Positions& y) const {
   if (x.rows() != pattern->rows())
     throw std::runtime_error("block matrix of " + std::to_string(pattern->rows()) + " rows times " +
                              std::to_string(x.rows()) + " vectors");
-  if (&x == &y) return multiply(Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor>(x), y);
+  if (&x == &y) return multiply(Positions(x), y);
   using Block = Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>;
   y.setZero(x.rows(), 3);
   for (int i = 0; i < pattern->rows(); ++i) {
@@ -104,6 +102,17 @@ void BlockMatrix::multiply(const Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen:
     }
     y.row(i) += sum;
   }
+}
+
+Eigen::MatrixXd dense(const BlockMatrix& matrix) {
+  const int n = matrix.pattern->rows();
+  Eigen::MatrixXd all = Eigen::MatrixXd::Zero(3 * n, 3 * n);
+  matrix.pattern->for_each_block([&](int i, int j, int b) {
+    const Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>> block(matrix.block(b));
+    all.block<3, 3>(3 * j, 3 * i) = block.transpose();
+    all.block<3, 3>(3 * i, 3 * j) = block;
+  });
+  return all;
 }
 
 BlockSlots::BlockSlots(const BlockPattern& pattern, const Stencils& stencils)

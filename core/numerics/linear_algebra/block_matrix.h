@@ -10,6 +10,7 @@
 
 #include "core/kernel/interfaces/block_sink.h"
 #include "core/kernel/interfaces/topology.h"
+#include "core/kernel/interfaces/triangle_mesh.h"
 #include "core/kernel/threads/parallel.h"
 
 namespace drape {
@@ -70,6 +71,12 @@ class BlockPattern {
   std::span<const int> row(int i) const {
     return {columns.data() + row_start[i], columns.data() + row_start[i + 1]};
   }
+  /// Calls visit(i, j, b) for each block b = (i, j), in the order of b.
+  template <class Visit>
+  void for_each_block(const Visit& visit) const {
+    for (int i = 0; i < rows(); ++i)
+      for (int b = row_start[i]; b < row_start[i + 1]; ++b) visit(i, columns[b], b);
+  }
   /// Of each row i all j with a block (i, j) or (j, i), i itself among them.
   AdjacencyList neighbours() const;
   /// Index of block (i, j), i ≤ j; -1 if it is not in the pattern.
@@ -89,9 +96,11 @@ struct BlockMatrix {
   double* block(int b) { return values.data() + 9 * static_cast<std::size_t>(b); }
   const double* block(int b) const { return values.data() + 9 * static_cast<std::size_t>(b); }
   /// y = A x for n×3 x and y.
-  void multiply(const Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor>& x,
-                Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor>& y) const;
+  void multiply(const Positions& x, Positions& y) const;
 };
+
+/// The whole matrix (3n×3n), for small ones.
+Eigen::MatrixXd dense(const BlockMatrix& matrix);
 
 /// Indices in a pattern of the blocks of one energy's elements, computed once.
 class BlockSlots {

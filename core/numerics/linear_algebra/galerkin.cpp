@@ -16,17 +16,17 @@ GalerkinProduct::GalerkinProduct(const BlockPattern& fine, const ProlongationMat
 
   // In the order of the fine blocks.
   terms_ = Grouped<Term>::of(coarse_->blocks(), [&](const auto& add) {
-    for (int i = 0; i < fine.rows(); ++i)
-      for (int k = fine.row_start[i]; k < fine.row_start[i + 1]; ++k)
-        for (Weight s(weights, i); s; ++s)
-          for (Weight t(weights, fine.columns[k]); t; ++t) {
-            const int a = static_cast<int>(s.col()), b = static_cast<int>(t.col());
-            const double w = s.value() * t.value();
-            // The fine block stands for (i, j) and, transposed, for (j, i): coarse (a, b) receives the
-            // first, (b, a) the second. Only the upper one is stored; the diagonal receives both.
-            if (a <= b) add(coarse_->find(a, b), {k, w});
-            if (i != fine.columns[k] && b <= a) add(coarse_->find(b, a), {~k, w});
-          }
+    fine.for_each_block([&](int i, int j, int k) {
+      for (Weight s(weights, i); s; ++s)
+        for (Weight t(weights, j); t; ++t) {
+          const int a = static_cast<int>(s.col()), b = static_cast<int>(t.col());
+          const double w = s.value() * t.value();
+          // The fine block stands for (i, j) and, transposed, for (j, i): coarse (a, b) receives the first,
+          // (b, a) the second. Only the upper one is stored; the diagonal receives both.
+          if (a <= b) add(coarse_->find(a, b), {k, w});
+          if (i != j && b <= a) add(coarse_->find(b, a), {~k, w});
+        }
+    });
   });
 }
 

@@ -56,10 +56,10 @@ inline std::vector<int> positions_in(const std::vector<int>& ordering, int verti
 /// positions, column ≤ row, and where it is stored, possibly transposed.
 template <class Visit>
 void for_each_lower_block(const BlockPattern& pattern, const std::vector<int>& position, const Visit& visit) {
-  for (int i = 0; i < pattern.rows(); ++i)
-    for (int k = pattern.row_start[i]; k < pattern.row_start[i + 1]; ++k)
-      if (const int p = position[i], q = position[pattern.columns[k]]; p >= 0 && q >= 0)
-        visit(std::min(p, q), std::max(p, q), k, p < q);
+  pattern.for_each_block([&](int i, int j, int b) {
+    if (const int p = position[i], q = position[j]; p >= 0 && q >= 0)
+      visit(std::min(p, q), std::max(p, q), b, p < q);
+  });
 }
 
 }  // namespace drape

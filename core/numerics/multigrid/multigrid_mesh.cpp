@@ -91,12 +91,11 @@ void MultigridMesh::set_pattern(const std::shared_ptr<const BlockPattern>& given
     int column, source;
   };
   auto entries = Grouped<Entry>::of(size(), [&](const auto& add) {
-    for (int i = 0; i < size(); ++i)
-      for (int k = given->row_start[i]; k < given->row_start[i + 1]; ++k) {
-        const int p = position[i], q = position[given->columns[k]];
-        add(p, {q, k});
-        if (p != q) add(q, {p, ~k});
-      }
+    given->for_each_block([&](int i, int j, int k) {
+      const int p = position[i], q = position[j];
+      add(p, {q, k});
+      if (p != q) add(q, {p, ~k});
+    });
   });
   std::vector<int> columns(entries.items.size());
   source_.resize(entries.items.size());

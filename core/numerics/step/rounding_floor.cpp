@@ -11,15 +11,12 @@ constexpr double unit_roundoff = std::numeric_limits<double>::epsilon() / 2;
 }  // namespace
 
 Eigen::VectorXd rounding_bounds(const BlockMatrix& hessian, const Positions& x) {
-  const BlockPattern& pattern = *hessian.pattern;
   Eigen::VectorXd bounds = Eigen::VectorXd::Zero(x.rows());
-  for (int i = 0; i < pattern.rows(); ++i)
-    for (int b = pattern.row_start[i]; b < pattern.row_start[i + 1]; ++b) {
-      const int j = pattern.columns[b];
-      const double norm = unit_roundoff * Eigen::Map<const Eigen::Matrix3d>(hessian.block(b)).norm();
-      bounds[i] += norm * x.row(j).norm();
-      if (j != i) bounds[j] += norm * x.row(i).norm();
-    }
+  hessian.pattern->for_each_block([&](int i, int j, int b) {
+    const double norm = unit_roundoff * Eigen::Map<const Eigen::Matrix3d>(hessian.block(b)).norm();
+    bounds[i] += norm * x.row(j).norm();
+    if (j != i) bounds[j] += norm * x.row(i).norm();
+  });
   return bounds;
 }
 

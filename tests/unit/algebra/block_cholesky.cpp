@@ -9,7 +9,6 @@
 #include "core/kernel/threads/flush_denormals.h"
 #include "core/kernel/threads/parallel.h"
 #include "tests/support/decompositions.h"
-#include "tests/support/dense_matrix.h"
 #include "tests/support/evaluate.h"
 #include "tests/support/random_block_matrix.h"
 
@@ -287,11 +286,10 @@ TEST_CASE("A restored analysis continues bit for bit, as far as the BLAS does") 
     std::vector<Stencils> stencils = {shell(side, 2)};
     if (k > 0) stencils.push_back(tangle(n, 25 * k, 1));
     matrices.emplace_back(BlockPattern::of(n, stencils));
-    for (int i = 0; i < n; ++i)
-      for (int b = matrices[k].pattern->row_start[i]; b < matrices[k].pattern->row_start[i + 1]; ++b)
-        for (int e = 0; e < 9; ++e)
-          matrices[k].block(b)[e] =
-              matrices[k].pattern->columns[b] == i ? (e % 4 == 0 ? 500 : 0.25) : 1.0 / (1 + b % 7 + e);
+    matrices[k].pattern->for_each_block([&](int i, int j, int b) {
+      for (int e = 0; e < 9; ++e)
+        matrices[k].block(b)[e] = i == j ? (e % 4 == 0 ? 500 : 0.25) : 1.0 / (1 + b % 7 + e);
+    });
   }
   const Positions right = Positions::Random(n, 3);
   const auto solution = [&](BlockCholesky& cholesky, const BlockMatrix& matrix) {

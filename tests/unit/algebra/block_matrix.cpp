@@ -4,7 +4,6 @@
 #include <random>
 #include <set>
 
-#include "tests/support/dense_matrix.h"
 #include "tests/support/evaluate.h"
 #include "tests/support/random_block_matrix.h"
 

@@ -4,7 +4,6 @@
 #include <catch2/catch.hpp>
 #include <vector>
 
-#include "tests/support/dense_matrix.h"
 #include "tests/support/random_block_matrix.h"
 
 using namespace drape;

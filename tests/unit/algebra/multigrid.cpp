@@ -157,16 +157,12 @@ TEST_CASE("Multigrid has the same bits whatever it solved before") {
   h.shift *= 1e-4;  // soft modes show the last bits of the coarsest mesh's solution
   const std::vector<char>& fixed = h.s.model().fixed();
   const BlockPattern& elastic = *h.matrix.pattern;
-  const auto for_each_block = [&](const auto& visit) {
-    for (int i = 0; i < elastic.rows(); ++i)
-      for (int k = elastic.row_start[i]; k < elastic.row_start[i + 1]; ++k) visit(i, elastic.columns[k], k);
-  };
   Stencils blocks(elastic.blocks(), 2), contacts(5, 2);
-  for_each_block([&](int i, int j, int k) { blocks.row(k) << i, i == j ? -1 : j; });
+  elastic.for_each_block([&](int i, int j, int k) { blocks.row(k) << i, i == j ? -1 : j; });
   for (int i = 0; i < 5; ++i) contacts.row(i) << 1 + i, 3000 + 300 * i;
   const auto pattern = BlockPattern::of(elastic.rows(), {blocks, contacts});
   BlockMatrix touching(pattern);
-  for_each_block(
+  elastic.for_each_block(
       [&](int i, int j, int k) { std::copy_n(h.matrix.block(k), 9, touching.block(pattern->find(i, j))); });
   for (int c = 0; c < 5; ++c)
     for (int a = 0; a < 2; ++a)
