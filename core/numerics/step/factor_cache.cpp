@@ -53,25 +53,17 @@ bool FactorCache::solve(const std::vector<char>& fixed, double mass_shift, doubl
                         const Positions& right_hand_side, Positions& solution) {
   use(fallback_solves_ > 0 ? fallback_ : preferred_);
   if (fallback_solves_ > 0) --fallback_solves_;
-  bool has_whole_projection = false;
-  fault_ = modification_.factorise(
-      [&](Projection projection) -> const BlockMatrix& {
-        has_whole_projection = projection.kind == Projection::none || projection.blend == 1;
-        return iterate_.hessian(projection);
-      },
-      [&](const BlockMatrix& matrix, double shift) {
-        while (!factorise(matrix, fixed, mass_shift + shift) ||
-               !solve_with_factor(right_hand_side, solution)) {
-          const bool may_be_definite = has_whole_projection || too_slow_;
-          if (solver_ == direct_ || !may_be_definite) return false;
-          fallback_ = solver_ == LinearSolver::multigrid ? LinearSolver::mixed : direct_;
-          fallback_solves_ = fallback_solves;
-          use(fallback_);
-        }
-        return true;
-      },
-      fixed, step_length == 1);
-  return fault_.empty();
+  return modify(fixed, step_length, [&](const BlockMatrix& matrix, double shift) {
+    while (!factorise(matrix, fixed, mass_shift + shift) || !solve_with_factor(right_hand_side, solution)) {
+      const bool has_whole_projection = modification_.blend() == HessianModification::blend_count - 1;
+      const bool may_be_definite = has_whole_projection || too_slow_;
+      if (solver_ == direct_ || !may_be_definite) return false;
+      fallback_ = solver_ == LinearSolver::multigrid ? LinearSolver::mixed : direct_;
+      fallback_solves_ = fallback_solves;
+      use(fallback_);
+    }
+    return true;
+  });
 }
 
 bool FactorCache::solve_with_factor(const Positions& right_hand_side, Positions& solution) {
@@ -86,29 +78,32 @@ bool FactorCache::solve_with_factor(const Positions& right_hand_side, Positions&
 
 bool FactorCache::update(const std::vector<char>& fixed, double mass_shift, double step_length) {
   use(direct_);
+  return modify(fixed, step_length, [&](const BlockMatrix& matrix, double shift) {
+    return factorise(matrix, fixed, mass_shift + shift);
+  });
+}
+
+bool FactorCache::modify(const std::vector<char>& fixed, double step_length,
+                         const HessianModification::Factorise& factorise) {
   fault_ = modification_.factorise(
-      [&](Projection projection) -> const BlockMatrix& { return iterate_.hessian(projection); },
-      [&](const BlockMatrix& matrix, double shift) { return factorise(matrix, fixed, mass_shift + shift); },
+      [&](Projection projection) -> const BlockMatrix& { return iterate_.hessian(projection); }, factorise,
       fixed, step_length == 1);
   return fault_.empty();
 }
 
 bool FactorCache::factorise(const BlockMatrix& matrix, const std::vector<char>& fixed, double shift) {
   LevelResult& result = iterate_.result();
+  const bool by_multigrid = solver_ == LinearSolver::multigrid;
   too_slow_ = false;
   ++result.factorisations;
-  if (solver_ != LinearSolver::multigrid) analyse(matrix, fixed);
+  if (!by_multigrid) analyse(matrix, fixed);
   PhaseTimer t(result.seconds_by_phase, "factorise");
-  const bool is_definite = set_matrix(matrix, fixed, shift);
-  result.flops += solver_ == LinearSolver::multigrid ? multigrid_->take_flops() : cholesky_.flops();
-  return is_definite;
-}
-
-bool FactorCache::set_matrix(const BlockMatrix& matrix, const std::vector<char>& fixed, double shift) {
   factored_ = &matrix;
   const Eigen::VectorXd shifts = shift * iterate_.model().masses();
-  return solver_ == LinearSolver::multigrid ? multigrid_->set(matrix, shifts, fixed)
-                                            : cholesky_.factorise(matrix, shifts);
+  const bool is_definite =
+      by_multigrid ? multigrid_->set(matrix, shifts, fixed) : cholesky_.factorise(matrix, shifts);
+  result.flops += by_multigrid ? multigrid_->take_flops() : cholesky_.flops();
+  return is_definite;
 }
 
 void FactorCache::analyse(const BlockMatrix& matrix, const std::vector<char>& fixed) {

@@ -64,8 +64,9 @@ class FactorCache {
 
  private:
   void use(LinearSolver solver);
-  /// Makes the factor, or the meshes' matrices, of the analysed matrix plus the shift.
-  bool set_matrix(const BlockMatrix& matrix, const std::vector<char>& fixed, double shift);
+  /// Modifies the Hessian at the iterate until `factorise` succeeds, and sets fault_.
+  bool modify(const std::vector<char>& fixed, double step_length,
+              const HessianModification::Factorise& factorise);
   void analyse(const BlockMatrix& matrix, const std::vector<char>& fixed);
   bool factorise(const BlockMatrix& matrix, const std::vector<char>& fixed, double shift);
   bool solve_with_factor(const Positions& right_hand_side, Positions& solution);

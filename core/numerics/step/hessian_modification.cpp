@@ -38,33 +38,22 @@ HessianModification::HessianModification(const NewtonParameters& parameters)
 
 std::string HessianModification::factorise(const Assemble& assemble, const Factorise& factorise,
                                            const std::vector<char>& fixed, bool after_full_step) {
-  const BlockMatrix* matrix = nullptr;  // the last that was tried, with the whole projection
-  if (adaptive_) {
-    matrix = blend_until_definite(assemble, factorise, after_full_step);
-    if (!matrix) return "";
-  } else {
-    matrix = &assemble(projection_);
+  const BlockMatrix* matrix = nullptr;
+  if (!adaptive_)
+    blend_ = blend_count - 1;
+  else if (after_full_step)
+    blend_ = std::max(blend_ - 1, 0);
+  for (; blend_ < blend_count; ++blend_) {
+    matrix = &assemble({projection_, blends[blend_]});
     if (factorise(*matrix, 0)) return "";
   }
+  blend_ = blend_count - 1;
   if (const std::string where = first_not_finite(*matrix, fixed); !where.empty())
     return "the Newton matrix holds entries that are not finite, first in " + where;
   // Without projection, or with a rigid mode in the static form: add mass until it factorises.
   for (double shift = first_shift_; shift < max_shift; shift *= 10)
     if (factorise(*matrix, shift)) return "";
   return "the Newton matrix is not positive definite with any shift";
-}
-
-const BlockMatrix* HessianModification::blend_until_definite(const Assemble& assemble,
-                                                             const Factorise& factorise,
-                                                             bool after_full_step) {
-  const BlockMatrix* matrix = nullptr;
-  if (after_full_step) blend_ = std::max(blend_ - 1, 0);
-  for (; blend_ < blend_count; ++blend_) {
-    matrix = &assemble({projection_, blends[blend_]});
-    if (factorise(*matrix, 0)) return nullptr;
-  }
-  blend_ = blend_count - 1;
-  return matrix;
 }
 
 }  // namespace drape

@@ -27,7 +27,7 @@ class HessianModification {
 
   explicit HessianModification(const NewtonParameters& parameters);
 
-  /// Index of the fraction that worked last.
+  /// Index of the fraction that worked last, or that is being tried.
   int blend() const { return blend_; }
   void set_blend(int blend) { blend_ = blend; }
 
@@ -44,10 +44,6 @@ class HessianModification {
                         bool after_full_step);
 
  private:
-  /// Null once a blend is positive definite; if none is, the matrix with the whole projection.
-  const BlockMatrix* blend_until_definite(const Assemble& assemble, const Factorise& factorise,
-                                          bool after_full_step);
-
   int blend_ = blend_count - 1;
   Projection::Kind projection_;
   bool adaptive_;
