@@ -195,7 +195,7 @@ class Newton {
   bool switch_to_plain() {
     if (dirichlet_.infeasible() || !f_.switch_to_plain()) return false;
     switched_to_plain_ = true;
-    step_.restart();
+    step_.controller().restart();
     start_over();
     return true;
   }

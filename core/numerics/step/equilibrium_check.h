@@ -16,13 +16,14 @@ namespace drape {
 class EquilibriumCheck {
  public:
   struct State {
-    /// Decrements of the last three iterations, +∞ until filled; iteration k is at k mod 3 [m/s].
-    std::array<double, 3> decrements = unknown_decrements();
+    static constexpr double unknown = std::numeric_limits<double>::infinity();
+    /// Decrements of the last three iterations; iteration k is at k mod 3 [m/s].
+    std::array<double, 3> decrements = {unknown, unknown, unknown};
     /// Of the free vertices where the drift begins [m].
     Eigen::RowVector3d initial_centroid = Eigen::RowVector3d::Zero();
     IdleSteps idle = {};
     CycleDetector cycle = {};
-    double lowest_residual = std::numeric_limits<double>::infinity();  ///< at the end of a step [1]
+    double lowest_residual = unknown;  ///< at the end of a step [1]
     int steps_since_lowest = 0;
   };
   State state() const { return s_; }
@@ -65,11 +66,6 @@ class EquilibriumCheck {
   void restart_drift() { s_.initial_centroid = iterate_.free_centroid(); }
 
  private:
-  static constexpr std::array<double, 3> unknown_decrements() {
-    constexpr double infinity = std::numeric_limits<double>::infinity();
-    return {infinity, infinity, infinity};
-  }
-
   Iterate& iterate_;
   const NewtonParameters& p_;
   State s_;

@@ -44,15 +44,12 @@ class NewtonStep {
   /// Whether `interrupt` ended the last step.
   bool interrupted() const { return interrupted_; }
   StepController& controller() { return controller_; }
-  /// Starts over, for another objective.
-  void restart() { controller_.restart(); }
 
   /// Factorises the matrix at the iterate, without the rows and columns of fixed vertices,
   /// `with_inertia` of a step or with that of the longest. Returns false if that fails; factor().fault() then
   /// says why.
   bool factorise(const std::vector<char>& fixed, bool with_inertia);
   FactorCache& factor() { return factor_; }
-  const FactorCache& factor() const { return factor_; }
 
   double step_length() const { return line_search_.step_length(); }  ///< α of the last line search
   double step_size() const;  ///< h [s]; +∞ for a step without inertia
