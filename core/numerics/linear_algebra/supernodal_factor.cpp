@@ -48,7 +48,10 @@ bool SupernodalFactor<Scalar>::factorise(const BlockMatrix& matrix, const Eigen:
   [[maybe_unused]] const KernelMode<Scalar> mode;
   failed_ = false;
   const auto run = [&](int s) {
-    if (!failed_.load(std::memory_order_relaxed) && !eliminate(s, matrix, shift)) failed_ = true;
+    if (failed_.load(std::memory_order_relaxed)) return;
+    const Front<Scalar> f = front(s);
+    assemble(s, f, matrix, shift);
+    if (!eliminate(f)) failed_ = true;
   };
   const auto& subtrees = tree_.subtrees();
   parallel_kernels<Scalar>(static_cast<int>(subtrees.size()), 1, [&](int k, int) {
@@ -56,13 +59,6 @@ bool SupernodalFactor<Scalar>::factorise(const BlockMatrix& matrix, const Eigen:
   });
   for (const int s : tree_.top()) run(s);
   return !failed_;
-}
-
-template <class Scalar>
-bool SupernodalFactor<Scalar>::eliminate(int s, const BlockMatrix& matrix, const Eigen::VectorXd& shift) {
-  const Front<Scalar> f = front(s);
-  assemble(s, f, matrix, shift);
-  return drape::eliminate(f);
 }
 
 namespace {
@@ -96,9 +92,7 @@ void SupernodalFactor<Scalar>::assemble(int s, const Front<Scalar>& f, const Blo
   }
   for (int c = 3 * f.pivots; c < f.columns(); ++c)
     f.panel_rows(c / row_panel_height<Scalar>).column(c)[c % row_panel_height<Scalar>] = 1;
-  const AdjacencyList& children = tree_.children();
-  for (const int* c = children.begin(s); c != children.end(s); ++c)
-    add_update(front(*c), tree_.indices_in_parent(*c), f);
+  for (const int c : tree_.children().row(s)) add_update(front(c), tree_.indices_in_parent(c), f);
 }
 
 template <class Scalar>
@@ -123,11 +117,10 @@ void SupernodalFactor<Scalar>::forward(int s, const Eigen::VectorXd& x) {
   Scalar* updates = pivots + f.columns();
   std::fill(pivots, work_.data() + vector_start_[s + 1], Scalar(0));
   for (int k = 0; k < 3 * f.pivots; ++k) pivots[k] = static_cast<Scalar>(x[3 * tree_.first(s) + k]);
-  const AdjacencyList& children = tree_.children();
-  for (const int* c = children.begin(s); c != children.end(s); ++c) {
-    const int* indices = tree_.indices_in_parent(*c);
-    const Scalar* from = work_.data() + vector_start_[*c] + padded<Scalar>(3 * tree_.pivots(*c));
-    for (int k = 0; k < tree_.rows().size(*c); ++k) {
+  for (const int c : tree_.children().row(s)) {
+    const int* indices = tree_.indices_in_parent(c);
+    const Scalar* from = work_.data() + vector_start_[c] + padded<Scalar>(3 * tree_.pivots(c));
+    for (int k = 0; k < tree_.rows().size(c); ++k) {
       Scalar* to = indices[k] < f.pivots ? pivots + 3 * indices[k] : updates + 3 * (indices[k] - f.pivots);
       for (int d = 0; d < 3; ++d) to[d] += from[3 * k + d];
     }

@@ -40,7 +40,6 @@ class SupernodalFactor : public NumericFactor {
   using Vector = Eigen::Matrix<Scalar, Eigen::Dynamic, 1>;
 
   Front<Scalar> front(int s);
-  bool eliminate(int s, const BlockMatrix& matrix, const Eigen::VectorXd& shift);
   void assemble(int s, const Front<Scalar>& f, const BlockMatrix& matrix, const Eigen::VectorXd& shift);
   void forward(int s, const Eigen::VectorXd& x);
   void backward(int s, Eigen::VectorXd& x);

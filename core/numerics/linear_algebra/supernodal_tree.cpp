@@ -82,8 +82,8 @@ void SupernodalTree::cut() {
     const int s = roots.back();
     roots.pop_back();
     top_.push_back(s);
-    for (const int* c = children_.begin(s); c != children_.end(s); ++c) {
-      roots.push_back(*c);
+    for (const int c : children_.row(s)) {
+      roots.push_back(c);
       std::push_heap(roots.begin(), roots.end(), less);
     }
   }
@@ -108,9 +108,9 @@ void SupernodalTree::place_updates(const std::vector<int>& part, FrontSizes size
     update_[s] = top[mine];
     top[mine] += sizes.update(rows_.size(s));
     peak[mine] = std::max(peak[mine], top[mine]);
-    for (const int* c = children_.begin(s); c != children_.end(s); ++c)
-      if (index(*c) < part.size()) {
-        top[1 - mine] = update_[*c];
+    for (const int c : children_.row(s))
+      if (index(c) < part.size()) {
+        top[1 - mine] = update_[c];
         break;
       }
   }
