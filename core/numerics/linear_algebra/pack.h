@@ -63,22 +63,10 @@ struct Pack {
   friend Pack operator*(Pack a, Pack b) { return of(a.v * b.v); }
   friend Pack operator/(Pack a, Pack b) { return of(a.v / b.v); }
   friend Pack operator-(Pack a) { return of(-a.v); }
-  Pack& operator+=(Pack b) {
-    v += b.v;
-    return *this;
-  }
-  Pack& operator-=(Pack b) {
-    v -= b.v;
-    return *this;
-  }
-  Pack& operator*=(Pack b) {
-    v *= b.v;
-    return *this;
-  }
-  Pack& operator/=(Pack b) {
-    v /= b.v;
-    return *this;
-  }
+  Pack& operator+=(Pack b) { return *this = *this + b; }
+  Pack& operator-=(Pack b) { return *this = *this - b; }
+  Pack& operator*=(Pack b) { return *this = *this * b; }
+  Pack& operator/=(Pack b) { return *this = *this / b; }
   /// As std::min and std::max in each lane: the first argument if either is NaN.
   friend Pack min(Pack a, Pack b) { return of((b < a).v ? b.v : a.v); }
   friend Pack max(Pack a, Pack b) { return of((a < b).v ? b.v : a.v); }
