@@ -55,19 +55,18 @@ void round_to(float* block, const double* row_major) {
 MultigridMesh::MultigridMesh(int vertices) : order(static_cast<std::size_t>(vertices)) {
   std::iota(order.begin(), order.end(), 0);
   position = order;
-  resize();
+  for (auto* v : {&x, &b, &r, &old}) v->resize(order.size());
 }
 
 MultigridMesh::MultigridMesh(const ProlongationMatrix& p, const MultigridMesh& coarse)
-    : order(static_cast<std::size_t>(p.rows())), position(order.size()) {
-  const int n = static_cast<int>(p.rows());
+    : MultigridMesh(static_cast<int>(p.rows())) {
+  const int n = size();
   std::vector<int> key(order.size());  // position of the parent with the largest weight
   for (int i = 0; i < n; ++i) {
     double largest = -1;
     for (ProlongationMatrix::InnerIterator it(p, i); it; ++it)
       if (it.value() > largest + 1e-9) largest = it.value(), key[i] = coarse.position[it.col()];
   }
-  std::iota(order.begin(), order.end(), 0);
   std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return key[a] < key[b]; });
   for (int q = 0; q < n; ++q) position[order[q]] = q;
   std::vector<Eigen::Triplet<float>> weights;
@@ -77,11 +76,6 @@ MultigridMesh::MultigridMesh(const ProlongationMatrix& p, const MultigridMesh& c
   parents.resize(n, coarse.size());
   parents.setFromTriplets(weights.begin(), weights.end());
   children = parents.transpose();
-  resize();
-}
-
-void MultigridMesh::resize() {
-  for (auto* v : {&x, &b, &r, &old}) v->resize(order.size());
 }
 
 void MultigridMesh::set_pattern(const std::shared_ptr<const BlockPattern>& given) {

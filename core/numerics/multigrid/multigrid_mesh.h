@@ -44,7 +44,6 @@ struct MultigridMesh {
   std::vector<Float4> x, b, r, old;
 
  private:
-  void resize();
   void set_pattern(const std::shared_ptr<const BlockPattern>& given);
   void set_pattern(AdjacencyList pattern);
   /// Finds which blocks Pᵀ A and Pᵀ A P have.
