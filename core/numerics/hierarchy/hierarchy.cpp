@@ -9,7 +9,6 @@
 #include "core/numerics/hierarchy/midpoint.h"
 #include "core/numerics/hierarchy/rest_interpolation.h"
 #include "core/numerics/mesh/check.h"
-#include "core/numerics/mesh/texture_coordinates.h"
 
 namespace drape {
 namespace {

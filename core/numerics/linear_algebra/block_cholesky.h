@@ -65,8 +65,6 @@ class BlockCholesky {
   int unknowns() const { return 3 * static_cast<int>(analysis_.ordering.size()); }
   /// Floating-point operations of one numeric factorisation, without the explicit zeros of supernodes.
   double flops() const { return flops_; }
-  /// Number of symbolic analyses.
-  int analyses() const { return analysis_.count; }
 
  private:
   /// Uses `ordering` if the factorisation then costs at most `max_flops`, else computes one.

@@ -94,8 +94,7 @@ ObstacleMotion ActiveContacts::motion_since(const BoundContacts& before, std::si
 
 bool ActiveContacts::store_tangential_displacements(const Positions& x, const BoundContacts* before) {
   bool moved = false;
-  tangential_displacements_.resize(models_.size());
-  for (TangentialDisplacements& displacements : tangential_displacements_) displacements.clear();
+  tangential_displacements_.assign(models_.size(), {});
   for (std::size_t k = 0; k < friction_.size(); ++k) {
     if (!friction_[k]) continue;
     tangential_displacements_[k] =
@@ -107,8 +106,7 @@ bool ActiveContacts::store_tangential_displacements(const Positions& x, const Bo
 }
 
 bool ActiveContacts::has_friction() const {
-  return std::any_of(friction_.begin(), friction_.end(),
-                     [](const auto& friction) { return friction != nullptr; });
+  return std::ranges::any_of(friction_, [](const auto& friction) { return friction != nullptr; });
 }
 
 void ActiveContacts::update_obstacles(const BoundContacts& models, const Positions& from,
@@ -127,8 +125,7 @@ void ActiveContacts::update_obstacles(const BoundContacts& models, const Positio
   const bool moved = store_tangential_displacements(x, &before) || advected_;
   reset();
   advected_ = moved;
-  build_collisions(x);
-  lag_friction(false);
+  update_lagging(x);
 }
 
 void ActiveContacts::update_lagging(const Positions& x) {
@@ -145,11 +142,12 @@ void ActiveContacts::lag_friction(bool of_step) {
       lag = under_relaxed(damping_.lag[k], std::move(lag), of_step ? damping_.fraction : 1);
       if (of_step) damping_.lag[k] = lag;
     }
-    set_friction(k, std::move(lag));
+    set_next_friction(std::move(lag));
   }
 }
 
-void ActiveContacts::set_friction(std::size_t k, FrictionContacts lag) {
+void ActiveContacts::set_next_friction(FrictionContacts lag) {
+  const std::size_t k = friction_.size();
   friction_.push_back(
       lagged_friction(*collisions_[k], std::move(lag), reference_, tangential_displacements_[k]));
 }
@@ -185,7 +183,7 @@ void ActiveContacts::restore(const ContactMemory& memory, const Positions& x) {
   damping_ = memory.damping;
   if (damping_.fraction == 1) return lag_friction(true);
   friction_.clear();
-  for (const FrictionContacts& lag : damping_.lag) set_friction(friction_.size(), lag);
+  for (const FrictionContacts& lag : damping_.lag) set_next_friction(lag);
 }
 
 StepLimit ActiveContacts::max_step(const Positions& x0, const Positions& x1) {

@@ -99,8 +99,8 @@ class ActiveContacts {
   void build_collisions(const Positions& x);
   /// Sets friction_ from the collisions. A step's lag is the damped one.
   void lag_friction(bool of_step);
-  /// Sets the next model's friction_ from its lag.
-  void set_friction(std::size_t model, FrictionContacts lag);
+  /// Adds the next model's friction_, from its lag.
+  void set_next_friction(FrictionContacts lag);
   /// Stores the tangential displacements at x and makes x their reference. With the models `before` obstacles
   /// moved, they are advected and not limited. Returns whether an obstacle that the cloth touches has moved.
   bool store_tangential_displacements(const Positions& x, const BoundContacts* before = nullptr);

@@ -132,8 +132,9 @@ DerivativeCheck check_derivatives(const Energy& energy, const Material& material
     throw std::runtime_error(
         "the energy is not finite at strains of 0.05, where derivatives are checked; check it with other "
         "parameters");
-  DerivativeCheck best = check_derivatives(*bound, x, difference_step);
-  for (const double h : {difference_step / 10, difference_step / 100}) {
+  constexpr double step = 1e-5;  // [m]
+  DerivativeCheck best = check_derivatives(*bound, x, step);
+  for (const double h : {step / 10, step / 100}) {
     if (best.agrees()) break;
     const DerivativeCheck check = check_derivatives(*bound, x, h);
     if (check.worst() < best.worst()) best = check;

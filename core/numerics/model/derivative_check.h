@@ -30,8 +30,6 @@ struct DerivativeCheck {
 Level checked_level();
 /// The level's rest shape stretched, sheared and bent (n×3) [m].
 Positions checked_state(const Level& level);
-/// The step of the differences, for lengths like the checked level's [m].
-inline constexpr double difference_step = 1e-5;
 
 /// Compares an energy's derivatives at x (n×3) [m] with central differences of fourth order, step h [m].
 /// Takes 24 n evaluations and (3n)² numbers: for small meshes. A gradient that is not finite at x differs,
@@ -39,9 +37,9 @@ inline constexpr double difference_step = 1e-5;
 /// if add_gradient does not add, or if it returns another number than value().
 DerivativeCheck check_derivatives(const BoundEnergy& energy, const Positions& x, double h);
 
-/// Checks the energy on the checked level. Where the derivatives do not agree, repeats that with a tenth and
-/// a hundredth of difference_step, since differences of a law that curves strongly need short steps, and
-/// returns the best. Throws as the function above does.
+/// Checks the energy on the checked level with a step of 1e-5 m. Where the derivatives do not agree, repeats
+/// that with a tenth and a hundredth of it, since differences of a law that curves strongly need short steps,
+/// and returns the best. Throws as the function above does.
 DerivativeCheck check_derivatives(const Energy& energy, const Material& material);
 
 /// The largest force of the energy at the checked level's rest shape, over that at the checked state [1]; 0

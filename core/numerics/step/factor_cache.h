@@ -60,7 +60,7 @@ class FactorCache {
   /// The solver of the last factorisation.
   LinearSolver solver() const { return solver_; }
   /// Number of symbolic analyses.
-  int analyses() const { return cholesky_.analyses(); }
+  int analyses() const { return cholesky_.analysis().count; }
 
  private:
   void use(LinearSolver solver);

@@ -320,7 +320,7 @@ TEST_CASE("A restored analysis continues bit for bit, as far as the BLAS does") 
     REQUIRE_THROWS_AS(again.solve(right, x), std::logic_error);
     for (std::size_t i = k; i < matrices.size(); ++i)
       REQUIRE(agree(solver, solution(again, matrices[i]), solutions[i]));
-    CHECK(again.analyses() == whole.analyses());
+    CHECK(again.analysis().count == whole.analysis().count);
     CHECK(again.flops() == whole.flops());
 
     // With an invalidated pattern only the ordering is restored.
@@ -328,6 +328,6 @@ TEST_CASE("A restored analysis continues bit for bit, as far as the BLAS does") 
     ordering_only.restore(nullptr, analyses[k]);
     for (std::size_t i = k + 1; i < matrices.size(); ++i)
       REQUIRE(agree(solver, solution(ordering_only, matrices[i]), solutions[i]));
-    CHECK(ordering_only.analyses() == whole.analyses());
+    CHECK(ordering_only.analysis().count == whole.analysis().count);
   }
 }
