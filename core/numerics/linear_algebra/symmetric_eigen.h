@@ -28,18 +28,17 @@ struct SymmetricMatrix {
 namespace eigen_detail {
 
 /// All pairs p < q in rounds of disjoint pairs (a round-robin tournament), whose rotations are independent.
+/// For odd N index r has no partner in round r.
 template <int N>
 struct Rounds {
   static constexpr int pairs = N / 2, rounds = N - 1 + N % 2;
   int pair[rounds][pairs][2] = {};
-  int single[rounds] = {};  ///< the index without a partner in each round, N odd
 
   constexpr Rounds() {
     for (int r = 0; r < rounds; ++r) {
       int count = 0;
       if (N % 2 == 0) set(r, count++, r, N - 1);
       for (int k = 1; count < pairs; ++k) set(r, count++, (r + k) % rounds, (r - k + rounds) % rounds);
-      single[r] = r;
     }
   }
   constexpr void set(int round, int k, int p, int q) {
@@ -96,12 +95,11 @@ inline void turn_block(Rotation<T> r, T& app, T& apq, T& aqq) {
 template <int Round, int N, class T>
 inline void rotate_others(SymmetricMatrix<N, T>& a, const Rotation<T>* rotations) {
   constexpr auto& all = rounds_of<N>;
-  constexpr int single = all.single[Round];
 #pragma GCC unroll 8
   for (int i = 0; i < all.pairs; ++i) {
     const int p = all.pair[Round][i][0], q = all.pair[Round][i][1];
     const Rotation<T> r = rotations[i];
-    if (N % 2 == 1) turn(r, a(p, single), a(q, single));
+    if (N % 2 == 1) turn(r, a(p, Round), a(q, Round));
 #pragma GCC unroll 8
     for (int j = 0; j < i; ++j) {
       const int u = all.pair[Round][j][0], v = all.pair[Round][j][1];

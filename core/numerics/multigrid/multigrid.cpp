@@ -43,9 +43,9 @@ bool Multigrid::set(const BlockMatrix& matrix, const Eigen::VectorXd& shift, con
   return coarsest_.factorise(coarsest_matrix_, Eigen::VectorXd::Zero(coarsest.size()));
 }
 
-void Multigrid::cycle(int mesh) {
-  MultigridMesh& f = *meshes_[static_cast<std::size_t>(mesh)];
-  if (mesh + 1 == static_cast<int>(meshes_.size())) {
+void Multigrid::cycle(std::size_t mesh) {
+  MultigridMesh& f = *meshes_[mesh];
+  if (mesh + 1 == meshes_.size()) {
     right_.resize(f.size(), 3);
     for (int i = 0; i < f.size(); ++i)
       for (int c = 0; c < 3; ++c) right_(i, c) = f.b[i][c];
@@ -54,7 +54,7 @@ void Multigrid::cycle(int mesh) {
       for (int c = 0; c < 3; ++c) f.x[i][c] = static_cast<float>(solution_(i, c));
     return;
   }
-  MultigridMesh& c = *meshes_[static_cast<std::size_t>(mesh) + 1];
+  MultigridMesh& c = *meshes_[mesh + 1];
   f.matrix.presmooth(f.b, f.x, f.r);
   parallel_for(c.size(), SmoothedMatrix::piece, [&](int begin, int end) {
     for (int i = begin; i < end; ++i) c.b[i] = weighted_sum(f.children, i, f.r);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstddef>
 #include <memory>
 #include <span>
 #include <utility>
@@ -40,7 +41,7 @@ class Multigrid {
   double take_flops() { return std::exchange(flops_, 0); }
 
  private:
-  void cycle(int mesh);
+  void cycle(std::size_t mesh);
 
   std::vector<std::unique_ptr<MultigridMesh>> meshes_;  // finest first
   BlockMatrix coarsest_matrix_;
