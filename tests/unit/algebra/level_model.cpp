@@ -14,6 +14,8 @@ using namespace drape;
 
 namespace {
 
+const Level oblong = Level::of(0, grid({2, 1}, 4, 3, Diagonals::one_way));
+
 /// Forces that vary over the vertices, with energy `at_origin` at x = 0.
 std::shared_ptr<Energy> slope(const Level& level, double size, double at_origin = 0) {
   return energy_of(LinearEnergy(size * level.rest.vertices.array().cos(), at_origin), EnergyRole::external);
@@ -56,10 +58,9 @@ struct Binding : Energy {
 }  // namespace
 
 TEST_CASE("an energy that cannot be bound, or is not what it says, is refused by name", "[level_model]") {
-  const Level level = Level::of(0, grid({2, 1}, 4, 3, Diagonals::one_way));
   const auto refusal = [&](std::unique_ptr<BoundEnergy> (*make)()) {
     return refusal_of([&] {
-      LevelModel(level, Material(), {{"slope", slope(level, 2)}, {"wind", std::make_shared<Binding>(make)}},
+      LevelModel(oblong, Material(), {{"slope", slope(oblong, 2)}, {"wind", std::make_shared<Binding>(make)}},
                  {});
     });
   };
@@ -83,13 +84,12 @@ TEST_CASE("an energy that replaces the gradient is refused by name, before anoth
       return 0;
     }
   };
-  const Level level = Level::of(0, grid({2, 1}, 4, 3, Diagonals::one_way));
   for (const EnergyRole role : {EnergyRole::membrane, EnergyRole::limit}) {
-    const LevelModel model(level, Material(),
+    const LevelModel model(oblong, Material(),
                            {{"short", energy_of(Replacing(each_vertex(12)), role)},
                             {"springs", energy_of(OriginSprings(each_vertex(12)))}},
                            {});
-    CHECK(refusal_of([&] { model.force_residual(level.rest.vertices); }) ==
+    CHECK(refusal_of([&] { model.force_residual(oblong.rest.vertices); }) ==
           "energy short: add_gradient has changed the size of g to 3 rows, not 12; add to its rows");
   }
 }
@@ -117,14 +117,13 @@ TEST_CASE("linear energies are evaluated together, and limits apart", "[level_mo
 }
 
 TEST_CASE("the parts of the energy have names of their own and sum to it", "[level_model]") {
-  const Level level = Level::of(0, grid({2, 1}, 4, 3, Diagonals::one_way));
-  const std::vector<NamedEnergy> energies = {{"load", slope(level, 2)},
-                                             {"load 2", slope(level, 5)},
-                                             {"load", slope(level, -0.5)},
-                                             {"other", slope(level, 1)}};
-  const LevelModel model(level, Material(), energies, {});
-  const LevelModel later(level, Material(), energies, {}, {}, &model);
-  const Positions x = level.rest.vertices.array() + 0.7;
+  const std::vector<NamedEnergy> energies = {{"load", slope(oblong, 2)},
+                                             {"load 2", slope(oblong, 5)},
+                                             {"load", slope(oblong, -0.5)},
+                                             {"other", slope(oblong, 1)}};
+  const LevelModel model(oblong, Material(), energies, {});
+  const LevelModel later(oblong, Material(), energies, {}, {}, &model);
+  const Positions x = oblong.rest.vertices.array() + 0.7;
   for (const LevelModel* own : {&model, &later}) {
     std::vector<std::string> names;
     double sum = 0;
@@ -135,9 +134,8 @@ TEST_CASE("the parts of the energy have names of their own and sum to it", "[lev
 }
 
 TEST_CASE("A model refuses an energy whose stencils differ from those of the model before", "[level_model]") {
-  const Level level = Level::of(0, grid({2, 1}, 4, 3, Diagonals::one_way));
   const auto model = [&](const Stencils& stencils, const LevelModel* before) {
-    return LevelModel(level, Material(), {{"springs", energy_of(OriginSprings(stencils))}}, {}, {}, before);
+    return LevelModel(oblong, Material(), {{"springs", energy_of(OriginSprings(stencils))}}, {}, {}, before);
   };
   const Stencils two{{0}, {1}}, four{{0}, {1}, {2}, {3}}, pairs{{0, 1}, {2, 3}}, others{{0}, {2}};
   const std::vector<Stencils> kinds = {two, four, pairs, others};
@@ -193,9 +191,8 @@ TEST_CASE("Cloth at the tip of a slit softens, although a full turn has no axis"
 
 TEST_CASE("Membranes of coarse levels buckle at the stress of a clamped column of the mesh's size",
           "[level_model]") {
-  const Level level = Level::of(0, grid({2, 1}, 4, 3, Diagonals::one_way));
   const auto membrane = std::make_shared<Shell>(EnergyRole::membrane, 0);
-  const LevelModel model(level, Material(),
+  const LevelModel model(oblong, Material(),
                          {{"membrane", membrane},
                           {"bending", std::make_shared<Shell>(EnergyRole::bending, 2)},
                           {"more bending", std::make_shared<Shell>(EnergyRole::bending, 1)}},
@@ -206,29 +203,28 @@ TEST_CASE("Membranes of coarse levels buckle at the stress of a clamped column o
     const LevelModel buckling = model.with_effective_membranes(k);
     CHECK(membrane->bound == Approx(4 * pi * pi * 3 / (h2 - h2 / std::pow(4, k)) * area));
     CHECK(buckling.pattern() == model.pattern());
-    CHECK(buckling.value(level.rest.vertices) == model.value(level.rest.vertices));
+    CHECK(buckling.value(oblong.rest.vertices) == model.value(oblong.rest.vertices));
   }
-  LevelModel(level, Material(), {{"membrane", membrane}}, {}).with_effective_membranes(1);
+  LevelModel(oblong, Material(), {{"membrane", membrane}}, {}).with_effective_membranes(1);
   CHECK(membrane->bound == 0);
 }
 
 TEST_CASE("Several membranes keep their laws: each alone would wrinkle where their sum is taut",
           "[level_model]") {
-  const Level level = Level::of(0, grid({2, 1}, 4, 3, Diagonals::one_way));
   const auto first = std::make_shared<Shell>(EnergyRole::membrane, 0),
              second = std::make_shared<Shell>(EnergyRole::membrane, 0);
-  LevelModel(level, Material(), {{"first", first}, {"second", second}}, {}).with_effective_membranes(1);
+  LevelModel(oblong, Material(), {{"first", first}, {"second", second}}, {}).with_effective_membranes(1);
   CHECK((first->bound == -1 && second->bound == -1));
 
   const auto formula = [](const std::string& density) {
     return std::shared_ptr<const Energy>(
         make_plugin_from<Energy>("{type: formula, density: \"" + density + "\"}"));
   };
-  const LevelModel halves(level, Material(),
+  const LevelModel halves(oblong, Material(),
                           {{"shear", formula("thickness*mu*(g11^2 + g22^2 + 2*g12^2)")},
                            {"area", formula("thickness*lambda/2*(g11 + g22)^2")}},
                           {});
-  Positions x = level.rest.vertices;
+  Positions x = oblong.rest.vertices;
   x.col(0) *= 1.06;
   x.col(1) *= 0.995;  // less than it contracts freely: taut
   CHECK(halves.with_effective_membranes(1).value(x) == Approx(halves.value(x)).epsilon(1e-12));

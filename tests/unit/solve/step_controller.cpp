@@ -52,11 +52,8 @@ TEST_CASE("The shortest of a step's iterations adapts the step size") {
 TEST_CASE("Short steps reduce the step size to 1e-8 s and no further") {
   const NewtonParameters p{.step_size = 1e-7, .step_growth = 1000};
   StepController c(p);
-  for (int k = 0; k < 2; ++k) {
-    c.begin_step();
-    c.end_iteration(0.1);
-    c.end_step(1);
-  }
+  step(c, 0.1);
+  step(c, 0.1);
   CHECK(c.step_size() == StepController::min_step_size);
 }
 
