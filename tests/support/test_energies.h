@@ -2,6 +2,7 @@
 
 #include <memory>
 #include <utility>
+#include <vector>
 
 #include "core/kernel/interfaces/energy.h"
 
@@ -69,6 +70,31 @@ class Wells : public NoEnergy {
  private:
   drape::Positions a_;
   double k_, w2_;
+};
+
+/// Σ ½ k |x_a − x_b|² over pairs, of which it has the Hessian alone. A partner of -1 is the origin.
+struct PairSprings : NoEnergy {
+  struct Pair {
+    int a, b;
+    double stiffness = 1;
+  };
+  std::vector<Pair> pairs;
+
+  explicit PairSprings(std::vector<Pair> of) : pairs(std::move(of)) {}
+  drape::Stencils stencils() const override {
+    drape::Stencils s(pairs.size(), 2);
+    for (std::size_t e = 0; e < pairs.size(); ++e) s.row(e) << pairs[e].a, pairs[e].b;
+    return s;
+  }
+  void add_hessian(const drape::Positions&, drape::Projection, drape::BlockSink& sink) const override {
+    for (std::size_t e = 0; e < pairs.size(); ++e)
+      for (int b = 0; b < 2; ++b)
+        for (int a = 0; a <= b; ++a) {
+          const double k = a == b ? pairs[e].stiffness : -pairs[e].stiffness;
+          const double h[9] = {k, 0, 0, 0, k, 0, 0, 0, k};
+          sink.add(e, a, b, h);
+        }
+  }
 };
 
 /// A unit weight at each vertex.
