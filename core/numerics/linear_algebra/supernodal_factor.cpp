@@ -1,6 +1,7 @@
 #include "core/numerics/linear_algebra/supernodal_factor.h"
 
 #include <algorithm>
+#include <atomic>
 
 namespace drape {
 
@@ -46,19 +47,19 @@ Front<Scalar> SupernodalFactor<Scalar>::front(int s) {
 template <class Scalar>
 bool SupernodalFactor<Scalar>::factorise(const BlockMatrix& matrix, const Eigen::VectorXd& shift) {
   [[maybe_unused]] const KernelMode<Scalar> mode;
-  failed_ = false;
+  std::atomic<bool> failed = false;
   const auto run = [&](int s) {
-    if (failed_.load(std::memory_order_relaxed)) return;
+    if (failed.load(std::memory_order_relaxed)) return;
     const Front<Scalar> f = front(s);
     assemble(s, f, matrix, shift);
-    if (!eliminate(f)) failed_ = true;
+    if (!eliminate(f)) failed = true;
   };
   const auto& subtrees = tree_.subtrees();
   parallel_kernels<Scalar>(static_cast<int>(subtrees.size()), 1, [&](int k, int) {
     for (int s = subtrees[k].begin; s < subtrees[k].end; ++s) run(s);
   });
   for (const int s : tree_.top()) run(s);
-  return !failed_;
+  return !failed;
 }
 
 namespace {

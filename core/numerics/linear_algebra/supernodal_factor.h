@@ -1,7 +1,6 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <atomic>
 #include <vector>
 
 #include "core/kernel/interfaces/topology.h"
@@ -50,7 +49,6 @@ class SupernodalFactor : public NumericFactor {
   Vector panels_, updates_;
   std::vector<int> vector_start_;  // of each supernode's work space in a solve
   Vector work_;
-  std::atomic<bool> failed_ = false;
 };
 
 }  // namespace drape

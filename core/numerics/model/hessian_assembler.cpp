@@ -158,9 +158,9 @@ const BlockMatrix& HessianAssembler::add(BlockMatrix& smooth,
   }
   if (persistent_slots_.empty())
     for (const BoundEnergy* energy : persistent)
-      persistent_slots_.push_back(std::make_unique<BlockSlots>(*pattern_, energy->stencils()));
+      persistent_slots_.emplace_back(*pattern_, energy->stencils());
   for (std::size_t k = 0; k < persistent.size(); ++k) {
-    BlockSink sink = persistent_slots_[k]->sink(*sum);
+    BlockSink sink = persistent_slots_[k].sink(*sum);
     persistent[k]->add_hessian(x, projection, sink);
   }
   for (std::size_t k = 0; k < transient.size(); ++k) {

@@ -47,7 +47,7 @@ class HessianAssembler {
   std::shared_ptr<const BlockPattern> base_;     // of the smooth matrix
   std::shared_ptr<const BlockPattern> pattern_;  // base_ and the extra blocks
   std::vector<int> base_slot_;                   // index in pattern_ of each block of base_; empty if equal
-  std::vector<std::unique_ptr<BlockSlots>> persistent_slots_;
+  std::vector<BlockSlots> persistent_slots_;
   BlockMatrix matrix_;
   ExtraPattern extra_;
   AdjacencyList neighbours_;  // in base_; without rows until they are needed

@@ -23,19 +23,19 @@ int most_cycles(double vertices) { return std::max(10, static_cast<int>(0.1 * st
 Multigrid::Multigrid(std::span<const ProlongationMatrix> prolongations) {
   std::size_t first = prolongations.size() - 1;
   while (first > 0 && prolongations[first].cols() > small_mesh) --first;
-  meshes_.push_back(std::make_unique<MultigridMesh>(static_cast<int>(prolongations[first].cols())));
+  meshes_.emplace_front(static_cast<int>(prolongations[first].cols()));
   for (std::size_t l = first; l < prolongations.size(); ++l)
-    meshes_.insert(meshes_.begin(), std::make_unique<MultigridMesh>(prolongations[l], *meshes_.front()));
+    meshes_.emplace_front(prolongations[l], meshes_.front());
 }
 
 bool Multigrid::set(const BlockMatrix& matrix, const Eigen::VectorXd& shift, const std::vector<char>& fixed) {
   matrix_ = &matrix, shift_ = shift, fixed_ = fixed;
-  meshes_.front()->fill(matrix, shift, fixed);
+  meshes_.front().fill(matrix, shift, fixed);
   for (std::size_t k = 0; k + 1 < meshes_.size(); ++k) {
-    if (!meshes_[k]->matrix.finish()) return false;
-    flops_ += 18 * meshes_[k]->make_product(*meshes_[k + 1]);
+    if (!meshes_[k].matrix.finish()) return false;
+    flops_ += 18 * meshes_[k].make_product(meshes_[k + 1]);
   }
-  MultigridMesh& coarsest = *meshes_.back();
+  MultigridMesh& coarsest = meshes_.back();
   // An ordering from former contacts would change last bits, and a resumed run has none.
   if (coarsest.copy_to(coarsest_matrix_)) coarsest_.forget();
   coarsest_.analyse(coarsest_matrix_.pattern, std::vector<char>(coarsest.order.size(), 0));
@@ -44,7 +44,7 @@ bool Multigrid::set(const BlockMatrix& matrix, const Eigen::VectorXd& shift, con
 }
 
 void Multigrid::cycle(std::size_t mesh) {
-  MultigridMesh& f = *meshes_[mesh];
+  MultigridMesh& f = meshes_[mesh];
   if (mesh + 1 == meshes_.size()) {
     right_.resize(f.size(), 3);
     for (int i = 0; i < f.size(); ++i)
@@ -54,7 +54,7 @@ void Multigrid::cycle(std::size_t mesh) {
       for (int c = 0; c < 3; ++c) f.x[i][c] = static_cast<float>(solution_(i, c));
     return;
   }
-  MultigridMesh& c = *meshes_[mesh + 1];
+  MultigridMesh& c = meshes_[mesh + 1];
   f.matrix.presmooth(f.b, f.x, f.r);
   parallel_for(c.size(), SmoothedMatrix::piece, [&](int begin, int end) {
     for (int i = begin; i < end; ++i) c.b[i] = weighted_sum(f.children, i, f.r);
@@ -68,7 +68,7 @@ void Multigrid::cycle(std::size_t mesh) {
 }
 
 ConjugateGradients::End Multigrid::solve(const Positions& right_hand_side, Positions& solution) {
-  MultigridMesh& f = *meshes_.front();
+  MultigridMesh& f = meshes_.front();
   return gradients_.solve(
       *matrix_, shift_, fixed_, right_hand_side,
       [&](const Positions& r, Positions& z) {

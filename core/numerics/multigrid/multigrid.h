@@ -2,7 +2,7 @@
 
 #include <Eigen/Core>
 #include <cstddef>
-#include <memory>
+#include <deque>
 #include <span>
 #include <utility>
 #include <vector>
@@ -43,7 +43,7 @@ class Multigrid {
  private:
   void cycle(std::size_t mesh);
 
-  std::vector<std::unique_ptr<MultigridMesh>> meshes_;  // finest first
+  std::deque<MultigridMesh> meshes_;  // finest first
   BlockMatrix coarsest_matrix_;
   BlockCholesky coarsest_;
   Positions right_, solution_;  // of the coarsest

@@ -73,11 +73,11 @@ std::string max_steps_text(const LevelResult& so_far, const NewtonParameters& p,
                            const EquilibriumCheck& check) {
   const std::string begin = "no equilibrium within max_steps = " + std::to_string(p.max_steps) + "; ";
   if (misses_decrement_alone(so_far, p) && !check.is_within(1)) return begin + unmet(so_far, p);
-  const int steps = check.steps_since_lowest();
+  const int steps = check.state().steps_since_lowest;
   const bool falls = steps < falling_fraction * p.max_steps;
   return begin + "force residual " + three_digits(so_far.force_residual) +
          (falls ? ", which still falls: raise max_steps"
-                : ", which was " + three_digits(check.lowest_residual()) + " " + std::to_string(steps) +
+                : ", which was " + three_digits(check.state().lowest_residual) + " " + std::to_string(steps) +
                       " steps before and has not been lower since: more steps are unlikely to help");
 }
 

@@ -23,10 +23,10 @@ class EquilibriumCheck {
     Eigen::RowVector3d initial_centroid = Eigen::RowVector3d::Zero();
     IdleSteps idle = {};
     CycleDetector cycle = {};
-    double lowest_residual = unknown;  ///< at the end of a step [1]
-    int steps_since_lowest = 0;
+    double lowest_residual = unknown;  ///< the lowest force residual at the end of a step [1]
+    int steps_since_lowest = 0;        ///< how many steps ago that was
   };
-  State state() const { return s_; }
+  const State& state() const { return s_; }
   void restore(const State& state) { s_ = state; }
 
   /// Refers to both arguments.
@@ -48,9 +48,6 @@ class EquilibriumCheck {
   bool is_at_rounding_floor(FactorCache& factor);
   /// Bound on the force residual by round-off at the last such check [1].
   double rounding_residual() const { return rounding_residual_; }
-  /// The lowest force residual at the end of a step, and how many steps ago that was.
-  double lowest_residual() const { return s_.lowest_residual; }
-  int steps_since_lowest() const { return s_.steps_since_lowest; }
   /// Distance of the free vertices' centroid from where the drift begins, in diagonals of the rest shape.
   double drift() const {
     return (iterate_.free_centroid() - s_.initial_centroid).norm() / iterate_.rest_diagonal();
