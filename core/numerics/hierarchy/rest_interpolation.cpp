@@ -62,8 +62,8 @@ ProlongationMatrix rest_interpolation(const Level& coarse, const Positions& fine
     }
     EmbeddedPoint nearest;
     for (const int parent : {a, b})
-      for (const int* t = around.begin(parent); t != around.end(parent); ++t)
-        if (const EmbeddedPoint embedded = embed(rest, *t, point); embedded.distance < nearest.distance)
+      for (const int t : around.row(parent))
+        if (const EmbeddedPoint embedded = embed(rest, t, point); embedded.distance < nearest.distance)
           nearest = embedded;
     for (int k = 0; k < 3; ++k)
       weights.emplace_back(v, rest.triangles(nearest.triangle, k), nearest.weights[k]);

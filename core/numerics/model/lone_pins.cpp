@@ -10,20 +10,18 @@ namespace drape {
 namespace {
 
 bool has_fixed_neighbour(const LevelModel& model, int vertex) {
-  const AdjacencyList& neighbours = model.level().topology.vertex_vertices;
-  return std::any_of(neighbours.begin(vertex), neighbours.end(vertex),
-                     [&](int v) { return model.fixed()[v]; });
+  return std::ranges::any_of(model.level().topology.vertex_vertices.row(vertex),
+                             [&](int v) { return model.fixed()[v] != 0; });
 }
 
 /// K / (E d θ) of the triangles around a vertex [1], by linear elasticity in plane stress.
 double relative_stiffness(const Level& level, int vertex, double poisson_ratio) {
-  const AdjacencyList& around = level.topology.vertex_triangles;
   const double nu = poisson_ratio;
   Eigen::Matrix3d stiffness = Eigen::Matrix3d::Zero();
   Eigen::Vector3d axis = Eigen::Vector3d::Zero();  // the sum of all directions in the cloth
   double angle = 0;
-  for (const int* t = around.begin(vertex); t != around.end(vertex); ++t) {
-    const auto corners = level.rest.triangles.row(*t);
+  for (const int t : level.topology.vertex_triangles.row(vertex)) {
+    const auto corners = level.rest.triangles.row(t);
     const int k = corners[0] == vertex ? 0 : corners[1] == vertex ? 1 : 2;
     const auto at = [&](int i) -> Eigen::Vector3d { return level.rest.vertices.row(corners[(k + i) % 3]); };
     const Eigen::Vector3d e1 = at(1) - at(0), e2 = at(2) - at(0), doubled = e1.cross(e2),
@@ -59,11 +57,10 @@ std::vector<int> lone_pins(const LevelModel& coarse,
 Eigen::VectorXd softening_at_pins(const Level& level, const std::vector<int>& pins, double poisson_ratio,
                                   int levels_below) {
   Eigen::VectorXd softening = Eigen::VectorXd::Ones(level.triangle_count());
-  const AdjacencyList& around = level.topology.vertex_triangles;
   for (const int vertex : pins) {
     const double compliance =
         1 + relative_stiffness(level, vertex, poisson_ratio) * levels_below * std::numbers::ln2;
-    for (const int* t = around.begin(vertex); t != around.end(vertex); ++t) softening[*t] = 1 / compliance;
+    for (const int t : level.topology.vertex_triangles.row(vertex)) softening[t] = 1 / compliance;
   }
   return softening;
 }
