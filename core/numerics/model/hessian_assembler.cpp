@@ -11,10 +11,11 @@ namespace {
 /// When the pattern changes, extra blocks that were unused for more calls than this are dropped.
 constexpr int max_idle = 20;
 
+using Pairs = std::vector<std::pair<int, int>>;
+
 /// The pairs i < j of an element's vertices that the pattern has no block for, ascending, each once.
-std::vector<std::pair<int, int>> missing_in(const BlockPattern& pattern,
-                                            const std::vector<Stencils>& stencils) {
-  std::vector<std::pair<int, int>> missing;
+Pairs missing_in(const BlockPattern& pattern, const std::vector<Stencils>& stencils) {
+  Pairs missing;
   for (const Stencils& s : stencils)
     for (Eigen::Index e = 0; e < s.rows(); ++e)
       for (Eigen::Index b = 1; b < s.cols(); ++b)
@@ -29,9 +30,8 @@ std::vector<std::pair<int, int>> missing_in(const BlockPattern& pattern,
 }
 
 /// Pads the pairs: adds those of each end with the neighbours of the other. Leaves out blocks of `base`.
-std::vector<std::pair<int, int>> padded_pairs(const std::vector<std::pair<int, int>>& pairs,
-                                              const AdjacencyList& neighbours, const BlockPattern& base) {
-  std::vector<std::pair<int, int>> all;
+Pairs padded_pairs(const Pairs& pairs, const AdjacencyList& neighbours, const BlockPattern& base) {
+  Pairs all;
   const auto add = [&](int i, int j) {
     if (i != j) all.emplace_back(std::min(i, j), std::max(i, j));
   };
@@ -45,8 +45,7 @@ std::vector<std::pair<int, int>> padded_pairs(const std::vector<std::pair<int, i
   return all;
 }
 
-std::shared_ptr<const BlockPattern> with_blocks(const BlockPattern& base,
-                                                const std::vector<std::pair<int, int>>& extra) {
+std::shared_ptr<const BlockPattern> with_blocks(const BlockPattern& base, const Pairs& extra) {
   const AdjacencyList more = AdjacencyList::of(base.rows(), [&](const auto& add) {
     for (const auto& [i, j] : extra) add(i, j);
   });
@@ -92,22 +91,16 @@ const std::shared_ptr<const BlockPattern>& HessianAssembler::restore(
 void HessianAssembler::grow_pattern(const std::shared_ptr<const BlockPattern>& base,
                                     const std::vector<Stencils>& stencils) {
   if (base != base_) reset(base);
-  std::vector<std::pair<int, int>>& extra = extra_.blocks;
+  Pairs& extra = extra_.blocks;
   std::vector<int>& idle = extra_.idle;
-  const std::vector<std::pair<int, int>> needed = missing_in(*base_, stencils);
-  bool grows = false;
-  std::size_t k = 0;
-  for (const auto& pair : needed) {
-    while (k < extra.size() && extra[k] < pair) ++idle[k++];
-    if (k < extra.size() && extra[k] == pair)
-      idle[k++] = 0;
-    else
-      grows = true;
-  }
-  while (k < extra.size()) ++idle[k++];
-  if (!grows) return;
+  const Pairs needed = missing_in(*base_, stencils);
+  for (int& calls : idle) ++calls;
+  for (const auto& pair : needed)
+    if (const auto at = std::ranges::lower_bound(extra, pair); at != extra.end() && *at == pair)
+      idle[at - extra.begin()] = 0;
+  if (std::ranges::includes(extra, needed)) return;
 
-  std::vector<std::pair<int, int>> retained;
+  Pairs retained;
   std::vector<int> retained_idle;
   for (std::size_t e = 0; e < extra.size(); ++e)
     if (idle[e] <= max_idle) {
@@ -115,8 +108,8 @@ void HessianAssembler::grow_pattern(const std::shared_ptr<const BlockPattern>& b
       retained_idle.push_back(idle[e]);
     }
   if (neighbours_.start.empty()) neighbours_ = base_->neighbours();
-  const std::vector<std::pair<int, int>> padded = padded_pairs(needed, neighbours_, *base_);
-  std::vector<std::pair<int, int>> all;
+  const Pairs padded = padded_pairs(needed, neighbours_, *base_);
+  Pairs all;
   std::set_union(retained.begin(), retained.end(), padded.begin(), padded.end(), std::back_inserter(all));
   idle.assign(all.size(), 0);
   for (std::size_t a = 0, e = 0; a < all.size() && e < retained.size(); ++a)
