@@ -91,7 +91,7 @@ struct BlockMatrix {
   std::shared_ptr<const BlockPattern> pattern;
   std::vector<double> values;
 
-  explicit BlockMatrix(std::shared_ptr<const BlockPattern> pattern = nullptr);
+  explicit BlockMatrix(std::shared_ptr<const BlockPattern> pattern = nullptr);  ///< zero
   void set_zero();
   double* block(int b) { return values.data() + 9 * static_cast<std::size_t>(b); }
   const double* block(int b) const { return values.data() + 9 * static_cast<std::size_t>(b); }

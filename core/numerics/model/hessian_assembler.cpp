@@ -62,7 +62,6 @@ BlockMatrix hessian_of(const std::vector<const BoundEnergy*>& energies, const Po
   std::vector<Stencils> stencils;
   for (const BoundEnergy* energy : energies) stencils.push_back(energy->stencils());
   BlockMatrix matrix(BlockPattern::of(static_cast<int>(x.rows()), stencils));
-  matrix.set_zero();
   for (std::size_t k = 0; k < energies.size(); ++k) {
     if (stencils[k].rows() == 0) continue;
     const BlockSlots slots(*matrix.pattern, stencils[k]);

@@ -17,8 +17,6 @@ struct Recorder {
   std::vector<Projection> assembled;
   std::vector<double> shifts;
 
-  Recorder() { matrix.set_zero(); }
-
   std::string factorise(HessianModification& modification, bool after_full_step = false) {
     assembled.clear();
     shifts.clear();
