@@ -2,6 +2,7 @@
 
 #include <catch2/catch.hpp>
 
+#include "tests/support/evaluate.h"
 #include "tests/support/newton_problem.h"
 #include "tests/support/test_energies.h"
 
@@ -24,13 +25,10 @@ TEST_CASE("The gradient of an implicit step is that of its energy, without fixed
   };
   REQUIRE(step.gradient().norm() > 0);
   CHECK(step.gradient().row(0).norm() == 0);
+  const Eigen::MatrixXd slopes = differences(energy, x, 1e-5);
   for (const int vertex : {1, 7, 15})
-    for (int c = 0; c < 3; ++c) {
-      Positions before = x, after = x;
-      before(vertex, c) -= 1e-5;
-      after(vertex, c) += 1e-5;
-      CHECK(step.gradient()(vertex, c) == Approx((energy(after) - energy(before)) / 2e-5).epsilon(1e-6));
-    }
+    for (int c = 0; c < 3; ++c)
+      CHECK(step.gradient()(vertex, c) == Approx(slopes(0, 3 * vertex + c)).epsilon(1e-6));
 
   CHECK(step.inertia() > 0);
   CHECK(step.inertia_at(x, problem.model.masses()) == Approx(step.inertia()));
