@@ -55,11 +55,10 @@ LevelModel::LevelModel(const Level& level, const Material& material, const std::
       masses_(material.area_density() * level.vertex_area) {
   for (const DirichletVertex& d : dirichlet_) fixed_[d.vertex] = 1;
   bind_energies(energies, before);
-  for (const Term& term : terms_)
-    if (term.role == EnergyRole::external && !term.is_linear()) load_is_constant_ = false;
   add_up_linear_energies();
   bind_contacts(contacts, before);
-  if (load_is_constant_) constant_load_norm_ = external_force_norm(level.rest.vertices);
+  const auto constant = [](const Term& t) { return t.role != EnergyRole::external || t.is_linear(); };
+  if (std::ranges::all_of(terms_, constant)) constant_load_norm_ = external_force_norm(level.rest.vertices);
   if (contacts_.empty()) return;
   const double pressure = load_pressure(level.rest.vertices);
   ContactStiffness stiffness = stiffness_of(contacts_);
@@ -161,16 +160,14 @@ void LevelModel::add_up_linear_energies() {
 }
 
 std::optional<double> LevelModel::midpoint_factor(EnergyRole role) const {
-  std::optional<double> common = 1;
-  bool first = true;
+  std::optional<double> common;
   for (const Term& term : terms_) {
     if (term.role != role) continue;
     const std::optional<double> own = term.kind->midpoint_factor();
-    if (!own || (!first && own != common)) return std::nullopt;
+    if (!own || (common && own != common)) return std::nullopt;
     common = own;
-    first = false;
   }
-  return common;
+  return common.value_or(1);
 }
 
 double LevelModel::barrier(const Positions& x) const {
@@ -199,7 +196,7 @@ std::vector<std::pair<std::string, double>> LevelModel::energy_parts(const Posit
 }
 
 double LevelModel::load_norm(const Positions& x) const {
-  return load_is_constant_ ? constant_load_norm_ : external_force_norm(x);
+  return constant_load_norm_ ? *constant_load_norm_ : external_force_norm(x);
 }
 
 double LevelModel::external_force_norm(const Positions& x) const {

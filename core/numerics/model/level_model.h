@@ -149,8 +149,7 @@ class LevelModel {
   BoundContacts contacts_;                                    // the non-null ones
   std::shared_ptr<const BlockPattern> pattern_;
   std::vector<LinearSum> linear_;
-  bool load_is_constant_ = true;   // whether every external energy is linear
-  double constant_load_norm_ = 0;  // if so, the norm of their forces [N]
+  std::optional<double> constant_load_norm_;  // of the external energies' forces [N], if all are linear
 };
 
 /// Norm of the rows of g whose vertex is free (fixed[i] == 0).
