@@ -52,7 +52,7 @@ bool SupernodalFactor<Scalar>::factorise(const BlockMatrix& matrix, const Eigen:
     if (failed.load(std::memory_order_relaxed)) return;
     const Front<Scalar> f = front(s);
     assemble(s, f, matrix, shift);
-    if (!eliminate(f)) failed = true;
+    if (!f.eliminate()) failed = true;
   };
   const auto& subtrees = tree_.subtrees();
   parallel_kernels<Scalar>(static_cast<int>(subtrees.size()), 1, [&](int k, int) {
@@ -93,7 +93,7 @@ void SupernodalFactor<Scalar>::assemble(int s, const Front<Scalar>& f, const Blo
   }
   for (int c = 3 * f.pivots; c < f.columns(); ++c)
     f.panel_rows(c / row_panel_height<Scalar>).column(c)[c % row_panel_height<Scalar>] = 1;
-  for (const int c : tree_.children().row(s)) add_update(front(c), tree_.indices_in_parent(c), f);
+  for (const int c : tree_.children().row(s)) f.add_update(front(c), tree_.indices_in_parent(c));
 }
 
 template <class Scalar>
@@ -126,7 +126,7 @@ void SupernodalFactor<Scalar>::forward(int s, const Eigen::VectorXd& x) {
       for (int d = 0; d < 3; ++d) to[d] += from[3 * k + d];
     }
   }
-  solve_forward(f, pivots);
+  f.solve_forward(pivots);
 }
 
 template <class Scalar>
@@ -137,7 +137,7 @@ void SupernodalFactor<Scalar>::backward(int s, Eigen::VectorXd& x) {
   const int* rows = tree_.rows().begin(s);
   for (int k = 0; k < f.updates; ++k)
     for (int d = 0; d < 3; ++d) updates[3 * k + d] = static_cast<Scalar>(x[3 * rows[k] + d]);
-  solve_backward(f, pivots);
+  f.solve_backward(pivots);
   std::copy_n(pivots, 3 * f.pivots, x.data() + 3 * tree_.first(s));
 }
 

@@ -78,27 +78,26 @@ bool factorise_diagonal(const Front<Scalar>& f, int begin, int end) {
 }  // namespace
 
 template <class Scalar>
-void add_update(const Front<Scalar>& child, const int* indices, const Front<Scalar>& parent) {
-  static constexpr auto adders = run_adders<Scalar>(std::make_integer_sequence<int, lanes<Scalar>>());
-  const std::vector<Run<Scalar>> runs = runs_of(child, indices, parent);
+void Front<Scalar>::add_update(const Front& child, const int* indices) const {
+  static constexpr auto adders = run_adders<Scalar>(std::make_integer_sequence<int, lanes>());
+  const std::vector<Run<Scalar>> runs = runs_of(child, indices, *this);
   parallel_kernels<Scalar>(static_cast<int>(runs.size()), 8, [&](int begin, int end) {
-    for (int k = begin; k < end; ++k) adders[runs[k].vertices - 1](runs[k], indices, parent.pivots);
+    for (int k = begin; k < end; ++k) adders[runs[k].vertices - 1](runs[k], indices, pivots);
   });
 }
 
 template <class Scalar>
-bool eliminate(const Front<Scalar>& f) {
-  const int panels = f.row_panels(), pivot_panels = f.pivot_row_panels();
+bool Front<Scalar>::eliminate() const {
+  const int panels = row_panels(), pivot_panels = pivot_row_panels();
   for (int begin = 0; begin < pivot_panels; begin += tile<Scalar>) {
     const int end = std::min(begin + tile<Scalar>, pivot_panels);
-    if (!factorise_diagonal(f, begin, end)) return false;
-    const int first = begin * row_panel_height<Scalar>,
-              last = std::min(end * row_panel_height<Scalar>, 3 * f.pivots);
+    if (!factorise_diagonal(*this, begin, end)) return false;
+    const int first = begin * row_panel_height, last = std::min(end * row_panel_height, 3 * pivots);
     parallel_kernels<Scalar>(panels - end, 2, [&](int b, int e) {
       for (int i = end + b; i < end + e; ++i)
         for (int column = first; column < last; column += tile_columns)
-          factorise_columns_below(f.panel_rows(i), f.panel_rows(column / row_panel_height<Scalar>),
-                                  column % row_panel_height<Scalar>, first, column);
+          factorise_columns_below(panel_rows(i), panel_rows(column / row_panel_height),
+                                  column % row_panel_height, first, column);
     });
     const int tiles = (panels - end + tile<Scalar> - 1) / tile<Scalar>;
     parallel_kernels<Scalar>(tiles * (tiles + 1) / 2, 1, [&](int pair, int) {
@@ -108,55 +107,46 @@ bool eliminate(const Front<Scalar>& f) {
       const int row_begin = end + row * tile<Scalar>, column_begin = end + column * tile<Scalar>;
       for (int i = row_begin; i < std::min(row_begin + tile<Scalar>, panels); ++i)
         for (int k = column_begin; k < std::min(column_begin + tile<Scalar>, i + 1); ++k)
-          subtract_product(f.panel_rows(i), f.panel_rows(k), first, last, f.block(i, k));
+          subtract_product(panel_rows(i), panel_rows(k), first, last, block(i, k));
     });
   }
   return true;
 }
 
 template <class Scalar>
-void solve_forward(const Front<Scalar>& f, Scalar* x) {
-  const int pivot_panels = f.pivot_row_panels();
+void Front<Scalar>::solve_forward(Scalar* x) const {
+  const int pivot_panels = pivot_row_panels();
   for (int i = 0; i < pivot_panels; ++i) {
-    const RowPanel<Scalar> a = f.panel_rows(i);
-    const int first = i * row_panel_height<Scalar>;
+    const RowPanel<Scalar> a = panel_rows(i);
+    const int first = i * row_panel_height;
     Scalar* rows = x + first;
     subtract_times(a, first, x, rows);
-    solve_lower(a, first, std::min(a.height, 3 * f.pivots - first), rows);
+    solve_lower(a, first, std::min(a.height, 3 * pivots - first), rows);
   }
-  parallel_kernels<Scalar>(f.row_panels() - pivot_panels, 4, [&](int begin, int end) {
+  parallel_kernels<Scalar>(row_panels() - pivot_panels, 4, [&](int begin, int end) {
     for (int i = pivot_panels + begin; i < pivot_panels + end; ++i)
-      subtract_times(f.panel_rows(i), 3 * f.pivots, x, x + f.first_row(i));
+      subtract_times(panel_rows(i), 3 * pivots, x, x + first_row(i));
   });
 }
 
 template <class Scalar>
-void solve_backward(const Front<Scalar>& f, Scalar* x) {
-  const int pivot_panels = f.pivot_row_panels(), columns = f.columns(),
-            updates = padded<Scalar>(3 * f.updates);
-  parallel_kernels<Scalar>(columns / lanes<Scalar>, 3, [&](int begin, int end) {
-    for (int column = begin * lanes<Scalar>; column < end * lanes<Scalar>; column += lanes<Scalar>)
-      subtract_transposed_times(f.panel_rows(pivot_panels).data, updates, columns, column, x + columns,
-                                x + column);
+void Front<Scalar>::solve_backward(Scalar* x) const {
+  const int pivot_panels = pivot_row_panels(), width = columns(), height = padded<Scalar>(3 * updates);
+  parallel_kernels<Scalar>(width / lanes, 3, [&](int begin, int end) {
+    for (int column = begin * lanes; column < end * lanes; column += lanes)
+      subtract_transposed_times(panel_rows(pivot_panels).data, height, width, column, x + width, x + column);
   });
   for (int i = pivot_panels - 1; i >= 0; --i) {
-    const RowPanel<Scalar> a = f.panel_rows(i);
-    const int first = i * row_panel_height<Scalar>, end = first + a.height;
-    for (int column = first; column < end; column += lanes<Scalar>)
-      subtract_transposed_times(a.data + static_cast<std::ptrdiff_t>(a.height) * columns, columns - end,
-                                columns, column, x + end, x + column);
-    solve_lower_transposed(a, first, std::min(a.height, 3 * f.pivots - first), x + first);
+    const RowPanel<Scalar> a = panel_rows(i);
+    const int first = i * row_panel_height, end = first + a.height;
+    for (int column = first; column < end; column += lanes)
+      subtract_transposed_times(a.data + static_cast<std::ptrdiff_t>(a.height) * width, width - end, width,
+                                column, x + end, x + column);
+    solve_lower_transposed(a, first, std::min(a.height, 3 * pivots - first), x + first);
   }
 }
 
-// The scalars for which there are fronts.
-#define DRAPE_FRONTS(Scalar)                                                        \
-  template void add_update(const Front<Scalar>&, const int*, const Front<Scalar>&); \
-  template bool eliminate(const Front<Scalar>&);                                    \
-  template void solve_forward(const Front<Scalar>&, Scalar*);                       \
-  template void solve_backward(const Front<Scalar>&, Scalar*);
-DRAPE_FRONTS(double)
-DRAPE_FRONTS(float)
-#undef DRAPE_FRONTS
+template struct Front<double>;
+template struct Front<float>;
 
 }  // namespace drape

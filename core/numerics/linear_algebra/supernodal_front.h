@@ -65,29 +65,23 @@ struct Front {
            static_cast<std::size_t>(columns - last * row_panel_height) * columns;
   }
 
+  /// Extend-add: adds a child's update matrix to this front, where the child's update vertices have the given
+  /// indices (ascending; pivots first).
+  void add_update(const Front& child, const int* indices) const;
+  /// Partial Cholesky of an assembled front: leaves the factor in the panel, with reciprocals on its
+  /// diagonal, and the Schur complement in the update matrix. Returns false if a pivot is not positive.
+  bool eliminate() const;
+  /// The front's part of a triangular solve, on a vector in the order of the panel's rows. The forward solve
+  /// divides the pivot rows by the factor and updates the others; the backward solve changes only the pivot
+  /// rows.
+  void solve_forward(Scalar* x) const;
+  void solve_backward(Scalar* x) const;
+
  private:
   static std::size_t square(int n) { return static_cast<std::size_t>(n) * n; }
   RowPanel<Scalar> row_panel(Scalar* base, int row, int rows) const {
     return {base + static_cast<std::size_t>(row) * columns(), std::min(row_panel_height, rows - row)};
   }
 };
-
-/// Extend-add: adds a child's update matrix to its parent's front, where the child's update vertices have the
-/// given indices (ascending; pivots first).
-template <class Scalar>
-void add_update(const Front<Scalar>& child, const int* indices, const Front<Scalar>& parent);
-
-/// Partial Cholesky of an assembled front: leaves the factor in the panel, with reciprocals on its diagonal,
-/// and the Schur complement in the update matrix. Returns false if a pivot is not positive.
-template <class Scalar>
-bool eliminate(const Front<Scalar>& front);
-
-/// The front's part of a triangular solve, on a vector in the order of the panel's rows. The forward solve
-/// divides the pivot rows by the factor and updates the others; the backward solve changes only the pivot
-/// rows.
-template <class Scalar>
-void solve_forward(const Front<Scalar>& front, Scalar* x);
-template <class Scalar>
-void solve_backward(const Front<Scalar>& front, Scalar* x);
 
 }  // namespace drape
