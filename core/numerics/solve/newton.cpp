@@ -68,9 +68,9 @@ class Newton {
         if (const std::optional<End> end = begin_step_unless_ended()) return finish(*end);
       if (run_.observer.checkpoint_due()) run_.observer.checkpoint(state());
       if (const std::optional<End> end = requested_end()) return finish(*end);
-      if (!step_.solve()) {
+      if (const std::string failure = step_.solve(); !failure.empty()) {
         stuck_ = step_.factor().fault().empty() && (dirichlet_.active() || is_at_rounding_floor());
-        if (!stuck_) return finish({Outcome::stalled, step_.failure()});
+        if (!stuck_) return finish({Outcome::stalled, failure});
         step_.controller().abandon_step();
       }
       // A resumed run repeats the step, from the last checkpoint.

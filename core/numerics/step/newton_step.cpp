@@ -59,11 +59,11 @@ void NewtonStep::begin() {
   if (had_friction || contacts.has_friction()) iterate_.evaluate();
 }
 
-bool NewtonStep::solve() {
+std::string NewtonStep::solve() {
   controller_.begin_step();
   interrupted_ = false;
   for (int k = 0; k < step_.max_iterations(); ++k) {
-    if (!iterate()) return false;
+    if (std::string fault = iterate(); !fault.empty()) return fault;
     const bool at_equilibrium = check_.in_tolerance();
     report_(k);  // with the force residual that was checked
     if (at_equilibrium) break;
@@ -76,7 +76,7 @@ bool NewtonStep::solve() {
   ++iterate_.result().steps;
   check_.note_step(step_.inertia());
   controller_.end_step(iterate_.force_residual());
-  return true;
+  return "";
 }
 
 /// Whether the step's gradient is below this fraction of the force tolerance. A tolerance above the load
@@ -86,18 +86,13 @@ bool NewtonStep::is_solved_to(double fraction) const {
          fraction * std::min(p_.force_tolerance, 1.0) * iterate_.residual_scale();
 }
 
-bool NewtonStep::fail(const std::string& why) {
-  failure_ = why;
-  return false;
-}
-
-bool NewtonStep::iterate() {
+std::string NewtonStep::iterate() {
   LevelResult& result = iterate_.result();
   while (true) {
     step_.evaluate(iterate_, controller_.inverse_h2());
     if (!factor_.solve(iterate_.fixed(), controller_.mass_shift(), line_search_.step_length(),
                        step_.gradient(), direction_))
-      return fail(factor_.fault());
+      return factor_.fault();
     direction_ *= -1;
     if (line_search_.search(iterate_, step_, direction_)) break;
     if (is_solved_to(round_off_fraction)) {
@@ -106,11 +101,11 @@ bool NewtonStep::iterate() {
     }
     // The step is too long for its quadratic model: damp it more.
     if (!controller_.damp())
-      return fail("the line search found no descent " +
-                  (controller_.is_static()
-                       ? "(the direction's slope is " + three_digits(line_search_.slope()) + ")"
-                       : "at any step size down to " + three_digits(StepController::min_step_size) + " s") +
-                  iterate_.limit_text());
+      return "the line search found no descent " +
+             (controller_.is_static()
+                  ? "(the direction's slope is " + three_digits(line_search_.slope()) + ")"
+                  : "at any step size down to " + three_digits(StepController::min_step_size) + " s") +
+             iterate_.limit_text();
   }
   const double decrement =
       std::sqrt(direction_.squaredNorm() / std::max(iterate_.free_count(), 1.0)) / controller_.step_size();
@@ -119,7 +114,7 @@ bool NewtonStep::iterate() {
   ++result.iterations;
   iterate_.update_residual();
   controller_.end_iteration(line_search_.step_length());
-  return true;
+  return "";
 }
 
 }  // namespace drape

@@ -38,9 +38,8 @@ class NewtonStep {
   /// Begins a step at the iterate; lags friction there.
   void begin();
   /// Solves the step that begin() began, to a fraction of the force tolerance or its iteration limit. Returns
-  /// false if no iterate with less energy can be found; failure() then says why.
-  bool solve();
-  const std::string& failure() const { return failure_; }
+  /// why no iterate with less energy can be found; empty if one was.
+  std::string solve();
   /// Whether `interrupt` ended the last step.
   bool interrupted() const { return interrupted_; }
   StepController& controller() { return controller_; }
@@ -55,9 +54,8 @@ class NewtonStep {
   double step_size() const;  ///< h [s]; +∞ for a step without inertia
 
  private:
-  bool iterate();
+  std::string iterate();
   bool is_solved_to(double fraction) const;
-  bool fail(const std::string& why);
 
   Iterate& iterate_;
   EquilibriumCheck& check_;
@@ -70,7 +68,6 @@ class NewtonStep {
   LineSearch line_search_;
   FactorCache factor_;
   Positions direction_;
-  std::string failure_;
 };
 
 }  // namespace drape
