@@ -26,7 +26,6 @@ class BlockCholesky {
  public:
   explicit BlockCholesky(LinearSolver solver = LinearSolver::supernodal);
 
-  LinearSolver solver() const { return solver_; }
   /// Changes to another implementation, which has no factor yet. Keeps the analysis.
   void use(LinearSolver solver);
 

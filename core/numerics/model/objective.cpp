@@ -6,17 +6,13 @@
 
 namespace drape {
 
-double Objective::cached_smooth_gradient(const Positions& x, Positions& g) {
+double Objective::gradient(const Positions& x, Positions& g) {
   if (evaluated_at_.rows() != x.rows() || evaluated_at_ != x) {
     smooth_energy_ = smooth_gradient(x, smooth_gradient_);
     evaluated_at_ = x;
   }
   g = smooth_gradient_;
-  return smooth_energy_;
-}
-
-double Objective::gradient(const Positions& x, Positions& g) {
-  double sum = cached_smooth_gradient(x, g);
+  double sum = smooth_energy_;
   for (std::size_t k = 0; k < limits_.size() && std::isfinite(sum); ++k)
     sum += add_gradient_of(*limits_[k], "of role limit", x, g);
   if (penalty_) sum += penalty_->add_gradient(x, g);

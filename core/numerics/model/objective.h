@@ -98,7 +98,6 @@ class Objective {
 
  private:
   void invalidate_pattern();
-  double cached_smooth_gradient(const Positions& x, Positions& g);
 
   std::shared_ptr<const LevelModel> model_;
   std::vector<const BoundEnergy*> limits_;

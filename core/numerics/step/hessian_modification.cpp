@@ -10,8 +10,8 @@ namespace {
 /// Larger shifts are not tried [1/s²].
 constexpr double max_shift = 1e30;
 
-}  // namespace
-
+/// Names the first block with an entry that is not finite, as in "the block of vertices 3 and 7". Skips the
+/// rows and columns of fixed vertices. Empty if all other entries are finite.
 std::string first_not_finite(const BlockMatrix& matrix, const std::vector<char>& fixed) {
   const BlockPattern& pattern = *matrix.pattern;
   for (int i = 0; i < pattern.rows(); ++i)
@@ -25,6 +25,8 @@ std::string first_not_finite(const BlockMatrix& matrix, const std::vector<char>&
     }
   return "";
 }
+
+}  // namespace
 
 double first_mass_shift(const NewtonParameters& parameters) {
   // A thousandth of 1/h² at the first h. Never 0, because callers increase it by a factor.

@@ -10,10 +10,6 @@
 
 namespace drape {
 
-/// Names the first block with an entry that is not finite, as in "the block of vertices 3 and 7". Skips the
-/// rows and columns of fixed vertices (one flag a vertex). Empty if all other entries are finite.
-std::string first_not_finite(const BlockMatrix& matrix, const std::vector<char>& fixed);
-
 /// The first multiple of the masses that is added to a matrix which is not positive definite [1/s²].
 double first_mass_shift(const NewtonParameters& parameters);
 
