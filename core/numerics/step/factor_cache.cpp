@@ -49,8 +49,9 @@ void FactorCache::use(LinearSolver solver) {
     cholesky_.use(solver);
 }
 
-bool FactorCache::solve(const std::vector<char>& fixed, double mass_shift, double step_length,
-                        const Positions& right_hand_side, Positions& solution) {
+bool FactorCache::solve(double mass_shift, double step_length, const Positions& right_hand_side,
+                        Positions& solution) {
+  const std::vector<char>& fixed = iterate_.fixed();
   use(fallback_solves_ > 0 ? fallback_ : preferred_);
   if (fallback_solves_ > 0) --fallback_solves_;
   return modify(fixed, step_length, [&](const BlockMatrix& matrix, double shift) {

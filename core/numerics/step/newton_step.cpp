@@ -90,8 +90,7 @@ std::string NewtonStep::iterate() {
   LevelResult& result = iterate_.result();
   while (true) {
     step_.evaluate(iterate_, controller_.inverse_h2());
-    if (!factor_.solve(iterate_.fixed(), controller_.mass_shift(), line_search_.step_length(),
-                       step_.gradient(), direction_))
+    if (!factor_.solve(controller_.mass_shift(), line_search_.step_length(), step_.gradient(), direction_))
       return factor_.fault();
     direction_ *= -1;
     if (line_search_.search(iterate_, step_, direction_)) break;

@@ -66,7 +66,7 @@ struct Cache {
   }
   int factorisations(const Hanging& h) {
     const int before = result.factorisations;
-    REQUIRE(cache.solve(h.s.model().fixed(), 1e6, 1, h.b, solution));
+    REQUIRE(cache.solve(1e6, 1, h.b, solution));
     return result.factorisations - before;
   }
 };

@@ -29,7 +29,7 @@ struct CacheSolve {
       : problem({std::move(energy)}), cache(problem.iterate, p) {}
   int factorisations(double step_length = 0.5) {
     const int before = problem.result.factorisations;
-    REQUIRE(cache.solve(problem.model.fixed(), mass_shift, step_length, right, solution));
+    REQUIRE(cache.solve(mass_shift, step_length, right, solution));
     return problem.result.factorisations - before;
   }
   /// ‖(A + shift M) x − b‖ / ‖b‖.
