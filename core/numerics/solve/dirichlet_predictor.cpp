@@ -49,7 +49,7 @@ void DirichletPredictor::increase_penalty() {
 /// as limits and contact allow; with `whole`, only if the whole motion is feasible. Returns the feasible
 /// fraction.
 double DirichletPredictor::predict(bool whole, bool with_inertia) {
-  const double fraction = step_.factorise(iterate_.model().fixed(), with_inertia) ? move(whole) : 0;
+  const double fraction = step_.factorise(with_inertia) ? move(whole) : 0;
   update_constraints();
   return fraction;
 }

@@ -77,7 +77,8 @@ bool FactorCache::solve_with_factor(const Positions& right_hand_side, Positions&
   return end == ConjugateGradients::End::converged;
 }
 
-bool FactorCache::update(const std::vector<char>& fixed, double mass_shift, double step_length) {
+bool FactorCache::update(double mass_shift, double step_length) {
+  const std::vector<char>& fixed = iterate_.model().fixed();
   use(direct_);
   return modify(fixed, step_length, [&](const BlockMatrix& matrix, double shift) {
     return factorise(matrix, fixed, mass_shift + shift);

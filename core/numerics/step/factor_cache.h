@@ -39,9 +39,9 @@ class FactorCache {
   /// columns of its fixed vertices, and solves with it; n×3 right-hand side [N] and solution [m], whose fixed
   /// rows are zero. `step_length` is the last α. Returns false if that fails; fault() then says why.
   bool solve(double mass_shift, double step_length, const Positions& right_hand_side, Positions& solution);
-  /// Factorises in double precision, as solve() would, but with these fixed vertices (one flag a vertex), a
-  /// matrix that any number of right-hand sides follow.
-  bool update(const std::vector<char>& fixed, double mass_shift, double step_length);
+  /// Factorises in double precision, as solve() would, but without the model's Dirichlet vertices, a matrix
+  /// that any number of right-hand sides follow.
+  bool update(double mass_shift, double step_length);
   /// Why the last factorisation failed; empty if it did not.
   const std::string& fault() const { return fault_; }
 

@@ -41,10 +41,10 @@ double NewtonStep::step_size() const {
   return controller_.is_static() ? controller_.state().cycle_limit : controller_.step_size();
 }
 
-bool NewtonStep::factorise(const std::vector<char>& fixed, bool with_inertia) {
+bool NewtonStep::factorise(bool with_inertia) {
   const double longest = 1 / (StepController::max_step_size * StepController::max_step_size);
   const double mass_shift = controller_.mass_shift();
-  return factor_.update(fixed, with_inertia ? mass_shift : std::min(longest, mass_shift),
+  return factor_.update(with_inertia ? mass_shift : std::min(longest, mass_shift),
                         line_search_.step_length());
 }
 

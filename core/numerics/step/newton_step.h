@@ -2,7 +2,6 @@
 
 #include <functional>
 #include <string>
-#include <vector>
 
 #include "core/numerics/step/equilibrium_check.h"
 #include "core/numerics/step/factor_cache.h"
@@ -44,10 +43,9 @@ class NewtonStep {
   bool interrupted() const { return interrupted_; }
   StepController& controller() { return controller_; }
 
-  /// Factorises the matrix at the iterate, without the rows and columns of fixed vertices,
-  /// `with_inertia` of a step or with that of the longest. Returns false if that fails; factor().fault() then
-  /// says why.
-  bool factorise(const std::vector<char>& fixed, bool with_inertia);
+  /// Factorises the matrix at the iterate, without the model's Dirichlet vertices, `with_inertia` of a step
+  /// or with that of the longest. Returns false if that fails; factor().fault() then says why.
+  bool factorise(bool with_inertia);
   FactorCache& factor() { return factor_; }
 
   double step_length() const { return line_search_.step_length(); }  ///< α of the last line search

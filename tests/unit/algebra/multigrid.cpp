@@ -138,14 +138,14 @@ TEST_CASE("What multigrid falls back on is forgotten, and a checkpoint keeps the
   const Hanging h;
   const NewtonParameters p{.linear_solver = LinearSolver::multigrid};
   Cache first(h, p), second(h, p);
-  REQUIRE(first.cache.update(h.s.model().fixed(), 1e6, 1));
+  REQUIRE(first.cache.update(1e6, 1));
   CHECK_FALSE(first.cache.state().analysis.fixed.empty());
   REQUIRE(first.factorisations(h) == 1);
   CHECK(first.cache.analyses() == 1);  // none of multigrid's own
   CHECK(first.cache.state().analysis.fixed.empty());
   second.cache.restore(first.cache.state());
   for (Cache* c : {&first, &second}) {
-    REQUIRE(c->cache.update(h.s.model().fixed(), 1e6, 1));
+    REQUIRE(c->cache.update(1e6, 1));
     CHECK(c->cache.analyses() == 2);
   }
   CHECK(second.cache.state().analysis.ordering == first.cache.state().analysis.ordering);
