@@ -70,7 +70,7 @@ class Objective {
     return model_->residual_scale(x, gradient);
   }
   /// Whether the smooth part differs from the level's plain energy.
-  virtual bool is_proxy() const = 0;
+  virtual bool is_proxy() const { return false; }
   /// Replaces a proxy's smooth part by the level's plain energy, once the proxy's minimum is reached. Returns
   /// false if nothing changes.
   virtual bool switch_to_plain() { return false; }
@@ -114,10 +114,7 @@ class Objective {
 /// The plain energy E_l.
 class PlainObjective : public Objective {
  public:
-  explicit PlainObjective(std::shared_ptr<const LevelModel> model)
-      : Objective(std::move(model)), matrix_(this->model().pattern()) {}
-  explicit PlainObjective(const LevelModel& model) : Objective(model), matrix_(model.pattern()) {}
-  bool is_proxy() const override { return false; }
+  using Objective::Objective;
 
  protected:
   double smooth_gradient(const Positions& x, Positions& g) override { return model().gradient(x, g); }
@@ -127,7 +124,7 @@ class PlainObjective : public Objective {
   }
 
  private:
-  BlockMatrix matrix_;
+  BlockMatrix matrix_{model().pattern()};
 };
 
 }  // namespace drape

@@ -75,7 +75,6 @@ class TargetObjective : public Objective {
   }
 
   double residual_scale(const Positions&, const Positions&) const override { return scale_; }
-  bool is_proxy() const override { return false; }
   bool enforces_dirichlet() const override { return false; }
 
  protected:
