@@ -136,7 +136,11 @@ function convergence(run) {
       const key = `${line.level} ${proxy(line, row)}`;
       if (known(objective(line, row))) lowest[key] = Math.min(lowest[key] ?? Infinity, objective(line, row));
     }
-  const step = (line, row) => (isFinite(row.step_size ?? NaN) ? row.step_size : run.step_sizes[line.method]) * row.decrement;
+  // The decrement is that of the first step size; of a shorter one, ‖p‖ was scaled by the square of their ratio (docs/theory/method.md).
+  const step = (line, row) => {
+    const first = run.step_sizes[line.method];
+    return first * row.decrement * Math.min(1, (known(row.step_size) ? row.step_size : first) / first) ** 2;
+  };
   const iteration = {title: 'Newton iteration', name: 'row'}, time = {title: 'time [s]', name: 'seconds'}, residual = {title: 'force residual', name: 'force_residual', log: true};
   const plots = {
     residual_seconds: ['force residual over time', time, residual, (line, row) => [row.seconds, row.force_residual]],

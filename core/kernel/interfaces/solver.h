@@ -54,11 +54,11 @@ struct IterationRow {
   double flops = 0;                    ///< of the level's factorisations and multigrid cycles so far
   double energy = 0;                   ///< E_l, the plain energy of the level [J]
   std::optional<double> proxy_energy;  ///< F_l, if the method minimises a proxy [J]
-  double decrement = 0;         ///< ‖p‖ / (h √n), a velocity [m/s]; not Newton's √(gᵀH⁻¹g)
-  double force_residual = 0;    ///< of the objective, after the iteration [1]
-  double step_length = 0;       ///< α of the line search
-  double step_size = 0;         ///< h [s]; +∞ for the static form
-  std::optional<int> contacts;  ///< closer than d̂, if the level has a contact model
+  double decrement = 0;  ///< bound of ‖p‖ / (h √n) for the first h [m/s]; not Newton's √(gᵀH⁻¹g)
+  double force_residual = 0;           ///< of the objective, after the iteration [1]
+  double step_length = 0;              ///< α of the line search
+  double step_size = 0;                ///< h [s]; +∞ for the static form
+  std::optional<int> contacts;         ///< closer than d̂, if the level has a contact model
   std::optional<double> smallest_gap;  ///< of them [m]; +∞ without one
 };
 

@@ -10,7 +10,8 @@ void NewtonParameters::declare(Declaration<NewtonParameters>& d) {
                "damped gradient flow in implicit steps of h, or one minimisation (h infinite)")
       .source("PCS section 4; supplement, Figure 4");
   d.add("step_size", &NewtonParameters::step_size,
-        "h of the first implicit step; in the static form the unit of the decrement and of the mass that "
+        "h of the first implicit step, and of the decrement; in the static form also the unit of the mass "
+        "that "
         "damps a step without descent")
       .unit("s")
       .between(bounds::smallest_time_step, bounds::largest_time_step)
@@ -35,7 +36,7 @@ void NewtonParameters::declare(Declaration<NewtonParameters>& d) {
       .source("docs/theory/method.md section 2");
   d.add("decrement_tolerance", &NewtonParameters::decrement_tolerance,
         "also required of the largest of the last three decrements; 0 disables it. The decrement is "
-        "‖p‖ / (h √n), p the Newton direction: a velocity, not √(gᵀH⁻¹g)")
+        "‖p‖ / (h √n), p the Newton direction, h the first step's: a velocity, not √(gᵀH⁻¹g)")
       .unit("m/s")
       .between(0, 1e9)
       .source("Li et al. 2021 (C-IPC)");

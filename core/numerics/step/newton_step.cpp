@@ -106,8 +106,10 @@ std::string NewtonStep::iterate() {
                   : "at any step size down to " + three_digits(StepController::min_step_size) + " s") +
              iterate_.limit_text();
   }
-  const double decrement =
-      std::sqrt(direction_.squaredNorm() / std::max(iterate_.free_count(), 1.0)) / controller_.step_size();
+  const double length = std::sqrt(direction_.squaredNorm() / std::max(iterate_.free_count(), 1.0));
+  // A bound of what the first h would give: ‖p‖ rises with h, and ‖p‖/h² falls.
+  const double shrunk = std::max(p_.step_size / controller_.step_size(), 1.0);
+  const double decrement = length / p_.step_size * shrunk * shrunk;
   check_.note_decrement(decrement);
   result.decrement = decrement;
   ++result.iterations;

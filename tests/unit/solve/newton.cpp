@@ -117,6 +117,34 @@ TEST_CASE("The decrement is the mean speed of the step", "[newton]") {
   REQUIRE(r.decrement == Approx(moved / alpha / (0.2 * std::sqrt(15.0))));
 }
 
+TEST_CASE("The decrement is that of the first step size, or a bound of it, whatever h has become",
+          "[newton]") {
+  // Otherwise a tolerance of decrements would get looser as h grows, and be met because h has shrunk.
+  struct : KeepingObserver {
+    std::vector<Positions> x;
+    void iteration(const IterationRow& row, const Positions& at) override {
+      KeepingObserver::iteration(row, at);
+      x.push_back(at);
+    }
+  } observer;
+  const NewtonParameters p = {.step_size = 0.3, .step_growth = 3, .max_steps = 20, .force_tolerance = tight};
+  NewtonCase c;
+  const LevelModel model(c.level, Material(), {{"wells", energy_of(Wells(c.centres, 10, 0.4))}},
+                         {{0, c.level.rest.vertices.row(0), 0}});
+  PlainObjective objective(model);
+  minimise(objective, c.level.rest.vertices, p, {Stopwatch(), observer});
+  int longer = 0, shorter = 0;
+  for (std::size_t k = 1; k < observer.rows.size(); ++k) {
+    const IterationRow& row = observer.rows[k];
+    const double length = (observer.x[k] - observer.x[k - 1]).norm() / row.step_length / std::sqrt(15.0);
+    const double ratio = p.step_size / row.step_size;
+    CHECK(row.decrement == Approx(length / p.step_size * std::max(1.0, ratio * ratio)));
+    ++(ratio < 1 ? longer : shorter);
+  }
+  CHECK(longer > 0);
+  CHECK(shorter > 0);
+}
+
 TEST_CASE("The step size stays the same within an implicit step, and altogether without growth", "[newton]") {
   NewtonCase several;
   several.solve({.iterations_per_step = 3, .force_tolerance = tight}, 0.4);
