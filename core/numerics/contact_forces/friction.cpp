@@ -138,29 +138,26 @@ void LaggedFriction::add_hessian(const Positions& x, Projection, BlockSink& sink
   }
 }
 
-template <class DisplacementOf>
-TangentialDisplacements LaggedFriction::collect(const DisplacementOf& displacement_of_contact) const {
+TangentialDisplacements LaggedFriction::tangential_displacements(const Positions& x) const {
   TangentialDisplacements all;
   all.reserve(contacts_.size());
-  for (int i = 0; i < size(); ++i) all.push_back({contacts_[i].key, displacement_of_contact(i)});
-  return all;
-}
-
-TangentialDisplacements LaggedFriction::tangential_displacements(const Positions& x) const {
-  return sorted(collect([&](int i) {
+  for (int i = 0; i < size(); ++i) {
     const Vector3d u = displacement(i, x);
-    return Vector3d(std::min(1.0, epsilon_ / u.norm()) * u);
-  }));
+    all.push_back({contacts_[i].key, std::min(1.0, epsilon_ / u.norm()) * u});
+  }
+  return sorted(std::move(all));
 }
 
 TangentialDisplacements LaggedFriction::advected_tangential_displacements(
     const Positions& x, const ObstacleMotion& motion) const {
-  TangentialDisplacements all = collect([&](int i) {
+  TangentialDisplacements all;
+  all.reserve(contacts_.size());
+  for (int i = 0; i < size(); ++i) {
+    const FrictionContact& contact = contacts_[i];
     Vector3d u = displacement(i, x);
-    if (const FrictionContact& contact = contacts_[i]; contact.touched.obstacle >= 0)
-      u -= side_of_cloth(contact) * tangential(i, motion(contact.touched));
-    return u;
-  });
+    if (contact.touched.obstacle >= 0) u -= side_of_cloth(contact) * tangential(i, motion(contact.touched));
+    all.push_back({contact.key, u});
+  }
   append_means(all);
   return sorted(std::move(all));
 }

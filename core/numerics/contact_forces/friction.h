@@ -58,9 +58,6 @@ class LaggedFriction final : public BoundEnergy {
 
  private:
   int size() const { return static_cast<int>(contacts_.size()); }
-  /// The entries of all contacts, in their order.
-  template <class DisplacementOf>
-  TangentialDisplacements collect(const DisplacementOf& displacement_of_contact) const;
   void append_means(TangentialDisplacements& of_contacts) const;
   Eigen::Vector3d tangential(int i, const Eigen::Vector3d& u) const;
   Eigen::Vector3d displacement(int i, const Positions& x) const;
