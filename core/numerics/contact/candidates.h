@@ -14,10 +14,11 @@
 
 namespace drape {
 
-/// Numbers of pairs: of overlapping boxes, and of primitives that may come within d̂.
-struct PairCounts {
-  long boxes = 0, primitives = 0;
-  bool operator==(const PairCounts&) const = default;
+/// The largest numbers of pairs that a search goes on with: of overlapping boxes, and of primitives that may
+/// come within d̂.
+struct PairLimits {
+  long boxes, primitives;
+  bool operator==(const PairLimits&) const = default;
 };
 
 /// Whether a pair can come within d̂: a bound from its distance and the relative motion of its primitives.
@@ -64,8 +65,9 @@ class SelfPairSearch {
   SelfPairSearch(const Surface& cloth, BroadPhaseKind kind);
 
   /// Appends the pairs that may come within d̂ during the motion, in the order of their representative
-  /// triangles, and adds to `counts`. Returns false, without pairs, once `counts` exceed `limits`.
-  bool find(const LinearMotion& motion, double friction, const PairCounts& limits, PairCounts& counts,
+  /// triangles, and adds the number of overlapping boxes to `boxes`. Returns false, without pairs, once there
+  /// are more than `limits`.
+  bool find(const LinearMotion& motion, double friction, const PairLimits& limits, long& boxes,
             std::vector<ContactPair>& found);
 
  private:
@@ -75,7 +77,7 @@ class SelfPairSearch {
   void collect(const LinearMotion& motion, long limit, std::vector<Pair>& pairs) const;
   template <PairKind kind>
   bool find_kind(const BroadPhase& first, const BroadPhase& second, const LinearMotion& motion,
-                 const PairCounts& limits, PairCounts& counts, std::vector<Pair>& pairs);
+                 const PairLimits& limits, long& boxes, std::vector<Pair>& pairs);
   template <PairKind kind>
   std::array<int, 4> vertices_of(int a, int b) const;
   /// The pair of primitives a and b, with its place in the order.

@@ -92,11 +92,11 @@ void SelfPairSearch::collect(const LinearMotion& motion, long limit, std::vector
 
 template <PairKind kind>
 bool SelfPairSearch::find_kind(const BroadPhase& first, const BroadPhase& second, const LinearMotion& motion,
-                               const PairCounts& limits, PairCounts& counts, std::vector<Pair>& pairs) {
-  if (!first.overlaps(second, limits.boxes - counts.boxes, rows_)) return false;
-  counts.boxes += static_cast<long>(rows_.items.size());
-  collect<kind>(motion, limits.primitives - counts.primitives, pairs);
-  return counts.primitives + static_cast<long>(pairs.size()) <= limits.primitives;
+                               const PairLimits& limits, long& boxes, std::vector<Pair>& pairs) {
+  if (!first.overlaps(second, limits.boxes - boxes, rows_)) return false;
+  boxes += std::ssize(rows_.items);
+  collect<kind>(motion, limits.primitives, pairs);
+  return std::ssize(pairs) <= limits.primitives;
 }
 
 /// A counting sort by the first triangle, then one of each triangle's few pairs.
@@ -114,8 +114,8 @@ std::vector<SelfPairSearch::Pair> SelfPairSearch::in_order(const std::vector<Pai
   return sorted;
 }
 
-bool SelfPairSearch::find(const LinearMotion& motion, double friction, const PairCounts& limits,
-                          PairCounts& counts, std::vector<ContactPair>& found) {
+bool SelfPairSearch::find(const LinearMotion& motion, double friction, const PairLimits& limits, long& boxes,
+                          std::vector<ContactPair>& found) {
   // A translation of the whole cloth changes no distance within it.
   boxes_.update(cloth_, motion.x0, motion.x1.rowwise() - (motion.x1 - motion.x0).colwise().mean(),
                 0.5 * motion.dhat, motion.x0.row(0));
@@ -123,10 +123,9 @@ bool SelfPairSearch::find(const LinearMotion& motion, double friction, const Pai
   edges_->update(boxes_.edges);
   triangles_->update(boxes_.triangles);
   std::vector<Pair> pairs;
-  if (!find_kind<PairKind::point_triangle>(*vertices_, *triangles_, motion, limits, counts, pairs) ||
-      !find_kind<PairKind::edge_edge>(*edges_, *edges_, motion, limits, counts, pairs))
+  if (!find_kind<PairKind::point_triangle>(*vertices_, *triangles_, motion, limits, boxes, pairs) ||
+      !find_kind<PairKind::edge_edge>(*edges_, *edges_, motion, limits, boxes, pairs))
     return false;
-  counts.primitives += static_cast<long>(pairs.size());
   found.reserve(found.size() + pairs.size());
   for (const Pair& p : in_order(pairs)) {
     const bool edges = p.kind == PairKind::edge_edge;

@@ -146,38 +146,36 @@ std::shared_ptr<const BoundContact> BoundIpc::with_stiffness(double stiffness) c
   return std::make_shared<const BoundIpc>(p_, barrier, obstacle_tree_, rest_);
 }
 
-bool BoundIpc::search(const Positions& x0, const Positions& x1, const PairCounts& limits,
-                      std::vector<ContactPair>& found, PairCounts& counts) const {
+bool BoundIpc::search(const Positions& x0, const Positions& x1, const PairLimits& limits,
+                      std::vector<ContactPair>& found, long& boxes) const {
   const LinearMotion motion{x0, x1, barrier_.dhat, obstacles_.vertices, obstacles_.vertices};
   found.clear();
-  counts = {};
-  if (self_search_ && !self_search_->find(motion, p_.friction, limits, counts, found)) return false;
+  boxes = 0;
+  if (self_search_ && !self_search_->find(motion, p_.friction, limits, boxes, found)) return false;
   if (obstacles_.bodies.empty()) return true;
   boxes_.update(cloth_, x0, x1, 0.5 * barrier_.dhat, obstacle_tree_->origin);
   cloth_tree_->update(boxes_.triangles);
-  if (!cloth_tree_->overlaps(*obstacle_tree_->tree, limits.boxes - counts.boxes, rows_)) return false;
-  counts.boxes += static_cast<long>(rows_.items.size());
-  if (!find_obstacle_pairs(cloth_, boxes_, obstacles_, obstacle_tree_->boxes, rows_, motion, p_.friction,
-                           limits.primitives, found))
-    return false;
-  counts.primitives = static_cast<long>(found.size());
-  return true;
+  if (!cloth_tree_->overlaps(*obstacle_tree_->tree, limits.boxes - boxes, rows_)) return false;
+  boxes += std::ssize(rows_.items);
+  return find_obstacle_pairs(cloth_, boxes_, obstacles_, obstacle_tree_->boxes, rows_, motion, p_.friction,
+                             limits.primitives, found);
 }
 
 std::unique_ptr<CollisionCandidates> BoundIpc::build_candidates(const Positions& x0,
                                                                 const Positions& x1) const {
   const std::lock_guard lock(busy_);
   const long size = std::max<long>(cloth_.triangle_count(), min_counted_triangles);
-  PairCounts limits{box_pairs_each * size, primitive_pairs_each * size}, counts;
+  PairLimits limits{box_pairs_each * size, primitive_pairs_each * size};
   std::vector<ContactPair> found;
+  long boxes = 0;
   Positions end = x1;
   double fraction = 1;
-  for (int tries = 1; !search(x0, end, limits, found, counts); ++tries) {
+  for (int tries = 1; !search(x0, end, limits, found, boxes); ++tries) {
     if (tries == 1) {  // a dense scene has many pairs at x0 already
-      search(x0, x0, {unlimited, unlimited}, found, counts);
-      const PairCounts default_limits = limits;
-      limits = {std::max(limits.boxes, dense_factor * counts.boxes),
-                std::max(limits.primitives, dense_factor * counts.primitives)};
+      search(x0, x0, {unlimited, unlimited}, found, boxes);
+      const PairLimits default_limits = limits;
+      limits = {std::max(limits.boxes, dense_factor * boxes),
+                std::max(limits.primitives, dense_factor * std::ssize(found))};
       if (limits != default_limits) continue;
     }
     fraction = tries < max_tries ? shortening * fraction : 0;

@@ -62,9 +62,10 @@ class BoundIpc final : public BoundContact {
  private:
   class Candidates;
 
-  /// Returns false if there are more pairs than `limits`. The caller holds busy_.
-  bool search(const Positions& x0, const Positions& x1, const PairCounts& limits,
-              std::vector<ContactPair>& found, PairCounts& counts) const;
+  /// Sets `found`, and `boxes` to the number of overlapping boxes. Returns false if there are more pairs than
+  /// `limits`. The caller holds busy_.
+  bool search(const Positions& x0, const Positions& x1, const PairLimits& limits,
+              std::vector<ContactPair>& found, long& boxes) const;
 
   Ipc::Parameters p_;
   BarrierParameters barrier_;

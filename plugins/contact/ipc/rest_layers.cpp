@@ -27,10 +27,10 @@ constexpr int pairs_per_task = 4096;
 std::vector<ContactPair> pairs_within_dhat(const Surface& cloth, const Positions& rest, double dhat) {
   const Positions none;
   std::vector<ContactPair> found;
-  PairCounts counts;
-  const PairCounts limits{max_pairs, std::numeric_limits<long>::max()};
+  long boxes = 0;
+  const PairLimits limits{max_pairs, std::numeric_limits<long>::max()};
   if (!SelfPairSearch(cloth, BroadPhaseKind::bvh)
-           .find({rest, rest, dhat, none, none}, 0, limits, counts, found))
+           .find({rest, rest, dhat, none, none}, 0, limits, boxes, found))
     throw std::runtime_error(
         "contact \"ipc\": more than 50 million pairs of the resting cloth's vertices, edges and triangles "
         "are within \"dhat\" of each other; lower it to half the length of an edge");
