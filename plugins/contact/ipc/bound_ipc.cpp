@@ -55,7 +55,7 @@ class BoundIpc::Candidates final : public CollisionCandidates {
       int blocking = -1;
       const double part = additive_ccd(x0_, x1_, obstacles(), *pairs, contact_.p_.min_gap_fraction, blocking);
       if (part < limit.fraction)
-        limit = {part, blocking < 0 ? "" : name_of((*pairs)[blocking], contact_.obstacles_, cloth_size())};
+        limit = {part, name_of((*pairs)[blocking], contact_.obstacles_, cloth_size())};
     }
     if (fraction_ < 1 && limit.fraction == 1) limit.by = "the limit on candidate pairs of one step";
     limit.fraction *= fraction_;
