@@ -14,7 +14,6 @@ struct Box {
   float lower[3] = {infinity, infinity, infinity};
   float upper[3] = {-infinity, -infinity, -infinity};
 
-  bool operator==(const Box&) const = default;
   bool is_empty() const { return !(lower[0] <= upper[0]); }
 
   void include(const Box& b) {

@@ -11,7 +11,6 @@ namespace drape {
 struct TrianglePair {
   int first, second;
   Eigen::Vector3d where;  ///< a point near the intersection, within both bounding boxes [m]
-  bool operator==(const TrianglePair&) const = default;
 };
 
 /// Pairs first < second of one mesh's triangles that intersect or touch, by exact predicates, in order.
