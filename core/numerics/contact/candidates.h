@@ -8,8 +8,8 @@
 #include "core/numerics/collision_detection/broad_phase.h"
 #include "core/numerics/collision_detection/obstacle_surface.h"
 #include "core/numerics/collision_detection/surface.h"
-#include "core/numerics/contact/nearest_features.h"
 #include "core/numerics/contact/pair_contacts.h"
+#include "core/numerics/contact/surface_contacts.h"
 #include "core/numerics/contact_forces/barrier.h"
 
 namespace drape {

@@ -129,39 +129,6 @@ class SurfaceCollisions final : public Collisions {
 
 }  // namespace
 
-SurfaceContacts SurfaceContacts::of(const Positions& x, const ObstacleSurface& obstacles,
-                                    const OperatorCoefficients& coefficients,
-                                    const std::vector<VertexTriangleCandidate>& candidates,
-                                    const Eigen::VectorXd& vertex_area, double friction, double dhat) {
-  std::vector<int> start;  // first candidate of each vertex
-  for (int i = 0; i < static_cast<int>(candidates.size()); ++i)
-    if (i == 0 || candidates[i].vertex != candidates[i - 1].vertex) start.push_back(i);
-  const int count = static_cast<int>(start.size());
-  start.push_back(static_cast<int>(candidates.size()));
-  std::vector<SurfaceContacts> pieces((count + features_per_task - 1) / features_per_task);
-  parallel_for(count, features_per_task, [&](int begin, int end) {
-    SurfaceContacts& piece = pieces[begin / features_per_task];
-    FeatureSearch search(obstacles, coefficients, friction, dhat);
-    for (int k = begin; k < end; ++k) {
-      const int first = static_cast<int>(piece.features.size()), v = candidates[start[k]].vertex;
-      search.append(x.row(v), &candidates[start[k]], candidates.data() + start[k + 1], piece.features);
-      if (const int last = static_cast<int>(piece.features.size()); last > first)
-        piece.contacts.push_back({v, vertex_area[v], first, last});
-    }
-  });
-  SurfaceContacts all;
-  for (const SurfaceContacts& piece : pieces) {
-    const int shift = static_cast<int>(all.features.size());
-    for (SurfaceContact contact : piece.contacts) {
-      contact.first += shift;
-      contact.last += shift;
-      all.contacts.push_back(contact);
-    }
-    all.features.insert(all.features.end(), piece.features.begin(), piece.features.end());
-  }
-  return all;
-}
-
 std::vector<double> SurfaceContacts::pressures(const SurfaceContact& contact, double dhat) const {
   const int count = contact.last - contact.first;
   const NearestFeature* f = features.data() + contact.first;

@@ -1,13 +1,36 @@
 #pragma once
 
+#include <array>
 #include <memory>
 #include <vector>
 
 #include "core/kernel/interfaces/contact_model.h"
-#include "core/numerics/contact/nearest_features.h"
+#include "core/numerics/collision_detection/dihedrals.h"
+#include "core/numerics/collision_detection/obstacle_surface.h"
 #include "core/numerics/contact_forces/barrier.h"
 
 namespace drape {
+
+/// A cloth vertex and an obstacle triangle that may come within d̂.
+struct VertexTriangleCandidate {
+  int vertex, triangle;
+};
+
+/// A feature of the obstacles' surface (interior of a triangle, interior of an edge, or vertex) that contains
+/// the point nearest to a cloth vertex p of one or more triangles, edges and vertices.
+struct NearestFeature {
+  int cloth_vertex;
+  std::array<int, 3> vertices;  ///< the feature's obstacle vertices, padded with -1
+  Eigen::Vector3d weights;      ///< barycentric coordinates of the nearest point
+  Eigen::Vector3d normal;       ///< unit vector from there to p
+  Eigen::Vector3d along;        ///< unit direction of an edge; 0 for other features
+  double distance;              ///< [m]
+  double coefficient;           ///< sum of the coefficients with their nearest point here, never 0
+  double friction;              ///< μ
+  int body;                     ///< the obstacle
+
+  bool is_face() const { return vertices[2] >= 0; }
+};
 
 /// A cloth vertex in contact with the obstacles' surface.
 struct SurfaceContact {
