@@ -1,6 +1,5 @@
 #pragma once
 
-#include <array>
 #include <memory>
 #include <vector>
 
@@ -71,20 +70,6 @@ class SelfPairSearch {
             std::vector<ContactPair>& found);
 
  private:
-  struct Pair;
-  /// Appends the pairs that may come within d̂ of those in rows_.
-  template <PairKind kind>
-  void collect(const LinearMotion& motion, long limit, std::vector<Pair>& pairs) const;
-  template <PairKind kind>
-  bool find_kind(const BroadPhase& first, const BroadPhase& second, const LinearMotion& motion,
-                 const PairLimits& limits, long& boxes, std::vector<Pair>& pairs);
-  template <PairKind kind>
-  std::array<int, 4> vertices_of(int a, int b) const;
-  /// The pair of primitives a and b, with its place in the order.
-  template <PairKind kind>
-  Pair placed(int a, int b) const;
-  std::vector<Pair> in_order(const std::vector<Pair>& pairs) const;
-
   const Surface& cloth_;
   SweptBoxes boxes_;
   std::unique_ptr<BroadPhase> vertices_, edges_, triangles_;
