@@ -4,10 +4,12 @@
 #include "core/numerics/contact_forces/friction.h"
 #include "core/numerics/mesh_files/io.h"
 #include "core/numerics/model/active_contacts.h"
+#include "core/numerics/model/required.h"
 #include "core/numerics/patterns/generate.h"
 #include "plugins/contact/ipc/bound_ipc.h"
 #include "tests/support/any_threads.h"
 #include "tests/support/command.h"
+#include "tests/support/evaluate.h"
 #include "tests/support/ipc_obstacles.h"
 #include "tests/support/meshes.h"
 #include "tests/support/random.h"
@@ -281,11 +283,8 @@ TEST_CASE("ipc: touched points move with their obstacle") {
   to[0].rotate.z() = 5;
   const auto before = bound(from, level, 0.3), after = bound(to, level, 0.3);
   const Eigen::Matrix3d turn = obstacle_of(to[0]).geometry.pose.linear();
-  const auto collisions = before->build_candidates(x, x)->build_collisions(x);
-  FrictionContacts groups;
-  collisions->append_friction_contacts(groups);
   int above = 0;
-  for (const auto& group : groups)
+  for (const auto& group : friction_contacts(*collisions_at(*before, x)))
     for (const FrictionContact& contact : group) {
       if (contact.vertices[1] >= 0 || x(contact.vertices[0], 0) < 1e-9) continue;
       ++above;
@@ -304,7 +303,7 @@ namespace {
 /// Force along x on a cloth with friction, less its barrier's [N].
 double drag(ActiveContacts& contacts, const BoundContacts& models, const Positions& x) {
   Positions push = Positions::Zero(x.rows(), 3), all = push;
-  for (const auto& model : models) model->build_candidates(x, x)->build_collisions(x)->add_gradient(x, push);
+  for (const auto& model : models) collisions_at(*model, x)->add_gradient(x, push);
   contacts.add_gradient(x, all);
   return -(all.col(0) - push.col(0)).sum();
 }
@@ -320,9 +319,7 @@ double drag_between(const BoundContacts& before, const BoundContacts& after, con
 
 /// Sum of the magnitudes of a model's forces along z [N].
 double normal_force(const BoundContact& model, const Positions& x) {
-  Positions push = Positions::Zero(x.rows(), 3);
-  model.build_candidates(x, x)->build_collisions(x)->add_gradient(x, push);
-  return push.col(2).cwiseAbs().sum();
+  return gradient_of(*collisions_at(model, x), x).col(2).cwiseAbs().sum();
 }
 
 }  // namespace

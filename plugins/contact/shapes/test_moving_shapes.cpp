@@ -2,6 +2,7 @@
 
 #include "core/numerics/contact_forces/friction.h"
 #include "core/numerics/model/active_contacts.h"
+#include "core/numerics/model/required.h"
 #include "plugins/contact/shapes/shapes.h"
 #include "tests/support/meshes.h"
 #include "tests/support/random.h"
@@ -151,19 +152,6 @@ TEST_CASE("shapes: a solid whose kind changes is refused by name") {
       Catch::StartsWith("thing: sphere cannot replace thing: box") && Catch::EndsWith(" during a run"));
 }
 
-namespace {
-
-std::vector<FrictionContact> friction_contacts(const BoundContact& contact, const Positions& x) {
-  const auto collisions = contact.build_candidates(x, x)->build_collisions(x);
-  FrictionContacts groups;
-  collisions->append_friction_contacts(groups);
-  std::vector<FrictionContact> all;
-  for (const auto& group : groups) all.insert(all.end(), group.begin(), group.end());
-  return all;
-}
-
-}  // namespace
-
 TEST_CASE("shapes: touched points move with their solid") {
   const Level level = square_sheet(5, 0.2);
   Positions x = level.rest.vertices;
@@ -174,12 +162,13 @@ TEST_CASE("shapes: touched points move with their solid") {
     to.translate += Vector3d(0.01, 0.003, 0);
     const auto before = bound(from, level, 0.3), after = bound(to, level, 0.3);
     INFO(to_string(kind));
-    const std::vector<FrictionContact> contacts = friction_contacts(*before, x);
-    CHECK(contacts.size() >= 1);
-    for (const FrictionContact& contact : contacts) {
-      CHECK(contact.touched.obstacle == 0);
-      CHECK((after->displacement(*before, contact.touched) - Vector3d(0.01, 0.003, 0)).norm() < 1e-15);
-    }
+    const FrictionContacts groups = friction_contacts(*collisions_at(*before, x));
+    CHECK(!groups.empty());
+    for (const auto& group : groups)
+      for (const FrictionContact& contact : group) {
+        CHECK(contact.touched.obstacle == 0);
+        CHECK((after->displacement(*before, contact.touched) - Vector3d(0.01, 0.003, 0)).norm() < 1e-15);
+      }
   }
   // A ball that turns about a horizontal axis moves what lies on it, with a static centre.
   const ShapeParameters from = level_with(SolidKind::sphere, 0);
@@ -187,8 +176,9 @@ TEST_CASE("shapes: touched points move with their solid") {
   to.rotate = {0, 1, 0};
   const auto before = bound(from, level, 0.3), after = bound(to, level, 0.3);
   double farthest = 0;
-  for (const FrictionContact& contact : friction_contacts(*before, x))
-    farthest = std::max(farthest, after->displacement(*before, contact.touched).x());
+  for (const auto& group : friction_contacts(*collisions_at(*before, x)))
+    for (const FrictionContact& contact : group)
+      farthest = std::max(farthest, after->displacement(*before, contact.touched).x());
   CHECK(farthest == Approx(0.1 * M_PI / 180).epsilon(1e-3));
 }
 
@@ -228,7 +218,7 @@ TEST_CASE("shapes: friction goes on while a solid turns below the cloth") {
   }
   const auto torque = [&](ActiveContacts& contacts, const BoundContact& own) {
     Positions push = Positions::Zero(x.rows(), 3), all = push;
-    own.build_candidates(x, x)->build_collisions(x)->add_gradient(x, push);
+    collisions_at(own, x)->add_gradient(x, push);
     contacts.add_gradient(x, all);
     double sum = 0, normal = 0;
     for (Eigen::Index i = 0; i < x.rows(); ++i) {
@@ -258,10 +248,9 @@ TEST_CASE("shapes: contacts keep their keys while another cylinder grows") {
     ShapeParameters roll = level_with(SolidKind::cylinder, 0.5);
     roll.radius = radius;
     const auto contact = bound({roll, level_with(SolidKind::box, 0)}, level, 0.3);
-    const auto collisions = contact->build_candidates(x, x)->build_collisions(x);
+    const auto friction = lagged_friction(*collisions_at(*contact, x), x, {});
     std::vector<ContactKey> all;
-    for (const TangentialDisplacement& d : lagged_friction(*collisions, x, {})->tangential_displacements(x))
-      all.push_back(d.contact);
+    for (const TangentialDisplacement& d : friction->tangential_displacements(x)) all.push_back(d.contact);
     return all;
   };
   REQUIRE(keys(0.1).size() > 10);
