@@ -7,6 +7,7 @@
 #include "core/numerics/contact/pair_geometry.h"
 #include "core/numerics/contact_forces/contact_stiffness.h"
 #include "core/numerics/contact_forces/friction.h"
+#include "core/numerics/model/required.h"
 #include "core/numerics/patterns/generate.h"
 #include "plugins/contact/ipc/bound_ipc.h"
 #include "tests/support/evaluate.h"
@@ -230,8 +231,7 @@ TEST_CASE("ipc: whatever the obstacle's triangles, the pressure on a flat cloth 
       const BoundIpc contact(p, p.barrier(Material()),
                              std::make_shared<ObstacleTree>(obstacles, dhat, p.broad_phase),
                              std::make_shared<RestCloth>(level, dhat, p.self_contact));
-      const auto set = contact.build_candidates(x, x)->build_collisions(x);
-      const Positions force = -gradient_of(*set, x);
+      const Positions force = -gradient_of(*collisions_at(contact, x), x);
       CAPTURE(dhat, columns);
       for (int v = 0; v < x.rows(); ++v)
         CHECK((force.row(v) - pressure * level.vertex_area[v] * Eigen::RowVector3d(0, 0, 1)).norm() <
@@ -244,7 +244,7 @@ TEST_CASE("ipc: a mesh finer than dhat has no barrier at rest, yet never interse
   Ipc::Parameters p;  // d̂ is twice the edges
   const auto contact = Ipc(p).bind(level, Material());
   const Positions& rest = level.rest.vertices;
-  CHECK(contact->build_candidates(rest, rest)->build_collisions(rest)->contact_count() == 0);
+  CHECK(collisions_at(*contact, rest)->contact_count() == 0);
   Positions through = rest;
   through.row(10 * 21 + 10) << rest.row(10 * 21 + 13) + Eigen::RowVector3d(0, 0, -1e-3);
   Positions above = rest;
@@ -255,7 +255,7 @@ TEST_CASE("ipc: a mesh finer than dhat has no barrier at rest, yet never interse
   CHECK(!contact->intersections(0.5 * (above + through)).empty());
   // Layers that are far apart at rest repel.
   const Positions layers = folded(level, 2, 4e-4, 0, 1);
-  CHECK(contact->build_candidates(layers, layers)->build_collisions(layers)->contact_count() > 100);
+  CHECK(collisions_at(*contact, layers)->contact_count() > 100);
 }
 
 TEST_CASE("ipc: a motion with too many candidates is shortened") {
@@ -283,9 +283,7 @@ TEST_CASE("ipc: a model made and bound from another is as a new one, and shares 
   p.obstacles = {box({1, 1, 0.1}, {0.2, 0.2, -0.05}), ball(2, {0.2, 0.2, -0.5}, 0.05)};
   const Ipc model(p);
   const auto contact = model.bind(level, Material());
-  const auto barrier = [&](const BoundContact& c) {
-    return c.build_candidates(x, x)->build_collisions(x)->value(x);
-  };
+  const auto barrier = [&](const BoundContact& c) { return collisions_at(c, x)->value(x); };
   const auto vertices = [](const BoundContact& c) { return c.obstacles().at(1).vertices; };
   const double before = barrier(*contact);
   REQUIRE(before > 0);

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "core/numerics/contact_forces/barrier.h"
+#include "core/numerics/model/required.h"
 #include "plugins/contact/shapes/features.h"
 #include "plugins/contact/shapes/separation.h"
 #include "plugins/contact/shapes/shapes.h"
@@ -141,11 +142,9 @@ Positions lifted(const Level& level, double height, double x = 0, double y = 0) 
   return p;
 }
 
-double energy_at(const BoundContact& bound, const Positions& x) {
-  return bound.build_candidates(x, x)->build_collisions(x)->value(x);
-}
+double energy_at(const BoundContact& bound, const Positions& x) { return collisions_at(bound, x)->value(x); }
 Positions gradient_at(const BoundContact& bound, const Positions& x) {
-  return gradient_of(*bound.build_candidates(x, x)->build_collisions(x), x);
+  return gradient_of(*collisions_at(bound, x), x);
 }
 
 double cloth_distance(const Solid& s, const Level& level, const Positions& x) {
@@ -262,8 +261,7 @@ TEST_CASE("shapes: the smallest gap is the cloth's distance") {
       const auto bound = bound_to({p}, *l);
       for (int i = 0; i < 150; ++i) {
         const Positions x = near_cloth(s, *l);
-        const double distance = cloth_distance(s, *l, x),
-                     seen = bound->build_candidates(x, x)->build_collisions(x)->smallest_gap();
+        const double distance = cloth_distance(s, *l, x), seen = collisions_at(*bound, x)->smallest_gap();
         INFO(to_string(kind) << " state " << i << " distance " << distance << " seen " << seen);
         CHECK(seen >= distance - 1e-12);
         CHECK(seen <= distance + (kind == SolidKind::cylinder ? 6e-5 * dhat : 1e-9));

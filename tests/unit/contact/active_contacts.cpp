@@ -5,6 +5,7 @@
 
 #include "core/numerics/contact_forces/barrier.h"
 #include "core/numerics/contact_forces/contact_stiffness.h"
+#include "core/numerics/model/required.h"
 #include "core/numerics/patterns/generate.h"
 #include "tests/support/evaluate.h"
 #include "tests/support/meshes.h"
@@ -164,7 +165,7 @@ TEST_CASE("Ten layers that stick to each other do not creep") {
   const auto friction = [&](const Positions& x) {
     Positions both = Positions::Zero(x.rows(), 3), barrier = both;
     contacts.add_gradient(x, both);
-    models[0]->build_candidates(x, x)->build_collisions(x)->add_gradient(x, barrier);
+    collisions_at(*models[0], x)->add_gradient(x, barrier);
     return Positions(both - barrier);
   };
   const Positions f = friction(x1);
@@ -269,7 +270,7 @@ TEST_CASE("The smallest of several models' steps counts, and their collisions ad
     double expected = 0;
     int count = 0;
     for (const auto& model : models) {
-      const auto collisions = model->build_candidates(x, x)->build_collisions(x);
+      const auto collisions = collisions_at(*model, x);
       expected += collisions->value(x);
       count += collisions->contact_count();
     }
@@ -310,8 +311,7 @@ methods: {newton: {}}
   REQUIRE(objective.max_step(start, x).fraction == 1);
   REQUIRE(objective.contacts().friction(x) > 0);
   REQUIRE(objective.contacts().barrier(x) > 0);
-  for (const auto& contact : model.contacts())
-    REQUIRE(contact->build_candidates(x, x)->build_collisions(x)->contact_count() > 3);
+  for (const auto& contact : model.contacts()) REQUIRE(collisions_at(*contact, x)->contact_count() > 3);
   REQUIRE(model.limits()[0]->value(x) > 0);
 
   const auto value = [&](const Positions& y) {
@@ -365,7 +365,7 @@ TEST_CASE("Between steps the stiffness rises of those models alone whose contact
   ActiveContacts contacts(models);
   step_between(contacts, x0, x1);
   const double barrier_before = contacts.barrier(x1), friction_before = contacts.friction(x1),
-               first = models[0]->build_candidates(x1, x1)->build_collisions(x1)->value(x1);
+               first = collisions_at(*models[0], x1)->value(x1);
   REQUIRE(friction_before > 0);
   CHECK(contacts.stiffness() == ContactStiffness{own, own, stiffness});
   CHECK(contacts.raise_stiffness(x1, 1e9));
