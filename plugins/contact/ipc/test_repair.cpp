@@ -169,11 +169,8 @@ TEST_CASE("ipc: a flat sheet acts as its plane where a wall joins it from below"
 }
 
 TEST_CASE("ipc: a vertex at which two triangles meet that share no edge counts once") {
-  TriangleMesh mesh;
-  mesh.vertices.resize(5, 3);
-  mesh.vertices << 0, 0, 0, 1, -0.5, 0, 1, 0.5, 0, -1, 0.5, 0, -1, -0.5, 0;
-  mesh.triangles.resize(2, 3);
-  mesh.triangles << 0, 1, 2, 0, 3, 4;
+  const TriangleMesh mesh =
+      mesh_of({{0, 0, 0}, {1, -0.5, 0}, {1, 0.5, 0}, {-1, 0.5, 0}, {-1, -0.5, 0}}, {{0, 1, 2}, {0, 3, 4}});
   CHECK(NearSurface(mesh).value({0, 0, 0.5 * dhat}) == Approx(barrier(0.5).value));
 }
 
