@@ -214,31 +214,6 @@ TEST_CASE(
   for (int i = 0; i < 3; ++i) CHECK(energies[i] == energies[3 + i]);  // bit for bit, with any broad phase
 }
 
-TEST_CASE("ipc: whatever the obstacle's triangles, the pressure on a flat cloth is the barrier's") {
-  const Level level = Level::of(0, grid({0.2, 0.2}, 21, 21, Diagonals::criss_cross));
-  const double s = 0.4, pressure = 7 * ((1 - s) * (1 - s) / s - 2 * (s - 1) * -std::log(s));
-  Ipc::Parameters p;
-  p.stiffness = 7;
-  for (const double dhat : {1e-4, 1e-3})
-    for (const int columns : {4, 20, 61, 120}) {
-      p.dhat = dhat;
-      TriangleMesh floor = grid({0.3, 0.3}, columns, columns, Diagonals::one_way);
-      floor.vertices.rowwise() -= Eigen::RowVector3d(0.0517, 0.0533, 0);
-      auto obstacles =
-          std::make_shared<Obstacles>(Obstacles::of({{"floor", floor, {}, {{ValidatedMesh::of(floor)}}}}));
-      Positions x = level.rest.vertices;
-      x.col(2).setConstant(s * dhat);
-      const BoundIpc contact(p, p.barrier(Material()),
-                             std::make_shared<ObstacleTree>(obstacles, dhat, p.broad_phase),
-                             std::make_shared<RestCloth>(level, dhat, p.self_contact));
-      const Positions force = -gradient_of(*collisions_at(contact, x), x);
-      CAPTURE(dhat, columns);
-      for (int v = 0; v < x.rows(); ++v)
-        CHECK((force.row(v) - pressure * level.vertex_area[v] * Eigen::RowVector3d(0, 0, 1)).norm() <
-              1e-9 * pressure * level.vertex_area[v]);
-    }
-}
-
 TEST_CASE("ipc: a mesh finer than dhat has no barrier at rest, yet never intersects itself") {
   const Level level = Level::of(0, grid({0.01, 0.01}, 21, 21, Diagonals::one_way));
   Ipc::Parameters p;  // d̂ is twice the edges

@@ -159,11 +159,3 @@ TEST_CASE("exactly degenerate pairs") {
   CHECK(closest_point_triangle(e3 + 0.5 * e1, o, e1, e2).free == 1);
   CHECK(closest_point_triangle(e3 + 0.3 * (e1 + e2), o, e1, e2).free == 2);
 }
-
-TEST_CASE("the parameter of the nearest point of a segment is clamped, and 0 on one without length") {
-  const Eigen::Vector3d u(0.5, 0, 0);
-  CHECK(nearest_on_segment(u, {0.125, 3, -1}) == 0.25);
-  CHECK(nearest_on_segment(u, {-1, 1, 0}) == 0);
-  CHECK(nearest_on_segment(u, {1, 1, 0}) == 1);
-  CHECK(nearest_on_segment({0, 0, 0}, {1, 1, 0}) == 0);
-}
