@@ -31,7 +31,7 @@ Positions wavy(const Level& level, double height) {
 
 using Bodies = std::vector<ObstacleParameters>;
 
-std::unique_ptr<BoundContact> bound(const Bodies& bodies, const Level& level, double friction = 0) {
+std::shared_ptr<const BoundContact> bound(const Bodies& bodies, const Level& level, double friction = 0) {
   Ipc::Parameters p;
   p.self_contact = false;
   p.obstacles = bodies;
@@ -338,7 +338,7 @@ TEST_CASE(
       ObstacleParameters p;
       p.mesh = (folder / "plate.ply").string();
       p.translate.x() = shift;
-      return std::shared_ptr<const BoundContact>(bound({p}, level, 0.3));
+      return bound({p}, level, 0.3);
     };
     for (const double shift : {1e-3, 1e-2, 0.1}) {
       CAPTURE(columns, shift);
@@ -355,7 +355,7 @@ TEST_CASE("ipc: of two obstacles that a cloth lies between, the static one does 
     Bodies all = {box({1, 1, 1}, {0, 0, -0.5}), box({1, 1, 1}, {shift, 0, 0.5 + 8e-4})};
     all[0].friction = 1;
     all[1].friction = 0.1;
-    return std::shared_ptr<const BoundContact>(bound(all, level, 0.3));
+    return bound(all, level, 0.3);
   };
   const auto lower = bound({box({1, 1, 1}, {0, 0, -0.5})}, level);
   CHECK(drag_between({between(0)}, {between(0.01)}, x) ==
@@ -367,9 +367,7 @@ TEST_CASE("ipc: contacts that form in a step have friction when the obstacle mov
   Positions apart = level.rest.vertices, x = apart;
   apart.col(2).setConstant(2e-3);
   x.col(2).setConstant(4e-4);
-  const auto at = [&](double shift) {
-    return std::shared_ptr<const BoundContact>(bound({box({1, 1, 1}, {shift, 0, -0.5})}, level, 0.3));
-  };
+  const auto at = [&](double shift) { return bound({box({1, 1, 1}, {shift, 0, -0.5})}, level, 0.3); };
   const BoundContacts before = {at(0)}, after = {at(0.01)};
   ActiveContacts contacts(before);
   contacts.begin_step(apart);

@@ -19,15 +19,16 @@ constexpr double dhat = 1e-3;
 
 RandomNumbers uniform(5);
 
-std::unique_ptr<BoundContact> bound(const std::vector<ShapeParameters>& shapes, const Level& level,
-                                    double friction = 0) {
+std::shared_ptr<const BoundContact> bound(const std::vector<ShapeParameters>& shapes, const Level& level,
+                                          double friction = 0) {
   Shapes::Parameters p;
   p.obstacles = shapes;
   p.dhat = dhat;
   p.friction = friction;
   return Shapes(p).bind(level, Material());
 }
-std::unique_ptr<BoundContact> bound(const ShapeParameters& shape, const Level& level, double friction = 0) {
+std::shared_ptr<const BoundContact> bound(const ShapeParameters& shape, const Level& level,
+                                          double friction = 0) {
   return bound(std::vector{shape}, level, friction);
 }
 
@@ -201,14 +202,12 @@ TEST_CASE("shapes: a half-space turns by the angle between its normals, wherever
 
 TEST_CASE("shapes: friction goes on while a solid turns below the cloth") {
   const Level level = square_sheet(9, 0.1);
-  const auto roll = [&](double y, double radius, double turned) {
-    ShapeParameters p = level_with(SolidKind::cylinder, y);
-    p.radius = radius;
+  const auto roll = [&](double turned) {
+    ShapeParameters p = level_with(SolidKind::cylinder, 0);
     p.height = 1;
-    p.rotate = {90, 0, 0};
-    p.translate = {0, y, -0.1};
-    if (turned != 0) p.rotate = {90, turned, 0};  // about the cylinder's axis
-    return p;
+    p.rotate = {90, turned, 0};  // turned about the cylinder's axis
+    p.translate = {0, 0, -0.1};
+    return bound(p, level, 0.3);
   };
   // Draped over the roll: a strip of 0.1 m of its circumference.
   Positions x = level.rest.vertices;
@@ -230,8 +229,7 @@ TEST_CASE("shapes: friction goes on while a solid turns below the cloth") {
   };
   for (const double turned : {1.0, 10.0, 40.0}) {
     INFO(turned);
-    const std::shared_ptr<const BoundContact> before = bound(roll(0, 0.1, 0), level, 0.3),
-                                              after = bound(roll(0, 0.1, turned), level, 0.3);
+    const auto before = roll(0), after = roll(turned);
     ActiveContacts contacts({before});
     contacts.begin_step(x);
     contacts.update_obstacles({after}, x, x);
