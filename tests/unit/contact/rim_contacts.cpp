@@ -17,7 +17,7 @@ const BarrierParameters parameters{reach, 3, 1e-4};
 /// A rim along y below the origin.
 const Positions rim = (Positions(2, 3) << 0, -1, 0, 0, 1, 0).finished();
 
-ContactPair pair_of(double mollifier = 0) {
+std::unique_ptr<Collisions> contacts(const Positions& x, double mollifier = 0) {
   ContactPair pair{{0, 1, 2, 3}, PairKind::edge_edge};
   pair.weight = 0.5;
   pair.dhat = reach;
@@ -25,11 +25,7 @@ ContactPair pair_of(double mollifier = 0) {
   pair.friction = 0.25;
   pair.obstacle = 0;
   pair.at_rim = true;
-  return pair;
-}
-
-std::unique_ptr<Collisions> contacts(const Positions& x, double mollifier = 0) {
-  return make_rim_contacts(x, rim, {pair_of(mollifier)}, parameters);
+  return make_rim_contacts(x, rim, {pair}, parameters);
 }
 
 /// A cloth edge of 5 cm at a height over the rim, which it passes by `past`.
