@@ -102,14 +102,6 @@ Vector middle_of_both(const Box& a, const Box& b) {
   return p;
 }
 
-std::vector<Box> boxes_of(const TriangleMesh& mesh, const Vector& origin) {
-  std::vector<Box> boxes(mesh.triangles.rows());
-  parallel_for(static_cast<int>(boxes.size()), triangles_per_task, [&](int begin, int end) {
-    for (int t = begin; t < end; ++t) boxes[t] = box_of(mesh, t, origin);
-  });
-  return boxes;
-}
-
 std::vector<TrianglePair> meeting(const TriangleMesh& mesh, const TriangleMesh& other, bool same,
                                   const AdjacencyList& candidates) {
   const int count = static_cast<int>(mesh.triangles.rows());
@@ -128,9 +120,13 @@ std::vector<TrianglePair> meeting(const TriangleMesh& mesh, const TriangleMesh& 
 
 /// Its boxes are relative to the first vertex of `from`.
 std::unique_ptr<BroadPhase> broad_phase_of(const TriangleMesh& mesh, const TriangleMesh& from) {
-  auto phase = make_broad_phase(BroadPhaseKind::bvh);
   const Vector origin = from.vertices.rows() > 0 ? Vector(from.vertices.row(0)) : Vector(Vector::Zero());
-  phase->update(boxes_of(mesh, origin));
+  std::vector<Box> boxes(mesh.triangles.rows());
+  parallel_for(static_cast<int>(boxes.size()), triangles_per_task, [&](int begin, int end) {
+    for (int t = begin; t < end; ++t) boxes[t] = box_of(mesh, t, origin);
+  });
+  auto phase = make_broad_phase(BroadPhaseKind::bvh);
+  phase->update(boxes);
   return phase;
 }
 
