@@ -31,9 +31,7 @@ ObstacleParameters with_cages(const std::string& file, int count) {
   return p;
 }
 
-ValidatedMesh validated(const TriangleMesh& mesh) {
-  return {mesh, Topology::of(mesh.triangles, static_cast<int>(mesh.vertices.rows()))};
-}
+ValidatedMesh validated(const TriangleMesh& mesh) { return *ValidatedMesh::of(mesh); }
 
 ValidatedMesh placed(ValidatedMesh mesh, double scale, const Eigen::RowVector3d& move) {
   mesh.mesh.vertices = (scale * mesh.mesh.vertices).rowwise() + move;
@@ -67,7 +65,7 @@ TEST_CASE("ipc: cages enclose each other and have their obstacle's transform") {
 }
 
 TEST_CASE("ipc: a cage that does not enclose its mesh is described") {
-  const ValidatedMesh ball = *ValidatedMesh::of(unit_sphere(2)), box = *ValidatedMesh::of(unit_box());
+  const ValidatedMesh ball = validated(unit_sphere(2)), box = validated(unit_box());
   CHECK(enclosure_fault(ball, placed(box, 0.5, {0, 0, 0})).empty());
   CHECK_THAT(enclosure_fault(ball, placed(box, 0.5, {3, 0, 0})), Contains("vertex 0 is outside"));
   CHECK_THAT(enclosure_fault(ball, placed(box, 0.5, {0.9, 0, 0})),
@@ -76,7 +74,7 @@ TEST_CASE("ipc: a cage that does not enclose its mesh is described") {
   CHECK_THAT(enclosure_fault(validated(grid({1, 1}, 3, 3, Diagonals::one_way)), ball),
              Contains("not closed"));
   // One component inside, one outside.
-  CHECK_THAT(enclosure_fault(placed(*ValidatedMesh::of(unit_sphere(3)), 0.2, {0, 0, 0}), validated(horned())),
+  CHECK_THAT(enclosure_fault(placed(validated(unit_sphere(3)), 0.2, {0, 0, 0}), validated(horned())),
              Contains("is outside"));
   // A cage may not touch what it encloses.
   CHECK(!enclosure_fault(box, placed(box, 0.5, {0.25, 0, 0})).empty());

@@ -64,13 +64,6 @@ TriangleMesh tangle(unsigned seed) {
   return repair_mesh({mesh}).frames[0];
 }
 
-ObstacleParameters obstacle(const std::string& file) {
-  ObstacleParameters p;
-  p.name = "scan";
-  p.mesh = file;
-  return p;
-}
-
 }  // namespace
 
 TEST_CASE("ipc: an obstacle loses what has no surface, and says so once") {
@@ -84,7 +77,9 @@ TEST_CASE("ipc: an obstacle loses what has no surface, and says so once") {
   const RepairedMesh repaired = repair_mesh({mesh});
   CHECK(repaired.frames[0].vertices.rows() == 27);
   Ipc::Parameters p;
-  p.obstacles = {obstacle(file)};
+  p.obstacles.resize(1);
+  p.obstacles[0].name = "scan";
+  p.obstacles[0].mesh = file;
   const Ipc model(p);
   CHECK(model.input_remarks() == std::vector<std::string>{"obstacle scan: " + repaired.remark});
   CHECK_THAT(repaired.remark, Contains("dropped 3 loose vertices, ") &&
