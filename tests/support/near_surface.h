@@ -25,8 +25,9 @@ struct NearSurface {
     for (int t = 0; t < mesh.triangles.rows(); ++t) candidates.push_back({0, t});
   }
   drape::SurfaceContacts contacts(const Vector& p) const {
-    return drape::SurfaceContacts::of(p.transpose(), obstacles, coefficients, candidates, area, 0, dhat);
+    return drape::find_surface_contacts(p.transpose(), obstacles, coefficients, candidates, area, 0, dhat);
   }
+  std::vector<drape::NearestFeature> features(const Vector& p) const { return contacts(p).items; }
   std::unique_ptr<drape::Collisions> set(const Vector& p) const {
     return make_surface_contacts(contacts(p), parameters);
   }

@@ -21,9 +21,13 @@ constexpr double zero_coefficient = 1e-12;
 /// with the same nearest feature are added before the barrier is evaluated, and most cancel.
 class FeatureSearch {
  public:
-  FeatureSearch(const ObstacleSurface& obstacles, const OperatorCoefficients& coefficients, double friction,
-                double dhat)
-      : obstacles_(obstacles), coefficients_(coefficients), friction_(friction), dhat_(dhat) {}
+  FeatureSearch(const ObstacleSurface& obstacles, const OperatorCoefficients& coefficients,
+                const Eigen::VectorXd& vertex_area, double friction, double dhat)
+      : obstacles_(obstacles),
+        coefficients_(coefficients),
+        vertex_area_(vertex_area),
+        friction_(friction),
+        dhat_(dhat) {}
 
   /// Appends the features within d̂ of a cloth vertex at p that have a non-zero coefficient. `candidates` are
   /// all triangles that may be within d̂ of it.
@@ -96,8 +100,13 @@ class FeatureSearch {
 
   NearestFeature feature(const Vector3d& p, const Term& term, int cloth_vertex) const {
     const Surface& surface = obstacles_.surface;
-    NearestFeature f{
-        cloth_vertex, {-1, -1, -1}, Vector3d::UnitX(), {}, Vector3d::Zero(), 0, term.coefficient, 0, 0};
+    NearestFeature f;
+    f.cloth_vertex = cloth_vertex;
+    f.vertices = {-1, -1, -1};
+    f.weights = Vector3d::UnitX();
+    f.along.setZero();
+    f.coefficient = term.coefficient;
+    f.area = vertex_area_[cloth_vertex];
     if (term.kind == Kind::face) {
       for (int k = 0; k < 3; ++k) f.vertices[k] = surface.triangles(term.index, k);
       const Vector3d a = position(f.vertices[0]), b = position(f.vertices[1]), c = position(f.vertices[2]);
@@ -136,37 +145,40 @@ class FeatureSearch {
 
   const ObstacleSurface& obstacles_;
   const OperatorCoefficients& coefficients_;
+  const Eigen::VectorXd& vertex_area_;
   double friction_, dhat_;
   std::vector<Term> terms_;
   std::vector<int> near_;  // triangles within d̂
 };
 
+/// The indices at which the runs of one cloth vertex begin in a list, then its size.
+template <class Item>
+std::vector<int> starts_of_runs(const std::vector<Item>& list, int Item::*vertex) {
+  const int size = static_cast<int>(list.size());
+  std::vector<int> starts;
+  for (int i = 0; i < size; ++i)
+    if (i == 0 || list[i].*vertex != list[i - 1].*vertex) starts.push_back(i);
+  starts.push_back(size);
+  return starts;
+}
+
 }  // namespace
 
-SurfaceContacts SurfaceContacts::of(const Positions& x, const ObstacleSurface& obstacles,
-                                    const OperatorCoefficients& coefficients,
-                                    const std::vector<VertexTriangleCandidate>& candidates,
-                                    const Eigen::VectorXd& vertex_area, double friction, double dhat) {
-  std::vector<int> start;  // first candidate of each vertex
-  for (int i = 0; i < static_cast<int>(candidates.size()); ++i)
-    if (i == 0 || candidates[i].vertex != candidates[i - 1].vertex) start.push_back(i);
-  const int count = static_cast<int>(start.size());
-  start.push_back(static_cast<int>(candidates.size()));
+SurfaceContacts find_surface_contacts(const Positions& x, const ObstacleSurface& obstacles,
+                                      const OperatorCoefficients& coefficients,
+                                      const std::vector<VertexTriangleCandidate>& candidates,
+                                      const Eigen::VectorXd& vertex_area, double friction, double dhat) {
+  const std::vector<int> start = starts_of_runs(candidates, &VertexTriangleCandidate::vertex);
   const auto find = [&](int begin, int end, std::vector<NearestFeature>& found) {
-    FeatureSearch search(obstacles, coefficients, friction, dhat);
+    FeatureSearch search(obstacles, coefficients, vertex_area, friction, dhat);
     for (int k = begin; k < end; ++k) {
       const std::span own(candidates.data() + start[k], candidates.data() + start[k + 1]);
       search.append(x.row(own.front().vertex), own, found);
     }
   };
   SurfaceContacts all;
-  all.features = parallel_collect<NearestFeature>(count, vertices_per_task, find);
-  const int size = static_cast<int>(all.features.size());
-  for (int first = 0, last = 0; first < size; first = last) {
-    const int v = all.features[first].cloth_vertex;
-    while (last < size && all.features[last].cloth_vertex == v) ++last;
-    all.contacts.push_back({v, vertex_area[v], first, last});
-  }
+  all.items = parallel_collect<NearestFeature>(static_cast<int>(start.size()) - 1, vertices_per_task, find);
+  all.start = starts_of_runs(all.items, &NearestFeature::cloth_vertex);
   return all;
 }
 

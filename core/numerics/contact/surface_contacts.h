@@ -2,9 +2,11 @@
 
 #include <array>
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "core/kernel/interfaces/contact_model.h"
+#include "core/kernel/interfaces/topology.h"
 #include "core/numerics/collision_detection/dihedrals.h"
 #include "core/numerics/collision_detection/obstacle_surface.h"
 #include "core/numerics/contact_forces/barrier.h"
@@ -26,37 +28,28 @@ struct NearestFeature {
   Eigen::Vector3d along;        ///< unit direction of an edge; 0 for other features
   double distance;              ///< [m]
   double coefficient;           ///< sum of the coefficients with their nearest point here, never 0
+  double area;                  ///< the cloth vertex's at rest [m²]
   double friction;              ///< μ
   int body;                     ///< the obstacle
 
   bool is_face() const { return vertices[2] >= 0; }
 };
 
-/// A cloth vertex in contact with the obstacles' surface.
-struct SurfaceContact {
-  int vertex;
-  double weight;    ///< the vertex's rest area [m²]
-  int first, last;  ///< range [first, last) of its features
-};
+/// The nearest features within d̂ of the cloth's vertices, a row for each vertex that has any.
+using SurfaceContacts = Grouped<NearestFeature>;
 
-/// The cloth vertices within d̂ of the obstacles, with their nearest features.
-struct SurfaceContacts {
-  std::vector<SurfaceContact> contacts;
-  std::vector<NearestFeature> features;
+/// The surface contacts of the cloth at x (n×3) [m]. `candidates` must be contiguous for each vertex and
+/// ascending by triangle; `friction` is μ where an obstacle has none of its own.
+SurfaceContacts find_surface_contacts(const Positions& x, const ObstacleSurface& obstacles,
+                                      const OperatorCoefficients& coefficients,
+                                      const std::vector<VertexTriangleCandidate>& candidates,
+                                      const Eigen::VectorXd& vertex_area, double friction, double dhat);
 
-  /// Those of the cloth at x (n×3) [m]. `candidates` must be contiguous for each vertex and ascending by
-  /// triangle; `friction` is μ where an obstacle has none of its own.
-  static SurfaceContacts of(const Positions& x, const ObstacleSurface& obstacles,
-                            const OperatorCoefficients& coefficients,
-                            const std::vector<VertexTriangleCandidate>& candidates,
-                            const Eigen::VectorXd& vertex_area, double friction, double dhat);
+/// The normal forces over κ of one vertex's features, non-negative [m²]. The force of a feature with a
+/// negative coefficient is subtracted from the features with the most similar normals.
+std::vector<double> pressures_of(std::span<const NearestFeature> features, double dhat);
 
-  /// A contact's normal forces over κ, per feature and non-negative [m²]. The force of a feature with a
-  /// negative coefficient is subtracted from the features with the most similar normals.
-  std::vector<double> pressures(const SurfaceContact& contact, double dhat) const;
-};
-
-/// The barrier κ d̂ Σ_contacts weight Σ_features coefficient · b(distance / d̂). Its Hessian has one 3×3 block
+/// The barrier κ d̂ Σ_vertices area Σ_features coefficient · b(distance / d̂). Its Hessian has one 3×3 block
 /// per vertex, which is projected.
 std::unique_ptr<Collisions> make_surface_contacts(SurfaceContacts contacts,
                                                   const BarrierParameters& parameters);

@@ -68,8 +68,9 @@ class BoundIpc::Candidates final : public CollisionCandidates {
     if (vertex_triangles_.empty() && rims_.empty()) return pairs;
     std::vector<std::unique_ptr<Collisions>> sets;
     sets.push_back(make_surface_contacts(
-        SurfaceContacts::of(x, contact_.obstacles_, contact_.obstacle_tree_->coefficients, vertex_triangles_,
-                            contact_.cloth_.vertex_area, contact_.p_.friction, barrier.dhat),
+        find_surface_contacts(x, contact_.obstacles_, contact_.obstacle_tree_->coefficients,
+                              vertex_triangles_, contact_.cloth_.vertex_area, contact_.p_.friction,
+                              barrier.dhat),
         barrier));
     if (!rims_.empty()) sets.push_back(make_rim_contacts(x, obstacles(), rims_, barrier));
     sets.push_back(std::move(pairs));

@@ -207,9 +207,9 @@ TEST_CASE("ipc: the nearest feature of any triangles counts at least once, and t
                           (1 - a - b) * meshes[k].vertices.row(t[2]);
       const Vector p =
           foot + 0.3 * std::pow(10, -3 * part(random)) * dhat * Vector(off(random), off(random), off(random));
-      const SurfaceContacts contacts = near.contacts(p);
-      if (contacts.contacts.empty()) continue;
-      const auto nearest = std::ranges::min(contacts.features, {}, &NearestFeature::distance);
+      const std::vector<NearestFeature> features = near.features(p);
+      if (features.empty()) continue;
+      const auto nearest = std::ranges::min(features, {}, &NearestFeature::distance);
       CAPTURE(k, i, p.transpose(), nearest.distance);
       CHECK(nearest.coefficient >= 1 - 1e-9);
       CHECK(near.value(p) >= 0);

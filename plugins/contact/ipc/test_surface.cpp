@@ -82,7 +82,7 @@ TEST_CASE("surface: a flat sheet acts as its plane, for any triangulation") {
       CHECK(scene.value(p) == Approx(b.value).epsilon(1e-10).margin(1e-14));
       const Vector g = b.first / dhat * (p - foot) / distance;
       CHECK((scene.gradient(p) - g).norm() <= 1e-9 * (1 + g.norm()));
-      if (i % 4 != 0) CHECK(scene.contacts(p).features.size() == (distance < dhat ? 1 : 0));
+      if (i % 4 != 0) CHECK(scene.features(p).size() == (distance < dhat ? 1 : 0));
       off_border += foot == p - Vector(0, 0, p.z());
     }
     CHECK(off_border > 100);
@@ -103,10 +103,10 @@ TEST_CASE("surface: energy and force are continuous where the nearest features c
     Vector force;
     for (int k = 0; k <= steps; ++k) {
       const Vector p = from + k * step;
-      const SurfaceContacts contacts = scene.contacts(p);
+      const std::vector<NearestFeature> near = scene.features(p);
       std::vector<std::array<int, 3>> features;
       double slope = 0, curvature = 0;  // bounds of the first and second derivative
-      for (const NearestFeature& f : contacts.features) {
+      for (const NearestFeature& f : near) {
         features.push_back(f.vertices);
         negative += f.coefficient < 0;
         const Derivatives b = barrier(std::max(f.distance - h, 1e-3 * f.distance) / dhat);
@@ -116,7 +116,7 @@ TEST_CASE("surface: energy and force are continuous where the nearest features c
       }
       const double value = scene.value(p);
       const Vector gradient = scene.gradient(p);
-      if (k > 0 && contacts.features.size() > 0 && scene.distance(p) > 0.1 * dhat) {
+      if (k > 0 && !near.empty() && scene.distance(p) > 0.1 * dhat) {
         if (features != before) ++changes;
         CAPTURE(round, k, p.transpose(), features.size(), before.size());
         CHECK((gradient - force).norm() <=
@@ -150,12 +150,12 @@ TEST_CASE("surface: derivatives and projections") {
       const double size = 1e-5 * dhat;
       std::vector<std::size_t> counts;  // of features around p: differences are of no use where they change
       for (int c = 0; c < 6; ++c)
-        counts.push_back(scene.contacts(p + (c % 2 ? 3 : -3) * size * Vector::Unit(c / 2)).features.size());
+        counts.push_back(scene.features(p + (c % 2 ? 3 : -3) * size * Vector::Unit(c / 2)).size());
       const bool steady = std::ranges::all_of(counts, [&](std::size_t n) { return n == counts[0]; });
-      CAPTURE(p.transpose(), scene.contacts(p).features.size());
+      CAPTURE(p.transpose(), scene.features(p).size());
       CHECK((differences(value, p.transpose(), size).transpose() - g).norm() <= 1e-5 * (g.norm() + 1 / dhat));
       if (steady) CHECK((differences(by_x, p.transpose(), size) - h).norm() <= 1e-4 * h.norm());
-      for (const NearestFeature& f : scene.contacts(p).features) negative += f.coefficient < 0;
+      for (const NearestFeature& f : scene.features(p)) negative += f.coefficient < 0;
       const Eigenpairs eigen = eigenpairs_of(h);
       indefinite += eigen.values[0] < -1e-9 * h.norm();
       for (const auto projection : {Projection::clamp, Projection::absolute})
@@ -179,15 +179,15 @@ TEST_CASE("surface: the nearest feature's coefficient is at least 1, on any roug
       const Vector p = near_middle(scene, random);
       const double distance = scene.distance(p);
       if (distance >= dhat || distance < 1e-6 * dhat) continue;
-      const SurfaceContacts contacts = scene.contacts(p);
+      const std::vector<NearestFeature> features = scene.features(p);
       CAPTURE(columns, height, wave, p.transpose(), distance);
-      REQUIRE(contacts.contacts.size() == 1);
-      const auto nearest = std::ranges::min(contacts.features, {}, &NearestFeature::distance);
+      REQUIRE(!features.empty());
+      const auto nearest = std::ranges::min(features, {}, &NearestFeature::distance);
       CHECK(nearest.distance == Approx(distance).epsilon(1e-9));
       CHECK(nearest.coefficient >= 1 - 1e-9);
       least = std::min(least, scene.value(p) / barrier(distance / dhat).value);
       double net = 0;
-      for (const double pressure : contacts.pressures(contacts.contacts[0], dhat)) {
+      for (const double pressure : pressures_of(features, dhat)) {
         CHECK(pressure >= 0);
         net += pressure;
       }
@@ -230,15 +230,15 @@ TEST_CASE("surface: friction uses the net normal force") {
     const Scene scene(hills(12, round % 2 ? 3e-4 : 2e-3, 0.02, random));
     for (int i = 0; i < 200; ++i) {
       const Vector p = near_middle(scene, random);
-      const SurfaceContacts contacts = scene.contacts(p);
-      if (contacts.contacts.empty() || scene.distance(p) < 1e-3 * dhat) continue;
+      const std::vector<NearestFeature> features = scene.features(p);
+      if (features.empty() || scene.distance(p) < 1e-3 * dhat) continue;
       double net = 0;
-      for (const NearestFeature& f : contacts.features) {
+      for (const NearestFeature& f : features) {
         net -= f.coefficient * barrier(f.distance / dhat).first;
         negative += f.coefficient < 0;
       }
       double sum = 0;
-      for (const double pressure : contacts.pressures(contacts.contacts[0], dhat)) sum += pressure;
+      for (const double pressure : pressures_of(features, dhat)) sum += pressure;
       CHECK(sum == Approx(std::max(net, 0.0)).epsilon(1e-9).margin(1e-12));
     }
   }
