@@ -77,25 +77,22 @@ class BoundIpc::Candidates final : public CollisionCandidates {
     return std::make_unique<CollisionStack>(std::move(sets));
   }
 
-  /// At x0, over the pairs with a barrier.
+  /// At x0, over all pairs but neighbours, whose d̂ is 0: on vertices of CCD-only pairs with an obstacle the
+  /// surface's barrier acts.
   SmallestGap smallest_gap() const {
     SmallestGap smallest;
     smallest.dhat = contact_.barrier_.dhat;
     smallest.stiffness = contact_.barrier_.stiffness;
     const ContactPair* nearest = nullptr;
-    const auto visit = [&](const ContactPair& pair) {
-      const PairPositions at = positions_of(pair, x0_, obstacles());
-      if (!is_within_dhat(pair, at)) return;
-      const double gap = contact_at(pair, at).gap();
-      if (gap >= smallest.gap) return;
-      smallest.gap = gap;
-      nearest = &pair;
-    };
-    for (const ContactPair& pair : barrier_) visit(pair);
-    for (const ContactPair& pair : rims_) visit(pair);
-    // The surface's barrier acts on the vertices of CCD-only pairs with an obstacle.
-    for (const ContactPair& pair : ccd_only_)
-      if (pair.obstacle >= 0) visit(pair);
+    for (const std::vector<ContactPair>* pairs : {&barrier_, &rims_, &ccd_only_})
+      for (const ContactPair& pair : *pairs) {
+        const PairPositions at = positions_of(pair, x0_, obstacles());
+        if (!is_within_dhat(pair, at)) continue;
+        const double gap = contact_at(pair, at).gap();
+        if (gap >= smallest.gap) continue;
+        smallest.gap = gap;
+        nearest = &pair;
+      }
     if (nearest) smallest.between = name_of(*nearest, contact_.obstacles_, cloth_size());
     return smallest;
   }
