@@ -102,37 +102,31 @@ double largest_coordinate(const Positions& x) { return x.size() > 0 ? x.cwiseAbs
 
 }  // namespace
 
-double additive_ccd(const Positions& x0, const Positions& x1, const Positions& obstacle_vertices,
-                    const std::vector<ContactPair>& pairs, double min_gap_fraction, int& blocking) {
-  struct First {
-    double time = 1;
-    int pair = -1;
-  };
-  blocking = -1;
-  if (pairs.empty()) return 1;
+SafeFraction additive_ccd(const Positions& x0, const Positions& x1, const Positions& obstacle_vertices,
+                          const std::vector<ContactPair>& pairs, double min_gap_fraction) {
+  if (pairs.empty()) return {};
   const int size = static_cast<int>(pairs.size());
   const double farthest =
       std::max({largest_coordinate(x0), largest_coordinate(x1), largest_coordinate(obstacle_vertices)});
   const double rounding = 16 * std::numeric_limits<double>::epsilon() * 3 * farthest;
   const LinearMotion motion{x0, x1, 0, obstacle_vertices, obstacle_vertices};
-  std::vector<First> pieces((size + pairs_per_task - 1) / pairs_per_task);
+  std::vector<SafeFraction> pieces((size + pairs_per_task - 1) / pairs_per_task);
   parallel_for(size, pairs_per_task, [&](int begin, int end) {
-    First& first = pieces[begin / pairs_per_task];
+    SafeFraction& first = pieces[begin / pairs_per_task];
     char safe[pairs_per_task] = {};
     mark_safe<PairKind::point_triangle>(&pairs[begin], end - begin, motion, min_gap_fraction, rounding, safe);
     mark_safe<PairKind::edge_edge>(&pairs[begin], end - begin, motion, min_gap_fraction, rounding, safe);
     for (int i = begin; i < end; ++i) {
       if (safe[i - begin]) continue;
       const double time =
-          safe_time(Motion(pairs[i], x0, x1, obstacle_vertices), min_gap_fraction, first.time);
-      if (time < first.time) first = {time, i};
+          safe_time(Motion(pairs[i], x0, x1, obstacle_vertices), min_gap_fraction, first.fraction);
+      if (time < first.fraction) first = {time, i};
     }
   });
-  First first;
-  for (const First& piece : pieces)
-    if (piece.time < first.time) first = piece;
-  blocking = first.pair;
-  return first.time;
+  SafeFraction first;
+  for (const SafeFraction& piece : pieces)
+    if (piece.fraction < first.fraction) first = piece;
+  return first;
 }
 
 }  // namespace drape

@@ -52,10 +52,9 @@ class BoundIpc::Candidates final : public CollisionCandidates {
   StepLimit max_step() const override {
     StepLimit limit;
     for (const std::vector<ContactPair>* pairs : {&barrier_, &rims_, &ccd_only_}) {
-      int blocking = -1;
-      const double part = additive_ccd(x0_, x1_, obstacles(), *pairs, contact_.p_.min_gap_fraction, blocking);
-      if (part < limit.fraction)
-        limit = {part, name_of((*pairs)[blocking], contact_.obstacles_, cloth_size())};
+      const SafeFraction safe = additive_ccd(x0_, x1_, obstacles(), *pairs, contact_.p_.min_gap_fraction);
+      if (safe.fraction < limit.fraction)
+        limit = {safe.fraction, name_of((*pairs)[safe.blocking], contact_.obstacles_, cloth_size())};
     }
     if (fraction_ < 1 && limit.fraction == 1) limit.by = "the limit on candidate pairs of one step";
     limit.fraction *= fraction_;

@@ -28,17 +28,15 @@ struct Query {
   PairPositions x0, x1;
   double offset = 0, min_gap_fraction = 0.1;
 
-  double time(int* blocking = nullptr) const {
+  double time() const {
     ContactPair pair;
     pair.vertices = {0, 1, 2, 3};
     pair.kind = kind;
     pair.offset = offset;
-    int ended_by = -2;
-    const double t =
-        additive_ccd(x0.transpose(), x1.transpose(), Positions(0, 3), {pair}, min_gap_fraction, ended_by);
-    CHECK((ended_by == -1) == (t == 1));
-    if (blocking) *blocking = ended_by;
-    return t;
+    const SafeFraction safe =
+        additive_ccd(x0.transpose(), x1.transpose(), Positions(0, 3), {pair}, min_gap_fraction);
+    CHECK(safe.blocking == (safe.fraction == 1 ? -1 : 0));
+    return safe.fraction;
   }
   PairPositions at(double t) const { return x0 + t * (x1 - x0); }
   double gap(double t) const { return gap_of(at(t)); }
@@ -317,11 +315,8 @@ TEST_CASE("how close to the impact the step ends") {
 }
 
 TEST_CASE("fractions that are known in closed form") {
-  int blocking = 0;
-  CHECK(point_over_triangle(0.5, {0, 0, -1}).time(&blocking) == Approx(0.45).epsilon(0.03));
-  CHECK(blocking == 0);
-  CHECK(point_over_triangle(0.5, {0, 0, -0.449}).time(&blocking) == 1);
-  CHECK(blocking == -1);
+  CHECK(point_over_triangle(0.5, {0, 0, -1}).time() == Approx(0.45).epsilon(0.03));
+  CHECK(point_over_triangle(0.5, {0, 0, -0.449}).time() == 1);
   CHECK(point_over_triangle(0.5, {0, 0, 0}).time() == 1);
   CHECK(point_over_triangle(0.5, {3, 4, 0}).time() == 1);
   CHECK(point_over_triangle(1e-9, {3, 4, 0}).time() == 1);
@@ -364,25 +359,20 @@ TEST_CASE("the first of many pairs limits the motion, with any number of threads
     pair.offset = i % 3 ? 0 : 0.1;
     pairs.push_back(pair);
   }
-  double first = 1;
-  int first_pair = -1, ended = 0;
+  SafeFraction first;
   for (int i = 0; i < points; ++i) {
-    const double t = additive_ccd(x0, x1, obstacle, {pairs[i]}, 0.1, ended);
-    if (t < first) first = t, first_pair = i;
+    const double t = additive_ccd(x0, x1, obstacle, {pairs[i]}, 0.1).fraction;
+    if (t < first.fraction) first = {t, i};
   }
-  REQUIRE(first_pair >= 0);
-  REQUIRE(first > 0);
-  const auto step = [&] {
-    const double t = additive_ccd(x0, x1, obstacle, pairs, 0.1, ended);
-    return std::pair(t, ended);
-  };
-  CHECK((same_with_any_threads(step) == std::pair(first, first_pair)));
-  CHECK(additive_ccd(x0, x1, obstacle, {}, 0.1, ended) == 1);
-  CHECK(ended == -1);
+  REQUIRE(first.blocking >= 0);
+  REQUIRE(first.fraction > 0);
+  CHECK((same_with_any_threads([&] { return additive_ccd(x0, x1, obstacle, pairs, 0.1); }) == first));
+  CHECK((additive_ccd(x0, x1, obstacle, {}, 0.1) == SafeFraction()));
   // Every gap keeps a tenth, and the blocking one no more than the tolerance above that.
-  const Positions x = x0 + first * (x1 - x0);
+  const Positions x = x0 + first.fraction * (x1 - x0);
   for (int i = 0; i < points; ++i) {
     const double part = (x(i, 2) - pairs[i].offset) / (x0(i, 2) - pairs[i].offset);
-    if (part < 0.1 || (i == first_pair && part > 0.12 + 1e-9)) FAIL_CHECK("pair " << i << " keeps " << part);
+    if (part < 0.1 || (i == first.blocking && part > 0.12 + 1e-9))
+      FAIL_CHECK("pair " << i << " keeps " << part);
   }
 }
