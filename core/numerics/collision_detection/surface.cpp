@@ -58,7 +58,7 @@ void Surface::append(const Surface& other) {
   append_rows(edge_length_squared, other.edge_length_squared);
 }
 
-void SweptBoxes::update(const Surface& surface, const Positions& x0, const Positions& x1, double margin,
+void SweptBoxes::update(const Positions& x0, const Positions& x1, double margin,
                         const Eigen::RowVector3d& origin) {
   vertices.resize(x0.rows());
   edges.resize(surface.edges.rows());

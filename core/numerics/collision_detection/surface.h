@@ -29,14 +29,16 @@ struct Surface {
   bool represents_edge(int t, int k) const { return edge_corner[triangle_edges(t, k)] == 3 * t + k; }
 };
 
-/// Bounding boxes of a surface's linear motion from x0 to x1, inflated by `margin` [m].
+/// Bounding boxes of a surface's linear motion.
 struct SweptBoxes {
+  const Surface& surface;
   std::vector<Box> vertices, edges, triangles;
 
-  /// Bounds the motion of `surface` from x0 to x1 (n×3) [m], relative to `origin` [m]: a box has floats,
-  /// which are fine near it alone.
-  void update(const Surface& surface, const Positions& x0, const Positions& x1, double margin,
-              const Eigen::RowVector3d& origin);
+  /// `moving` must outlive the boxes.
+  explicit SweptBoxes(const Surface& moving) : surface(moving) {}
+  /// Bounds the motion from x0 to x1 (n×3) [m], inflated by `margin` [m], relative to `origin` [m]: a box has
+  /// floats, which are fine near it alone.
+  void update(const Positions& x0, const Positions& x1, double margin, const Eigen::RowVector3d& origin);
 };
 
 }  // namespace drape

@@ -13,32 +13,26 @@ namespace {
 
 constexpr int rows_per_task = 256;
 
-/// One of the two surfaces of a search.
-struct Side {
-  const Surface& surface;
-  const SweptBoxes& boxes;
-};
-
 /// Calls found(v) for the vertices v that a's triangle s represents and whose boxes overlap b's triangle t.
 template <class Found>
-void represented_vertices(const Side& a, int s, const Side& b, int t, const Found& found) {
+void represented_vertices(const SweptBoxes& a, int s, const SweptBoxes& b, int t, const Found& found) {
   for (int k = 0; k < 3; ++k)
     if (const int v = a.surface.triangles(s, k);
-        a.surface.represents_vertex(s, k) && a.boxes.vertices[v].overlaps(b.boxes.triangles[t]))
+        a.surface.represents_vertex(s, k) && a.vertices[v].overlaps(b.triangles[t]))
       found(v);
 }
 
 /// Calls found(e, f) for the edges that the two triangles represent and whose boxes overlap.
 template <class Found>
-void represented_edges(const Side& a, int s, const Side& b, int t, const Found& found) {
+void represented_edges(const SweptBoxes& a, int s, const SweptBoxes& b, int t, const Found& found) {
   for (int k = 0; k < 3; ++k) {
     if (!a.surface.represents_edge(s, k)) continue;
     const int e = a.surface.triangle_edges(s, k);
-    const Box& box = a.boxes.edges[e];
-    if (!box.overlaps(b.boxes.triangles[t])) continue;
+    const Box& box = a.edges[e];
+    if (!box.overlaps(b.triangles[t])) continue;
     for (int m = 0; m < 3; ++m)
       if (const int f = b.surface.triangle_edges(t, m);
-          b.surface.represents_edge(t, m) && box.overlaps(b.boxes.edges[f]))
+          b.surface.represents_edge(t, m) && box.overlaps(b.edges[f]))
         found(e, f);
   }
 }
@@ -108,13 +102,12 @@ bool may_come_within_dhat(const ContactPair& pair, const LinearMotion& motion) {
   return connection(at, closest(pair.kind, at)).squaredNorm() <= reach * reach;
 }
 
-bool find_obstacle_pairs(const Surface& cloth, const SweptBoxes& boxes, const ObstacleSurface& obstacles,
+bool find_obstacle_pairs(const SweptBoxes& cloth_boxes, const ObstacleSurface& obstacles,
                          const SweptBoxes& obstacle_boxes, const AdjacencyList& rows,
                          const LinearMotion& motion, double friction, long limit,
                          std::vector<ContactPair>& found) {
-  const Surface& other = obstacles.surface;
+  const Surface &cloth = cloth_boxes.surface, &other = obstacles.surface;
   const Dihedrals& dihedrals = obstacles.dihedrals;
-  const Side own{cloth, boxes}, obstacle{other, obstacle_boxes};
   const auto first_other = static_cast<int>(motion.x0.rows());
   return collect(rows, motion, limit, found, [&](int s, int t, std::vector<ContactPair>& untested) {
     const auto add = [&](ContactPair pair, double weight) {
@@ -124,19 +117,19 @@ bool find_obstacle_pairs(const Surface& cloth, const SweptBoxes& boxes, const Ob
       pair.friction = obstacles.friction_of(pair.obstacle, friction);
       untested.push_back(pair);
     };
-    represented_vertices(own, s, obstacle, t, [&](int v) {
+    represented_vertices(cloth_boxes, s, obstacle_boxes, t, [&](int v) {
       ContactPair pair = vertex_triangle(0, v, other, first_other, t);
       pair.surface_triangle = t;
       add(pair, 0);
     });
-    represented_vertices(obstacle, t, own, s, [&](int v) {
+    represented_vertices(obstacle_boxes, t, cloth_boxes, s, [&](int v) {
       // The side of an equilateral triangle of the same area.
       const double length = std::sqrt(4 / std::sqrt(3.0) * cloth.triangle_area[s]);
       add(vertex_triangle(first_other, v, cloth, 0, s),
           0.5 * std::min(other.vertex_area[v], cloth.triangle_area[s]) *
               protrusion_factor(dihedrals.vertex_sagitta(v, length), motion.dhat));
     });
-    represented_edges(own, s, obstacle, t, [&](int e, int f) {
+    represented_edges(cloth_boxes, s, obstacle_boxes, t, [&](int e, int f) {
       const double length = std::sqrt(cloth.edge_length_squared[e]);
       ContactPair pair = edge_edge(cloth, 0, e, other, first_other, f);
       pair.at_rim = dihedrals.edge_is_rim[f] != 0;

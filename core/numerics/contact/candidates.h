@@ -46,7 +46,7 @@ inline ContactPair edge_edge(const Surface& own, int first, int e, const Surface
 /// The first have weight 0 as pairs: their barrier is that of the nearest features (surface_candidates). The
 /// weight of the others is reduced where the obstacle protrudes between its vertices by less than d̂ / 8, to 0
 /// where it is flat: there the cloth's vertices make contact first.
-bool find_obstacle_pairs(const Surface& cloth, const SweptBoxes& boxes, const ObstacleSurface& obstacles,
+bool find_obstacle_pairs(const SweptBoxes& cloth_boxes, const ObstacleSurface& obstacles,
                          const SweptBoxes& obstacle_boxes, const AdjacencyList& rows,
                          const LinearMotion& motion, double friction, long limit,
                          std::vector<ContactPair>& found);

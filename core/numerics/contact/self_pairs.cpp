@@ -103,6 +103,7 @@ std::vector<SelfPair> in_order(const std::vector<SelfPair>& pairs, int triangle_
 
 SelfPairSearch::SelfPairSearch(const Surface& cloth, BroadPhaseKind kind)
     : cloth_(cloth),
+      boxes_(cloth),
       vertices_(make_broad_phase(kind, vertices_alone(static_cast<int>(cloth.vertex_area.size())))),
       edges_(make_broad_phase(kind, cloth.edges)),
       triangles_(make_broad_phase(kind, cloth.triangles)) {}
@@ -110,8 +111,8 @@ SelfPairSearch::SelfPairSearch(const Surface& cloth, BroadPhaseKind kind)
 bool SelfPairSearch::find(const LinearMotion& motion, double friction, const PairLimits& limits, long& boxes,
                           std::vector<ContactPair>& found) {
   // A translation of the whole cloth changes no distance within it.
-  boxes_.update(cloth_, motion.x0, motion.x1.rowwise() - (motion.x1 - motion.x0).colwise().mean(),
-                0.5 * motion.dhat, motion.x0.row(0));
+  boxes_.update(motion.x0, motion.x1.rowwise() - (motion.x1 - motion.x0).colwise().mean(), 0.5 * motion.dhat,
+                motion.x0.row(0));
   vertices_->update(boxes_.vertices);
   edges_->update(boxes_.edges);
   triangles_->update(boxes_.triangles);

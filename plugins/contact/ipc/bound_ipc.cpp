@@ -117,10 +117,11 @@ RestCloth::RestCloth(const Level& level, double dhat_in, bool self_contact_in)
 ObstacleTree::ObstacleTree(std::shared_ptr<const Obstacles> all, double dhat, BroadPhaseKind kind)
     : obstacles(std::move(all)),
       origin(Eigen::RowVector3d::Zero()),
+      boxes(obstacles->surface),
       coefficients(OperatorCoefficients::of(obstacles->surface, obstacles->dihedrals, dhat)),
       tree(make_broad_phase(kind)) {
   if (obstacles->vertices.rows() > 0) origin = obstacles->vertices.colwise().mean();
-  boxes.update(obstacles->surface, obstacles->vertices, obstacles->vertices, 0.5 * dhat, origin);
+  boxes.update(obstacles->vertices, obstacles->vertices, 0.5 * dhat, origin);
   tree->update(boxes.triangles);
 }
 
@@ -132,7 +133,8 @@ BoundIpc::BoundIpc(const Ipc::Parameters& parameters, const BarrierParameters& b
       rest_(std::move(rest)),
       obstacles_(*obstacle_tree_->obstacles),
       cloth_(rest_->surface),
-      cloth_tree_(make_broad_phase(p_.broad_phase)) {
+      cloth_tree_(make_broad_phase(p_.broad_phase)),
+      boxes_(cloth_) {
   if (p_.self_contact) self_search_ = std::make_unique<SelfPairSearch>(cloth_, p_.broad_phase);
 }
 
@@ -150,11 +152,11 @@ bool BoundIpc::search(const Positions& x0, const Positions& x1, const PairLimits
   boxes = 0;
   if (self_search_ && !self_search_->find(motion, p_.friction, limits, boxes, found)) return false;
   if (obstacles_.bodies.empty()) return true;
-  boxes_.update(cloth_, x0, x1, 0.5 * barrier_.dhat, obstacle_tree_->origin);
+  boxes_.update(x0, x1, 0.5 * barrier_.dhat, obstacle_tree_->origin);
   cloth_tree_->update(boxes_.triangles);
   if (!cloth_tree_->overlaps(*obstacle_tree_->tree, limits.boxes - boxes, rows_)) return false;
   boxes += std::ssize(rows_.items);
-  return find_obstacle_pairs(cloth_, boxes_, obstacles_, obstacle_tree_->boxes, rows_, motion, p_.friction,
+  return find_obstacle_pairs(boxes_, obstacles_, obstacle_tree_->boxes, rows_, motion, p_.friction,
                              limits.primitives, found);
 }
 

@@ -66,12 +66,13 @@ class ObstacleTrajectory {
       : before_(before),
         after_(after),
         moves_(std::move(moves)),
-        cloth_(cloth),
         x_(x),
         dhat_(dhat),
         cloth_tree_(make_broad_phase(kind)),
-        tree_(make_broad_phase(kind)) {
-    cloth_boxes_.update(cloth, x, x, 0.5 * dhat, x.row(0));
+        tree_(make_broad_phase(kind)),
+        cloth_boxes_(cloth),
+        boxes_(after.surface) {
+    cloth_boxes_.update(x, x, 0.5 * dhat, x.row(0));
     cloth_tree_->update(cloth_boxes_.triangles);
   }
 
@@ -162,19 +163,18 @@ class ObstacleTrajectory {
 
   /// Finds the pairs that may come within d̂ on a segment. Returns false if there are more than `limit`.
   bool find(const TrajectorySegment& segment, long limit) {
-    boxes_.update(after_.surface, segment.begin, segment.end, 0.5 * dhat_ + segment.chord_error, x_.row(0));
+    boxes_.update(segment.begin, segment.end, 0.5 * dhat_ + segment.chord_error, x_.row(0));
     tree_->update(boxes_.triangles);
     found_.clear();
     if (!cloth_tree_->overlaps(*tree_, limit, rows_)) return false;
     remove_static(rows_, moves_, after_);
-    return find_obstacle_pairs(cloth_, cloth_boxes_, after_, boxes_, rows_,
+    return find_obstacle_pairs(cloth_boxes_, after_, boxes_, rows_,
                                {x_, x_, dhat_ + segment.chord_error, segment.begin, segment.end}, 0, limit,
                                found_);
   }
 
   const Obstacles &before_, &after_;
   std::vector<char> moves_;
-  const Surface& cloth_;
   const Positions& x_;
   double dhat_;
   std::unique_ptr<BroadPhase> cloth_tree_, tree_;
