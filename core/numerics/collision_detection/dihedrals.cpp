@@ -49,26 +49,26 @@ Dihedrals Dihedrals::of(const Surface& surface, const Positions& vertices) {
       least[e] = std::min(least[e], height[which].row(e).norm());
     }
   Dihedrals d;
-  d.edge_angle.resize(count);
-  d.edge_curvature.setZero(count);
-  d.vertex_angle.setZero(n);
-  d.vertex_curvature.setZero(n);
+  d.edge.angle.resize(count);
+  d.edge.curvature.setZero(count);
+  d.vertex.angle.setZero(n);
+  d.vertex.curvature.setZero(n);
   d.edge_is_rim.resize(count);
   for (int e = 0; e < count; ++e) {
     const Eigen::Vector3d a = height[0].row(e), b = height[1].row(e);
-    d.edge_angle[e] = triangles[e] != 2 ? M_PI : std::atan2(a.cross(b).norm(), -a.dot(b));
-    if (d.edge_angle[e] < flat_angle) d.edge_angle[e] = 0;
-    if (triangles[e] == 2) d.edge_curvature[e] = 2 * d.edge_angle[e] / (a.norm() + b.norm());
-    if (triangles[e] > 2) d.edge_curvature[e] = M_PI / least[e];
-    d.edge_is_rim[e] = d.edge_angle[e] > rim_angle;
+    d.edge.angle[e] = triangles[e] != 2 ? M_PI : std::atan2(a.cross(b).norm(), -a.dot(b));
+    if (d.edge.angle[e] < flat_angle) d.edge.angle[e] = 0;
+    if (triangles[e] == 2) d.edge.curvature[e] = 2 * d.edge.angle[e] / (a.norm() + b.norm());
+    if (triangles[e] > 2) d.edge.curvature[e] = M_PI / least[e];
+    d.edge_is_rim[e] = d.edge.angle[e] > rim_angle;
   }
   const auto rims = rims_through_vertices(surface, d.edge_is_rim, n);
   for (int e = 0; e < count; ++e)
     for (int k = 0; k < 2; ++k) {
       const int v = surface.edges(e, k);
       if (rims[v][0] == e || rims[v][1] == e) continue;
-      d.vertex_angle[v] = std::max(d.vertex_angle[v], d.edge_angle[e]);
-      d.vertex_curvature[v] = std::max(d.vertex_curvature[v], d.edge_curvature[e]);
+      d.vertex.angle[v] = std::max(d.vertex.angle[v], d.edge.angle[e]);
+      d.vertex.curvature[v] = std::max(d.vertex.curvature[v], d.edge.curvature[e]);
     }
   for (Eigen::Index v = 0; v < n; ++v) {
     if (rims[v][0] < 0) continue;
@@ -79,8 +79,8 @@ Dihedrals Dihedrals::of(const Surface& surface, const Positions& vertices) {
     }
     const double angle = std::atan2(along[0].cross(along[1]).norm(), -along[0].dot(along[1]));
     if (angle < flat_angle) continue;
-    d.vertex_angle[v] = std::max(d.vertex_angle[v], angle);
-    d.vertex_curvature[v] = std::max(d.vertex_curvature[v], 2 * angle / (along[0].norm() + along[1].norm()));
+    d.vertex.angle[v] = std::max(d.vertex.angle[v], angle);
+    d.vertex.curvature[v] = std::max(d.vertex.curvature[v], 2 * angle / (along[0].norm() + along[1].norm()));
   }
   return d;
 }
@@ -88,7 +88,7 @@ Dihedrals Dihedrals::of(const Surface& surface, const Positions& vertices) {
 OperatorCoefficients OperatorCoefficients::of(const Surface& surface, const Dihedrals& dihedrals,
                                               double dhat) {
   constexpr double full = 0.25, none = 1;  // largest curvature with coefficient 1, smallest with 0 [1/d̂]
-  const Eigen::Index n = dihedrals.vertex_angle.size(), count = surface.edges.rows();
+  const Eigen::Index n = dihedrals.vertex.angle.size(), count = surface.edges.rows();
   OperatorCoefficients c;
   c.edge.setZero(count);
   c.vertex.setConstant(n, -1);                       // at a vertex of single triangles no edge reduces it
@@ -100,7 +100,7 @@ OperatorCoefficients OperatorCoefficients::of(const Surface& surface, const Dihe
     }
   for (int e = 0; e < count; ++e) {
     if (further[e] == 0) continue;
-    const double reduction = (dhat * dihedrals.edge_curvature[e] - full) / (none - full);
+    const double reduction = (dhat * dihedrals.edge.curvature[e] - full) / (none - full);
     const double part = 1 - std::clamp(reduction, 0.0, 1.0);
     c.edge[e] = further[e] * part;
     for (int k = 0; k < 2; ++k) {

@@ -8,34 +8,29 @@
 
 namespace drape {
 
-/// Dihedral angles and curvatures of a surface at its edges and vertices.
+/// Angles [rad] and curvatures [1/m] of a surface at each of its edges, or at each of its vertices.
+struct Bends {
+  Eigen::VectorXd angle, curvature;
+
+  /// How far the surface protrudes through a chord of this length laid across edge or vertex i [m].
+  double sagitta(int i, double length) const {
+    return length / 8 * std::max(2 * angle[i], curvature[i] * length);
+  }
+};
+
+/// How a surface bends.
 struct Dihedrals {
-  /// Between the normals of each edge's triangles; 0 if flat up to round-off; π on the boundary and with more
-  /// than two triangles [rad].
-  Eigen::VectorXd edge_angle;
-  /// Angle over the triangles' mean height, of more than two over their least; 0 on the boundary [1/m].
-  Eigen::VectorXd edge_curvature;
+  /// The angle between the normals of an edge's triangles: 0 if flat up to round-off, π on the boundary and
+  /// with more than two triangles. The curvature is the angle over the triangles' mean height, of more than
+  /// two over their least; 0 on the boundary.
+  Bends edge;
   /// The largest of the vertex's edges. Where two of them are a rim, their own angle counts in place of those
   /// at them: a straight rim protrudes nowhere through a triangle of which no edge crosses it.
-  Eigen::VectorXd vertex_angle, vertex_curvature;
+  Bends vertex;
   std::vector<char> edge_is_rim;  ///< on the boundary, or with an angle above 30°
 
   /// Of a surface with its vertices at `vertices` (n×3) [m].
   static Dihedrals of(const Surface& surface, const Positions& vertices);
-
-  /// How far the surface protrudes through a chord of this length laid across the edge [m].
-  double edge_sagitta(int e, double length) const {
-    return sagitta(edge_angle[e], edge_curvature[e], length);
-  }
-  /// The same for a chord across the vertex [m].
-  double vertex_sagitta(int v, double length) const {
-    return sagitta(vertex_angle[v], vertex_curvature[v], length);
-  }
-
- private:
-  static double sagitta(double angle, double curvature, double length) {
-    return length / 8 * std::max(2 * angle, curvature * length);
-  }
 };
 
 /// Coefficients of the improved maximum operator (Li et al. 2023). Triangles have 1; the coefficients of

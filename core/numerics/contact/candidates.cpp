@@ -127,14 +127,14 @@ bool find_obstacle_pairs(const SweptBoxes& cloth_boxes, const ObstacleSurface& o
       const double length = std::sqrt(4 / std::sqrt(3.0) * cloth.triangle_area[s]);
       add(vertex_triangle(first_other, v, cloth, 0, s),
           0.5 * std::min(other.vertex_area[v], cloth.triangle_area[s]) *
-              protrusion_factor(dihedrals.vertex_sagitta(v, length), motion.dhat));
+              protrusion_factor(dihedrals.vertex.sagitta(v, length), motion.dhat));
     });
     represented_edges(cloth_boxes, s, obstacle_boxes, t, [&](int e, int f) {
       const double length = std::sqrt(cloth.edge_length_squared[e]);
       ContactPair pair = edge_edge(cloth, 0, e, other, first_other, f);
       pair.at_rim = dihedrals.edge_is_rim[f] != 0;
       add(pair, 0.5 * std::min(cloth.edge_area[e], other.edge_area[f]) *
-                    protrusion_factor(dihedrals.edge_sagitta(f, length), motion.dhat));
+                    protrusion_factor(dihedrals.edge.sagitta(f, length), motion.dhat));
     });
   });
 }

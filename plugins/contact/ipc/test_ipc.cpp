@@ -51,18 +51,16 @@ std::vector<ContactPair> brute_force(const Level& level, const Obstacles& obstac
     const PairPositions at = positions_of(pair, x, obstacles.vertices);
     return connection(at, closest(pair.kind, at)).norm();
   };
-  const auto protrusion_factor = [&](const auto& bends, int k, double length) {
-    const double sagitta = std::max(bends.first[k] * length / 4, bends.second[k] * length * length / 8);
+  const auto protrusion_factor = [&](const Bends& bends, int k, double length) {
+    const double sagitta = std::max(bends.angle[k] * length / 4, bends.curvature[k] * length * length / 8);
     return std::min(1.0, sagitta / (dhat / 8));
   };
   const Dihedrals& d = obstacles.dihedrals;
-  const std::pair<const Eigen::VectorXd&, const Eigen::VectorXd&> at_edge(d.edge_angle, d.edge_curvature),
-      at_vertex(d.vertex_angle, d.vertex_curvature);
-  const auto add = [&](ContactPair pair, double weight, double mu) {
+  const auto add = [&](ContactPair pair, double weight) {
     if (weight == 0 || distance(pair) >= dhat) return;
     pair.weight = weight;
     pair.dhat = dhat;
-    pair.friction = mu;
+    pair.friction = friction;
     pairs.push_back(pair);
   };
   const auto point_triangle = [](int v, Eigen::RowVector3i t) {
@@ -76,7 +74,7 @@ std::vector<ContactPair> brute_force(const Level& level, const Obstacles& obstac
   for (int v = 0; v < n; ++v) {
     for (int t = 0; t < own.triangle_count(); ++t)
       if ((own.triangles.row(t).array() != v).all())
-        add(point_triangle(v, own.triangles.row(t)), own.vertex_area[v] / 2, friction);
+        add(point_triangle(v, own.triangles.row(t)), own.vertex_area[v] / 2);
     for (std::size_t body = 0; body < obstacles.bodies.size(); ++body) {
       ContactPair nearest{};
       for (int t = 0; t < other.triangle_count(); ++t) {
@@ -84,31 +82,28 @@ std::vector<ContactPair> brute_force(const Level& level, const Obstacles& obstac
         const ContactPair pair = point_triangle(v, other.triangles.row(t).array() + n);
         if (nearest.vertices == std::array<int, 4>{} || distance(pair) < distance(nearest)) nearest = pair;
       }
-      add(nearest, own.vertex_area[v], friction);
+      add(nearest, own.vertex_area[v]);
     }
   }
   for (int v = 0; v < obstacles.vertices.rows(); ++v)
     for (int t = 0; t < own.triangle_count(); ++t)
       add(point_triangle(n + v, own.triangles.row(t)),
           std::min(other.vertex_area[v], own.triangle_area[t]) / 2 *
-              protrusion_factor(at_vertex, v, std::sqrt(own.triangle_area[t] / (std::sqrt(3.0) / 4))),
-          friction);
+              protrusion_factor(d.vertex, v, std::sqrt(own.triangle_area[t] / (std::sqrt(3.0) / 4))));
   for (int e = 0; e < own.edges.rows(); ++e) {
     for (int f = e + 1; f < own.edges.rows(); ++f) {
       const std::set<int> ends{own.edges(e, 0), own.edges(e, 1), own.edges(f, 0), own.edges(f, 1)};
       if (ends.size() == 4)
         add(edges(own.edges.row(e), own.edges.row(f),
                   own.edge_length_squared[e] * own.edge_length_squared[f]),
-            std::min(own.edge_area[e], own.edge_area[f]) / 4, friction);
+            std::min(own.edge_area[e], own.edge_area[f]) / 4);
     }
     for (int f = 0; f < other.edges.rows(); ++f) {
       ContactPair pair = edges(own.edges.row(e), other.edges.row(f).array() + n,
                                own.edge_length_squared[e] * other.edge_length_squared[f]);
       pair.at_rim = d.edge_is_rim[f] != 0;
-      add(pair,
-          std::min(own.edge_area[e], other.edge_area[f]) / 2 *
-              protrusion_factor(at_edge, f, std::sqrt(own.edge_length_squared[e])),
-          friction);
+      add(pair, std::min(own.edge_area[e], other.edge_area[f]) / 2 *
+                    protrusion_factor(d.edge, f, std::sqrt(own.edge_length_squared[e])));
     }
   }
   return pairs;
