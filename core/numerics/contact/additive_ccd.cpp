@@ -86,13 +86,11 @@ double safe_time(const Motion& motion, double min_gap_fraction, double limit) {
   return time;
 }
 
-/// Marks the pairs of this kind whose distance and speed alone guarantee `min_gap_fraction` of the gap for
-/// the whole motion, as safe_time would find in its first iteration. `rounding` is at least that of each
-/// Motion.
-template <PairKind kind>
+/// Marks the pairs whose distance and speed alone guarantee `min_gap_fraction` of the gap for the whole
+/// motion, as safe_time would find in its first iteration. `rounding` is at least that of each Motion.
 void mark_safe(const ContactPair* pairs, int count, const LinearMotion& motion, double min_gap_fraction,
                double rounding, char* safe) {
-  for_each_pack<kind>(pairs, count, motion, [&](const auto& moving, const int* indices, int size) {
+  for_each_pack(pairs, count, motion, [&](const auto& moving, const int* indices, int size) {
     const auto stays = (moving.separation - rounding) * (1 - min_gap_fraction) > moving.speed * (1 + 1e-9);
     for (int lane = 0; lane < size; ++lane) safe[indices[lane]] = stays[lane];
   });
@@ -114,8 +112,7 @@ SafeFraction additive_ccd(const Positions& x0, const Positions& x1, const Positi
   parallel_for(size, pairs_per_task, [&](int begin, int end) {
     SafeFraction& first = pieces[begin / pairs_per_task];
     char safe[pairs_per_task] = {};
-    mark_safe<PairKind::point_triangle>(&pairs[begin], end - begin, motion, min_gap_fraction, rounding, safe);
-    mark_safe<PairKind::edge_edge>(&pairs[begin], end - begin, motion, min_gap_fraction, rounding, safe);
+    mark_safe(&pairs[begin], end - begin, motion, min_gap_fraction, rounding, safe);
     for (int i = begin; i < end; ++i) {
       if (safe[i - begin]) continue;
       const double time =

@@ -37,26 +37,19 @@ void represented_edges(const SweptBoxes& a, int s, const SweptBoxes& b, int t, c
   }
 }
 
-/// Marks the pairs of this kind that may come within d̂.
-template <PairKind kind>
-void mark_near(const std::vector<ContactPair>& pairs, const LinearMotion& motion, std::vector<char>& near) {
-  for_each_pack<kind>(pairs.data(), static_cast<int>(pairs.size()), motion,
-                      [&](const auto& moving, const int* indices, int size) {
-                        const auto reach = moving.speed + motion.dhat;
-                        const auto beyond = moving.beyond(reach), within = moving.within(reach);
-                        for (int lane = 0; lane < size; ++lane)
-                          near[indices[lane]] =
-                              within[lane] ||
-                              (!beyond[lane] && may_come_within_dhat(pairs[indices[lane]], motion));
-                      });
-}
-
 /// Appends those that may come within d̂.
 void append_near(const std::vector<ContactPair>& untested, const LinearMotion& motion,
                  std::vector<ContactPair>& list) {
   std::vector<char> near(untested.size());
-  mark_near<PairKind::point_triangle>(untested, motion, near);
-  mark_near<PairKind::edge_edge>(untested, motion, near);
+  const auto mark = [&](const auto& moving, const int* indices, int size) {
+    const auto reach = moving.speed + motion.dhat;
+    const auto beyond = moving.beyond(reach), within = moving.within(reach);
+    for (int lane = 0; lane < size; ++lane) {
+      const int i = indices[lane];
+      near[i] = within[lane] || (!beyond[lane] && may_come_within_dhat(untested[i], motion));
+    }
+  };
+  for_each_pack(untested.data(), static_cast<int>(untested.size()), motion, mark);
   for (std::size_t i = 0; i < near.size(); ++i)
     if (near[i]) list.push_back(untested[i]);
 }

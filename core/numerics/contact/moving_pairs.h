@@ -126,10 +126,8 @@ class MovingPairs {
   }
 };
 
-/// Calls visit(moving, indices, size) for packs of those pairs that are of this kind and have no offset,
-/// whose indices the pack's first `size` lanes have.
 template <PairKind kind, class Visit>
-void for_each_pack(const ContactPair* pairs, int count, const LinearMotion& motion, const Visit& visit) {
+void for_each_pack_of(const ContactPair* pairs, int count, const LinearMotion& motion, const Visit& visit) {
   PairLanes<native_pack_width> lanes;
   int indices[native_pack_width];
   const auto test = [&] {
@@ -145,6 +143,14 @@ void for_each_pack(const ContactPair* pairs, int count, const LinearMotion& moti
     if (lanes.full()) test();
   }
   test();
+}
+
+/// Calls visit(moving, indices, size) for packs of those pairs that have no offset, each of one kind, whose
+/// indices the pack's first `size` lanes have.
+template <class Visit>
+void for_each_pack(const ContactPair* pairs, int count, const LinearMotion& motion, const Visit& visit) {
+  for_each_pack_of<PairKind::point_triangle>(pairs, count, motion, visit);
+  for_each_pack_of<PairKind::edge_edge>(pairs, count, motion, visit);
 }
 
 }  // namespace drape
