@@ -290,7 +290,6 @@ TEST_CASE("the barrier is zero beyond dhat and infinite at contact") {
 TEST_CASE("a contact's friction is at most μ times its force and opposes the motion") {
   std::mt19937 random(9);
   std::normal_distribution<double> normal;
-  int checked = 0;
   for (int i = 0; i < 90; ++i) {
     const PairKind kind = static_cast<PairKind>(i % 2);
     OnePair one(kind, close_positions(random), owners(kind)[(i / 2) % owners(kind).size()]);
@@ -307,7 +306,6 @@ TEST_CASE("a contact's friction is at most μ times its force and opposes the mo
     Positions moved = from;
     for (Eigen::Index v = 0; v < moved.rows(); ++v)
       for (int c = 0; c < 3; ++c) moved(v, c) += 1e-3 * normal(random);
-    double largest = 0;  // a side's whole weight is 1
     Vector3d force = Vector3d::Zero();
     const Positions g = gradient_of(*friction, moved);
     for (int k = 0; k < 4; ++k) {
@@ -315,7 +313,6 @@ TEST_CASE("a contact's friction is at most μ times its force and opposes the mo
       if (v >= one.x.rows()) continue;
       u += found.c[k] * (moved.row(v) - from.row(v)).transpose();
       if ((k < first_primitive_size(kind)) == (one.pair.vertices[0] < one.x.rows())) force += g.row(v);
-      largest = std::max(largest, std::abs(found.c[k]));
     }
     u -= n.dot(u) * n;
     REQUIRE(u.norm() > one.parameters.friction_smoothing_distance);
@@ -326,7 +323,5 @@ TEST_CASE("a contact's friction is at most μ times its force and opposes the mo
     CHECK(force.norm() == Approx(expected).epsilon(1e-9));
     const double sign = one.pair.vertices[0] < one.x.rows() ? 1 : -1;
     CHECK((sign * force - expected * u.normalized()).norm() <= 1e-9 * expected);
-    ++checked;
   }
-  CHECK(checked == 90);
 }
