@@ -48,12 +48,19 @@ AdjacencyList pairs_of(const BroadPhase& phase) {
   return pairs;
 }
 
-void check_pairs(const BroadPhase& phase, const AdjacencyList& own, const BroadPhase& other,
-                 const AdjacencyList& with_other) {
-  check_same(pairs_of(phase), own);
-  AdjacencyList found;
-  REQUIRE(phase.overlaps(other, unlimited, found));
-  check_same(found, with_other);
+/// Every kind of broad phase finds these pairs of the boxes, and of them and others.
+void check_every_kind(const std::vector<Box>& boxes, const AdjacencyList& own, const std::vector<Box>& others,
+                      const AdjacencyList& with_others, const Stencils& vertices = {},
+                      const Stencils& other_vertices = {}) {
+  for (const BroadPhaseKind kind : kinds) {
+    const auto phase = make_broad_phase(kind, vertices), other = make_broad_phase(kind, other_vertices);
+    phase->update(boxes);
+    other->update(others);
+    check_same(pairs_of(*phase), own);
+    AdjacencyList found;
+    REQUIRE(phase->overlaps(*other, unlimited, found));
+    check_same(found, with_others);
+  }
 }
 
 }  // namespace
@@ -86,11 +93,7 @@ TEST_CASE("broad phase: boxes beyond the range of floats are clamped, and still 
   }
   const AdjacencyList expected = brute_force(boxes, boxes, true);
   CHECK(expected.items.size() == 102 * 101 / 2 - 1);  // all but the last two
-  for (const BroadPhaseKind kind : kinds) {
-    const auto phase = make_broad_phase(kind);
-    phase->update(boxes);
-    check_same(pairs_of(*phase), expected);
-  }
+  check_every_kind(boxes, expected, boxes, brute_force(boxes, boxes, false));
 }
 
 TEST_CASE("broad phase: every kind finds the pairs of a brute-force search") {
@@ -100,12 +103,7 @@ TEST_CASE("broad phase: every kind finds the pairs of a brute-force search") {
       const AdjacencyList own_pairs = brute_force(boxes, boxes, true);
       const AdjacencyList pairs = brute_force(boxes, others, false);
       if (count > 600 && size > 0) REQUIRE(std::min(own_pairs.items.size(), pairs.items.size()) >= 10);
-      for (const BroadPhaseKind kind : kinds) {
-        const auto phase = make_broad_phase(kind), other = make_broad_phase(kind);
-        phase->update(boxes);
-        other->update(others);
-        check_pairs(*phase, own_pairs, *other, pairs);
-      }
+      check_every_kind(boxes, own_pairs, others, pairs);
     }
 }
 
@@ -131,12 +129,7 @@ TEST_CASE("broad phase: boxes of primitives that share a vertex are no pair") {
         boxes, points, false, [&](int i, int j) { return !share(vertices.row(i), others.row(j)); });
     REQUIRE(own.items.size() < brute_force(boxes, boxes, true).items.size());
     REQUIRE(against.items.size() > 100);
-    for (const BroadPhaseKind kind : kinds) {
-      const auto phase = make_broad_phase(kind, vertices), other = make_broad_phase(kind, others);
-      phase->update(boxes);
-      other->update(points);
-      check_pairs(*phase, own, *other, against);
-    }
+    check_every_kind(boxes, own, points, against, vertices, others);
   }
 }
 
@@ -152,11 +145,7 @@ TEST_CASE("broad phase: degenerate, equal and touching boxes") {
   }
   const AdjacencyList expected = brute_force(boxes, boxes, true);
   REQUIRE(expected.items.size() == 190 + 29);
-  for (const BroadPhaseKind kind : kinds) {
-    const auto phase = make_broad_phase(kind);
-    phase->update(boxes);
-    check_same(pairs_of(*phase), expected);
-  }
+  check_every_kind(boxes, expected, boxes, brute_force(boxes, boxes, false));
 }
 
 TEST_CASE("broad phase: refitted or rebuilt, the pairs are those of the last update") {
