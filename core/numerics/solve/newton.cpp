@@ -38,6 +38,7 @@ class Newton {
       : f_(objective),
         p_(parameters),
         run_(run),
+        result_(run.before),
         iterate_(objective, result_),
         check_(iterate_, parameters),
         step_(
@@ -48,12 +49,6 @@ class Newton {
         load_(run.load_stepping, iterate_, dirichlet_, run.observer) {
     result_.x = std::move(x);
     result_.level = f_.model().level().index;
-    result_.message = run.remark;
-    result_.factorisations = run.factorisations;
-    result_.analyses = run.analyses;
-    result_.flops = run.flops;
-    result_.seconds_by_phase = run.spent;
-    for (const auto& [phase, seconds] : run.spent) result_.seconds += seconds;
     predictor_.update_constraints();
   }
 

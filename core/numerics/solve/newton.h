@@ -12,16 +12,12 @@ namespace drape {
 struct LevelRun {
   const Stopwatch& clock;  ///< the method's, for the observer's rows
   Observer& observer;
-  bool finer_follows = false;                ///< the level may be refined early, on request
-  std::map<std::string, double> spent = {};  ///< on the level before this minimisation, by phase [s]
-  const NewtonState* from = nullptr;         ///< state to resume from; null to start anew
-  LoadStepping* load_stepping = nullptr;     ///< null without a schedule
-  std::string remark = {};                   ///< beginning of the result's message
-  ContactStiffness stiffness = {};           ///< at least this of each contact model [Pa]
-  const Hierarchy* hierarchy = nullptr;      ///< of the level, for LinearSolver::multigrid; may be null
-  /// On the level before this minimisation, and the operations of the factorisations.
-  int factorisations = 0, analyses = 0;
-  double flops = 0;
+  bool finer_follows = false;             ///< the level may be refined early, on request
+  LevelResult before = {};                ///< costs of the level so far, and how its message begins
+  const NewtonState* from = nullptr;      ///< state to resume from; null to start anew
+  LoadStepping* load_stepping = nullptr;  ///< null without a schedule
+  ContactStiffness stiffness = {};        ///< at least this of each contact model [Pa]
+  const Hierarchy* hierarchy = nullptr;   ///< of the level, for LinearSolver::multigrid; may be null
 };
 
 /// Minimises the objective F from x (n×3) [m] by implicit steps

@@ -36,14 +36,16 @@ std::vector<LevelResult> Progression::resume(const Problem& problem, const Metho
           !std::isfinite(problem.model(l)->energy_without_contact(start.x)))
         start.fault = "the refined state is outside the domain of an energy";
     }
+    if (!state) observer.level_started(l);
     LevelResult result;
     result.level = l;
-    if (!state) observer.level_started(l);
-    std::map<std::string, double> spent;
-    if (!anew) spent["refinement"] = start.seconds;
-    std::string remark;
+    result.factorisations = start.factorisations;
+    result.analyses = start.analyses;
+    result.flops = start.flops;
+    result.seconds = start.seconds;
+    if (!anew) result.seconds_by_phase["refinement"] = start.seconds;
     if (!start.fault.empty()) {
-      remark = start.fault + "; the level starts from the scene's start instead";
+      result.message = start.fault + "; the level starts from the scene's start instead";
       start.x = problem.starts[l];
       if (problem.load_stepping) problem.load_stepping->begin(l, true);
     }
@@ -51,16 +53,8 @@ std::vector<LevelResult> Progression::resume(const Problem& problem, const Metho
       result.x = std::move(start.x);
       result.outcome = Outcome::cancelled;
       result.message = "stopped on request";
-      result.factorisations = start.factorisations;
-      result.analyses = start.analyses;
-      result.flops = start.flops;
-      result.seconds = start.seconds;
-      result.seconds_by_phase = spent;
     } else {
-      LevelRun run{clock, observer, l < problem.finest(), spent, state, problem.load_stepping.get(), remark};
-      run.factorisations = start.factorisations;
-      run.analyses = start.analyses;
-      run.flops = start.flops;
+      LevelRun run{clock, observer, l < problem.finest(), result, state, problem.load_stepping.get()};
       run.hierarchy = &problem.hierarchy;
       if (!anew) run.stiffness = results.back().contact_stiffness;
       result = minimise(*objective(problem, l), std::move(start.x), newton, run);

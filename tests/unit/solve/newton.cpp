@@ -293,9 +293,12 @@ TEST_CASE("A minimisation resumed at any step continues bit for bit", "[newton]"
                              {{0, c.level.rest.vertices.row(0), 0}});
       KeepingObserver whole;
       whole.keeps_states = true;
+      LevelResult before;
+      before.seconds = 2;
+      before.seconds_by_phase = {{"before", 2}};
       PlainObjective first(model);
       const LevelResult expected =
-          minimise(first, c.level.rest.vertices, p, {Stopwatch(), whole, false, {{"before", 2}}});
+          minimise(first, c.level.rest.vertices, p, {Stopwatch(), whole, false, before});
       CAPTURE(int(solver), iterations, int(form), expected.message);
       REQUIRE(expected.outcome == Outcome::converged);
       REQUIRE(whole.states.size() > 4);
