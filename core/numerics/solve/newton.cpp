@@ -245,8 +245,8 @@ class Newton {
   }
 
   void report(int iteration) {
-    run_.observer.iteration(
-        iteration_row(f_, iterate_, step_, load_, result_, iteration, run_.clock.seconds()), iterate_.x());
+    run_.observer.iteration(iteration_row(iterate_, step_, load_, iteration, run_.clock.seconds()),
+                            iterate_.x());
   }
 
   void add_to_message(const std::string& text) {

@@ -29,9 +29,10 @@ std::string unmet(const LevelResult& so_far, const NewtonParameters& p) {
 
 }  // namespace
 
-IterationRow iteration_row(Objective& objective, const Iterate& iterate, const NewtonStep& step,
-                           const LoadStepper& load, const LevelResult& so_far, int iteration,
-                           double seconds) {
+IterationRow iteration_row(const Iterate& iterate, const NewtonStep& step, const LoadStepper& load,
+                           int iteration, double seconds) {
+  Objective& objective = iterate.objective();
+  const LevelResult& so_far = iterate.result();
   IterationRow row;
   row.level = so_far.level;
   row.step = so_far.steps;

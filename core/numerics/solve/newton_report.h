@@ -10,8 +10,8 @@
 namespace drape {
 
 /// The row of an iteration, `seconds` after the clock began.
-IterationRow iteration_row(Objective& objective, const Iterate& iterate, const NewtonStep& step,
-                           const LoadStepper& load, const LevelResult& so_far, int iteration, double seconds);
+IterationRow iteration_row(const Iterate& iterate, const NewtonStep& step, const LoadStepper& load,
+                           int iteration, double seconds);
 
 /// Stores the contacts' stiffness, their smallest gap and the time that they took.
 void record_contacts(const ActiveContacts& contacts, LevelResult& result);
