@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/numerics/elements/element_energy.h"
+#include "core/numerics/elements/green_strain.h"
 #include "core/numerics/elements/stretch_kernel.h"
 
 namespace drape {
@@ -170,32 +171,29 @@ struct BucklingLaw {
   }
 };
 
-/// Binds a law of StretchKernel to all triangles of a level, with the constants of each. Throws
+/// Binds a law of StretchKernel to all triangles of a level; constants_of(t) are those of triangle t. Throws
 /// std::runtime_error naming a triangle without area.
-template <class Law>
-std::unique_ptr<BoundEnergy> bind_stretches(
-    const Law& law, const Level& level,
-    const std::vector<Eigen::Matrix<double, Law::constants, 1>>& constants) {
+template <class Law, class Constants>
+std::unique_ptr<BoundEnergy> bind_stretches(const Law& law, const Level& level,
+                                            const Constants& constants_of) {
   using Kernel = StretchKernel<Law>;
   std::vector<typename Kernel::Rest> rest;
   for (int t = 0; t < level.triangle_count(); ++t) {
     const RestTriangle triangle = RestTriangle::of(level, t);
-    rest.emplace_back() << triangle.a, triangle.b, triangle.c, constants[t];
+    rest.emplace_back() << triangle.a, triangle.b, triangle.c, constants_of(t);
   }
   return std::make_unique<ElementEnergy<Kernel>>(level.rest.triangles, rest, level.triangle_order,
                                                  Kernel{law});
 }
 
-/// Binds a law to all triangles of a level on which the cloth buckles below the mesh, with Plain's constants
-/// of each; s [J] as in Buckling, which is the same for all triangles.
+/// Binds a law to all triangles of a level on which the cloth buckles below the mesh. Plain's constants are
+/// the numbers of a MaterialTriangle from its area on; s [J] as in Buckling, the same for all triangles.
 template <class Plain>
-std::unique_ptr<BoundEnergy> bind_buckling_membrane(
-    const Plain& plain, const Level& level,
-    const std::vector<Eigen::Matrix<double, Plain::constants, 1>>& numbers, double s) {
+std::unique_ptr<BoundEnergy> bind_buckling_membrane(const Plain& plain,
+                                                    const std::vector<MaterialTriangle>& triangles,
+                                                    const Level& level, double s) {
   const BucklingLaw<Plain> law{plain};
-  std::vector<Eigen::Matrix<double, BucklingLaw<Plain>::constants, 1>> constants;
-  for (const auto& own : numbers) constants.push_back(law.constants_of(own.data(), s));
-  return bind_stretches(law, level, constants);
+  return bind_stretches(law, level, [&](int t) { return law.constants_of(triangles[t].data() + 4, s); });
 }
 
 }  // namespace drape

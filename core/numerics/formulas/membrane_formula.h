@@ -116,8 +116,11 @@ class MembraneFormula final : public Energy {
 
   std::unique_ptr<BoundEnergy> bind(const Level& level, const Material& material) const override {
     const Law law(p_, material);
-    if (reads(law) & Trace::stretches)
-      return bind_stretches(PrincipalFormula<Law>{law}, level, numbers(level));
+    if (reads(law) & Trace::stretches) {
+      const std::vector<MaterialTriangle> triangles = material_triangles(level);
+      return bind_stretches(PrincipalFormula<Law>{law}, level,
+                            [&](int t) { return Eigen::Vector4d(triangles[t].tail<4>()); });
+    }
     return reads(law) & Trace::place ? bind_with<8>(law, level) : bind_with<5>(law, level);
   }
 
@@ -132,7 +135,7 @@ class MembraneFormula final : public Energy {
       return bind_buckling_strains(
           [law](const auto& g, const auto* place) { return energy<Pack<native_pack_width>>(law, g, place); },
           triangles, level, s);
-    return bind_buckling_membrane(PrincipalFormula<Law>{law}, level, numbers(level), s);
+    return bind_buckling_membrane(PrincipalFormula<Law>{law}, triangles, level, s);
   }
 
  private:
@@ -165,14 +168,6 @@ class MembraneFormula final : public Energy {
     const J none(0.0);
     return place[0] * law(J::variable(g[0], 0), J::variable(g[1], 1), J::variable(g[2], 2), none, none,
                           area_ratio<3>(g[0], g[1], g[2], det), place[0], place[1], place[2], place[3]);
-  }
-
-  /// Of PrincipalFormula.
-  std::vector<Eigen::Vector4d> numbers(const Level& level) const {
-    std::vector<Eigen::Vector4d> numbers;
-    for (const MaterialTriangle& triangle : material_triangles(level))
-      numbers.emplace_back(triangle.tail<4>());
-    return numbers;
   }
 
   Parameters p_;

@@ -223,10 +223,9 @@ std::unique_ptr<BoundEnergy> bind_buckling(const Law& law, const Level& level, c
     if (!is_isotropic(triangles, law.depends_on_place() || law.uses("area"), value))
       return bind_buckling_strains(energy, triangles, level, s);
   }
-  std::vector<Eigen::Vector4d> numbers;
-  for (const MaterialTriangle& triangle : triangles) numbers.emplace_back(triangle.tail<4>());
   return bind_buckling_membrane(
-      PrincipalProgram{compile_triangle(law, material, TriangleVariables::stretches).all}, level, numbers, s);
+      PrincipalProgram{compile_triangle(law, material, TriangleVariables::stretches).all}, triangles, level,
+      s);
 }
 
 }  // namespace drape::formula
