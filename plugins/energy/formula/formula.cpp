@@ -182,15 +182,9 @@ class Formula final : public Energy {
 
  private:
   std::unique_ptr<BoundEnergy> bind_unchecked(const Level& level, const Material& material) const {
-    switch (law_.kind) {
-      case ElementKind::triangle:
-        return bind_membrane(law_, level, material);
-      case ElementKind::hinge:
-        return bind_hinges(law_, level, material);
-      case ElementKind::vertex:
-        break;
-    }
-    return bind_vertices(law_, level, material);
+    return law_.kind == ElementKind::triangle ? bind_membrane(law_, level, material)
+           : law_.kind == ElementKind::hinge  ? bind_hinges(law_, level, material)
+                                              : bind_vertices(law_, level, material);
   }
 
   Law law_;
