@@ -89,9 +89,7 @@ struct ElementPack {
 
 /// The elements, sorted by the order.
 inline Stencils in_order(const Stencils& elements, const ElementOrder& order) {
-  Stencils sorted(elements.rows(), elements.cols());
-  for (Eigen::Index e = 0; e < elements.rows(); ++e) sorted.row(e) = elements.row(order.elements[e]);
-  return sorted;
+  return elements(order.elements, Eigen::all);
 }
 
 /// The elements of an energy in packs of W with their rest numbers, chunk by chunk of an order, and sums over

@@ -1,6 +1,4 @@
 #include <algorithm>
-#include <stdexcept>
-#include <string>
 #include <vector>
 
 #include "core/kernel/interfaces/energy.h"
@@ -21,7 +19,6 @@ constexpr double min_margin_fraction = 0.1;  // of the margin to the limit, left
 
 /// The limited triangles of a level.
 struct Limited {
-  int level_triangles = 0;     ///< of the whole level
   std::vector<int> triangles;  ///< by rising index
   Stencils corners;            ///< of each
   std::vector<Kernel::Rest> rest;
@@ -65,17 +62,15 @@ class BoundStrainLimit final : public ElementEnergy<Kernel>, public StretchLimit
   }
 
   std::unique_ptr<BoundEnergy> restricted(const std::vector<char>& excluded) const override {
-    if (static_cast<int>(excluded.size()) != limited_.level_triangles)
-      throw std::runtime_error("strain_limit: " + std::to_string(excluded.size()) + " flags for " +
-                               std::to_string(limited_.level_triangles) + " triangles");
-    Limited left{limited_.level_triangles, {}, Stencils(count(), 3), {}, limited_.rest_positions};
+    Limited left{{}, {}, {}, limited_.rest_positions};
+    std::vector<int> kept;
     for (int i = 0; i < count(); ++i) {
       if (excluded[limited_.triangles[i]]) continue;
-      left.corners.row(left.triangles.size()) = limited_.corners.row(i);
+      kept.push_back(i);
       left.triangles.push_back(limited_.triangles[i]);
       left.rest.push_back(limited_.rest[i]);
     }
-    left.corners.conservativeResize(left.triangles.size(), 3);
+    left.corners = limited_.corners(kept, Eigen::all);
     ElementOrder order = ElementOrder::of(left.corners, *left.rest_positions);
     return std::make_unique<BoundStrainLimit>(limit_, std::move(left), std::move(order));
   }
@@ -161,11 +156,7 @@ class StrainLimit final : public Energy {
 
   EnergyRole role() const override { return EnergyRole::limit; }
   std::unique_ptr<BoundEnergy> bind(const Level& level, const Material& material) const override {
-    Limited all{level.triangle_count(),
-                {},
-                level.rest.triangles,
-                {},
-                std::make_shared<Positions>(level.rest.vertices)};
+    Limited all{{}, level.rest.triangles, {}, std::make_shared<Positions>(level.rest.vertices)};
     for (int t = 0; t < level.triangle_count(); ++t) {
       const RestTriangle triangle = RestTriangle::of(level, t);
       Kernel::Rest rest;

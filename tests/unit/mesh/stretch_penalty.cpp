@@ -59,5 +59,4 @@ TEST_CASE("stretch penalty: a stretched sheet in closed form, over the flagged t
   CHECK(part->stencils().rows() == 8);
   CHECK(part->value(level.rest.vertices) <= 1e-28);
   CHECK(gradient_of(*part, level.rest.vertices).norm() <= 1e-15);
-  CHECK_THROWS_WITH(make_stretch_penalty(level, 0.01, 50, {1}), Catch::Contains("1 flags for 32 triangles"));
 }
