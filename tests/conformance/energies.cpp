@@ -282,6 +282,18 @@ TEST_CASE("A collapsed triangle has an energy that is a number or +infinity", "[
   REQUIRE(infinite >= 1);
 }
 
+TEST_CASE("A rest shape with a triangle without area is refused", "[conformance]") {
+  Level level = Level::of(0, grid({1, 1}, 3, 3, Diagonals::one_way));
+  level.rest.vertices.row(4) = level.rest.vertices.row(0);
+  for (const Candidate& candidate : all_energies()) {
+    if (!candidate.internal()) continue;
+    INFO(candidate.name);
+    CHECK_THROWS_WITH(candidate.energy->bind(level, material),
+                      Catch::Contains(" of level 0 has no area at rest") ||
+                          Catch::Contains("the rest shape of level 0 is not flat"));
+  }
+}
+
 TEST_CASE("A single triangle does not bend", "[conformance]") {
   const Level level = Level::of(0, mesh_of({{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {{0, 1, 2}}));
   const Positions x = level.rest.vertices + noise(3, 0.1, 12);

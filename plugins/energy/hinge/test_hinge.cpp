@@ -1,6 +1,5 @@
 #include <catch2/catch.hpp>
 
-#include "core/numerics/patterns/generate.h"
 #include "tests/support/kernel_check.h"
 #include "tests/support/meshes.h"
 #include "tests/support/unregistered.h"
@@ -98,12 +97,4 @@ TEST_CASE("hinge: a fold in closed form") {
   for (const double angle : {-2.0, 0.3, 3.0})
     CHECK(Check::evaluate(folded(angle), bent_rest).value ==
           Approx(c * std::pow(angle - 0.6, 2)).epsilon(1e-13));
-}
-
-TEST_CASE("hinge: a triangle without area is refused") {
-  Level level = Level::of(0, grid({1, 1}, 3, 3, Diagonals::one_way));
-  level.rest.vertices.row(4) = level.rest.vertices.row(0);
-  CHECK_THROWS_WITH(
-      FoldFormula<formulas::hinge>({}).bind(level, Material()),
-      Catch::Contains("a triangle at the edge of vertices ") && Catch::Contains(" has no area at rest"));
 }

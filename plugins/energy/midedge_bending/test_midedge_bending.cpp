@@ -281,9 +281,3 @@ TEST_CASE("midedge_bending: derivatives where neighbours across different edges 
   const Eigen::MatrixXd h = dense(hessian_of(*bound, x, Projection::none));
   CHECK((hessian_by_differences(*bound, x, 1e-4) - h).norm() <= 1e-7 * h.norm());
 }
-
-TEST_CASE("midedge_bending: a triangle without area is refused") {
-  Level level = Level::of(0, grid({1, 1}, 3, 3, Diagonals::one_way));
-  level.rest.vertices.row(4) = level.rest.vertices.row(0);
-  CHECK_THROWS_WITH(bind(level), Catch::Contains("midedge_bending: ") && Catch::Contains("no area"));
-}

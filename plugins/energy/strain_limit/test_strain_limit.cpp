@@ -259,9 +259,3 @@ TEST_CASE("strain_limit: violations are listed, can be excluded, and the rest st
   CHECK(none->value(1e3 * x) == 0);
   CHECK(none->max_step(x, 1e3 * x).fraction == 1);
 }
-
-TEST_CASE("strain_limit: a triangle without area is refused") {
-  Level level = square();
-  level.rest.vertices.row(6) = level.rest.vertices.row(0);
-  CHECK_THROWS_WITH(bound_to(level), Catch::Contains("triangle") && Catch::Contains("no area"));
-}
