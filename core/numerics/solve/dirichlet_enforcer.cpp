@@ -30,12 +30,7 @@ constexpr int max_idle_moves = 4;
 }  // namespace
 
 void DirichletEnforcer::begin(const Positions& x) {
-  fixed_ = model_->fixed();
-  s_.unsatisfied.clear();
-  s_.blocked_by.clear();
-  penalty_.reset();
-  s_.infeasible = false;
-  s_.idle = 0;
+  set_satisfied();
   const auto& vertices = model_->dirichlet();
   for (std::size_t k = 0; k < vertices.size(); ++k)
     if (x.row(vertices[k].vertex) != vertices[k].target.transpose())
@@ -52,9 +47,8 @@ Positions DirichletEnforcer::displacement_to_targets(const Positions& x) const {
 }
 
 void DirichletEnforcer::set_satisfied() {
+  s_ = {};
   fixed_ = model_->fixed();
-  s_.blocked_by.clear();
-  s_.unsatisfied.clear();
   penalty_.reset();
 }
 
@@ -98,20 +92,16 @@ void DirichletEnforcer::restore(const State& s) {
 }
 
 void DirichletEnforcer::release() {
-  for (int k : s_.unsatisfied) fixed_[model_->dirichlet()[k].vertex] = 0;
-  make_penalty();
-}
-
-void DirichletEnforcer::make_penalty() {
   std::vector<PositionPenalty::Term> terms;
   for (int k : s_.unsatisfied) {
     const DirichletVertex& d = model_->dirichlet()[k];
+    fixed_[d.vertex] = 0;
     terms.push_back({d.vertex, d.target, s_.stiffness * model_->masses()[d.vertex]});
   }
   penalty_ = std::make_unique<PositionPenalty>(std::move(terms));
 }
 
-bool DirichletEnforcer::increase_penalty(const Positions& x, const std::string& blocked_by) {
+void DirichletEnforcer::increase_penalty(const Positions& x, const std::string& blocked_by) {
   s_.blocked_by = blocked_by;
   const double distance = max_violation(x);
   if (distance <= max_remaining * s_.best && s_.best - distance > min_gain * patch_width()) {
@@ -125,11 +115,10 @@ bool DirichletEnforcer::increase_penalty(const Positions& x, const std::string& 
     s_.infeasible = true;
     fixed_ = model_->fixed();
     penalty_.reset();
-    return false;
+    return;
   }
   s_.stiffness *= 2;
-  make_penalty();
-  return true;
+  release();
 }
 
 double DirichletEnforcer::violation(const Positions& x, int unsatisfied) const {

@@ -59,8 +59,8 @@ class DirichletEnforcer {
   /// move, and may be empty.
   void begin_penalty(const std::string& blocked_by);
   /// Doubles the penalty. Once doublings have long stopped reducing the distance, fixes the vertices where
-  /// they are instead and returns false: the targets are infeasible.
-  bool increase_penalty(const Positions& x, const std::string& blocked_by);
+  /// they are instead: the targets are infeasible.
+  void increase_penalty(const Positions& x, const std::string& blocked_by);
 
   /// One flag a vertex: 1 where it is fixed now.
   const std::vector<char>& fixed() const { return fixed_; }
@@ -72,9 +72,9 @@ class DirichletEnforcer {
   std::string message(const Positions& x) const;
 
  private:
+  /// Releases the unsatisfied vertices to a penalty of the present stiffness.
   void release();
   double violation(const Positions& x, int unsatisfied) const;
-  void make_penalty();
   double membrane_stiffness() const;  // [N/m]
   double smallest_mass() const;       // of the unsatisfied vertices [kg]
   double patch_width() const;         // of the cloth that one such vertex stands for [m]
