@@ -70,13 +70,17 @@ struct NewtonCase {
 
   /// One with its first vertex held.
   LevelResult solve(const NewtonParameters& p, double width = 0) {
-    return solve(p, {{"wells", energy_of(Wells(centres, 10, width))}}, {{0, level.rest.vertices.row(0), 0}});
+    return solve(p, {{"wells", energy_of(Wells(centres, 10, width))}}, pinned());
   }
   LevelResult solve(const NewtonParameters& p, const std::vector<NamedEnergy>& energies,
                     const std::vector<DirichletVertex>& dirichlet = {}) {
     const LevelModel model(level, Material(), energies, dirichlet);
     PlainObjective objective(model);
     return minimise(objective, level.rest.vertices, p, {Stopwatch(), observer});
+  }
+  /// The first vertex, whose target is this far above it.
+  std::vector<DirichletVertex> pinned(double lift = 0) const {
+    return {{0, level.rest.vertices.row(0).transpose() + Eigen::Vector3d(0, 0, lift), 0}};
   }
 };
 
@@ -176,9 +180,8 @@ TEST_CASE(
     for (const PsdBlend blend : {PsdBlend::adaptive, PsdBlend::full})
       for (const double lift : {0.0, 0.1}) {  // of the pin's target: the predictor needs a factor too
         NewtonCase c;
-        const Eigen::Vector3d target = c.level.rest.vertices.row(0).transpose() + Eigen::Vector3d(0, 0, lift);
         const LevelResult r = c.solve({.form = form, .force_tolerance = tight, .psd_blend = blend},
-                                      {{"broken", energy_of(BrokenHessian(c.centres, 5))}}, {{0, target, 0}});
+                                      {{"broken", energy_of(BrokenHessian(c.centres, 5))}}, c.pinned(lift));
         CAPTURE(int(form), int(blend), lift);
         CHECK(r.outcome == Outcome::stalled);
         CHECK(r.message ==
@@ -192,9 +195,8 @@ TEST_CASE(
 
 TEST_CASE("NaN in the Hessian at a fixed vertex is not part of the Newton matrix", "[newton]") {
   NewtonCase c;
-  const LevelResult r =
-      c.solve({.force_tolerance = tight}, {{"broken", energy_of(BrokenHessian(c.centres, 0))}},
-              {{0, c.level.rest.vertices.row(0), 0}});
+  const LevelResult r = c.solve({.force_tolerance = tight},
+                                {{"broken", energy_of(BrokenHessian(c.centres, 0))}}, c.pinned());
   INFO(r.message);
   CHECK(r.outcome == Outcome::converged);
 }
@@ -256,7 +258,7 @@ TEST_CASE("A cloth that nothing holds is detected, in both forms and within an i
 
 TEST_CASE("A cloth that is pinned and falls without end has an energy that is unbounded below", "[newton]") {
   NewtonCase c;
-  const LevelResult r = c.solve({}, only_weight, {{0, c.level.rest.vertices.row(0), 0}});
+  const LevelResult r = c.solve({}, only_weight, c.pinned());
   CHECK(r.outcome == Outcome::infeasible);
   CHECK_THAT(r.message, Catch::StartsWith("its pins or springs do not hold the cloth within 100 of its ") &&
                             Catch::Contains("; an energy that is unbounded below has no state of rest: "));
@@ -267,8 +269,7 @@ TEST_CASE("A cloth without any force is at equilibrium: the residual scale has a
   c.centres = c.level.rest.vertices;  // the Dirichlet vertex is at its target
   c.centres.bottomRows(15).array() += 0.01;
   c.centres(0, 2) += 1e-12;  // but for round-off
-  const LevelModel model(c.level, Material(), {{"bowl", energy_of(Wells(c.centres, 10, 0))}},
-                         {{0, c.level.rest.vertices.row(0), 0}});
+  const LevelModel model(c.level, Material(), {{"bowl", energy_of(Wells(c.centres, 10, 0))}}, c.pinned());
   PlainObjective objective(model);
   const LevelResult r =
       minimise(objective, c.level.rest.vertices, {.max_steps = 300}, {Stopwatch(), c.observer});
@@ -290,7 +291,7 @@ TEST_CASE("A minimisation resumed at any step continues bit for bit", "[newton]"
       NewtonCase c;
       c.centres = c.level.rest.vertices.array() + 0.05;
       const LevelModel model(c.level, Material(), {{"wells", energy_of(Wells(c.centres, 10, 0.4))}},
-                             {{0, c.level.rest.vertices.row(0), 0}});
+                             c.pinned());
       KeepingObserver whole;
       whole.keeps_states = true;
       LevelResult before;
@@ -338,11 +339,10 @@ TEST_CASE("The energy of a row is the level's own, without the penalty of pins u
     std::vector<Positions> states;
   } kept;
   NewtonCase c;
-  const Eigen::Vector3d target = c.level.rest.vertices.row(0).transpose() + Eigen::Vector3d(0, 0, 0.1);
   const LevelModel model(
       c.level, Material(),
       {{"wells", energy_of(Wells(c.centres, 10, 0))}, {"limit", energy_of(Limiter(0.5), EnergyRole::limit)}},
-      {{0, target, 0}});
+      c.pinned(0.1));
   PlainObjective objective(model);
   minimise(objective, c.level.rest.vertices, {.max_steps = 5}, {Stopwatch(), kept});
   REQUIRE(kept.states.size() > 2);
@@ -353,11 +353,11 @@ TEST_CASE("The energy of a row is the level's own, without the penalty of pins u
 TEST_CASE("A step without descent is no equilibrium although the pins reach their targets after it") {
   NewtonCase c;
   c.centres.row(0).array() += 1;  // the pin carries far more than the free vertices lack
-  const Eigen::Vector3d target = c.level.rest.vertices.row(0).transpose() + Eigen::Vector3d(0, 0, 0.1);
+  const std::vector<DirichletVertex> pins = c.pinned(0.1);
   const LevelModel model(c.level, Material(),
                          {{"wells", energy_of(Frozen(c.centres, c.level.rest.vertices))},
                           {"limit", energy_of(LimitsOnce(), EnergyRole::limit)}},
-                         {{0, target, 0}});
+                         pins);
   PlainObjective objective(model);
   AtItsEnd loads;
   const Stopwatch clock;
@@ -365,7 +365,7 @@ TEST_CASE("A step without descent is no equilibrium although the pins reach thei
   run.load_stepping = &loads;
   const LevelResult r = minimise(objective, c.level.rest.vertices, {.force_tolerance = tight}, run);
   INFO(r.message);
-  CHECK(r.x.row(0) == target.transpose());
+  CHECK(r.x.row(0) == pins[0].target.transpose());
   CHECK(r.outcome == Outcome::stalled);
   CHECK_THAT(r.message, Catch::StartsWith("the line search found no descent"));
 }
@@ -374,9 +374,8 @@ TEST_CASE("A cloth that rests where its load vanishes is at equilibrium") {
   NewtonCase c;
   c.centres = c.level.rest.vertices;
   c.centres.bottomRows(15).array() += 0.01;
-  const LevelResult r =
-      c.solve({.max_steps = 300}, {{"well", energy_of(Wells(c.centres, 10, 0), EnergyRole::external)}},
-              {{0, c.level.rest.vertices.row(0), 0}});
+  const LevelResult r = c.solve(
+      {.max_steps = 300}, {{"well", energy_of(Wells(c.centres, 10, 0), EnergyRole::external)}}, c.pinned());
   INFO(r.message);
   CHECK(r.outcome == Outcome::converged);
 }
