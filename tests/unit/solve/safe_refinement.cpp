@@ -147,6 +147,23 @@ Positions tent_over_its_own_end(const Positions& rest, double gap) {
 
 TriangleMesh thirteen_columns() { return grid({1.2, 0.4}, 13, 5, Diagonals::one_way); }
 
+/// Pins the corner of a sheet of 9×9 vertices on the finer level, and the midpoint of an edge there, which
+/// has no vertex on the coarse level; returns the midpoint.
+int pin_beside_the_corner(TwoLevels& cloth) {
+  const Positions& fine = cloth.starts[1];
+  int midpoint = 0;
+  while (fine.row(midpoint) != Eigen::RowVector3d(1.0 / 16, 0, 0)) REQUIRE(++midpoint < fine.rows());
+  cloth.prescribe({{0, fine.row(0), 0}, {midpoint, fine.row(midpoint), 0}});
+  return midpoint;
+}
+
+/// Both levels, each under its own energy.
+std::vector<LevelResult> cascaded(const TwoLevels& cloth, Observer&& observer = Observer()) {
+  Progression cascade;
+  cascade.newton.max_steps = 50;
+  return cascade.solve(cloth, observer);
+}
+
 }  // namespace
 
 TEST_CASE("Without contact and limits the refined state is the prolonged one, with pins at their targets") {
@@ -283,10 +300,7 @@ TEST_CASE("A refinement that contact cuts to nothing fails after few steps") {
 
 TEST_CASE("If refinement fails, the level starts from the scene's start, and its message says so") {
   const TornApart cloth;
-  Progression cascade;
-  cascade.newton.max_steps = 50;
-  Observer silent;
-  const std::vector<LevelResult> results = cascade.solve(cloth, silent);
+  const std::vector<LevelResult> results = cascaded(cloth);
   REQUIRE(results.size() == 2);
   CHECK(results[0].message.empty());
   CHECK_FALSE(results[1].from_initial_state);       // the attempt counts as cost
@@ -302,11 +316,8 @@ TEST_CASE("What refinement factorises counts as its level's") {
     void level_started(int level) override { stop = level == 1; }
     bool stop_requested() override { return stop; }
     bool stop = false;
-  } stopped;
-  const TornApart cloth;
-  Progression cascade;
-  cascade.newton.max_steps = 50;
-  const std::vector<LevelResult> results = cascade.solve(cloth, stopped);
+  };
+  const std::vector<LevelResult> results = cascaded(TornApart(), Stopped());
   REQUIRE(results.size() == 2);
   CHECK(results[1].iterations == 0);
   CHECK(results[1].factorisations > 0);
@@ -318,11 +329,7 @@ TEST_CASE("The cloth follows a vertex that is pinned on the finer level alone, w
   const TriangleMesh sheet = grid({1, 1}, 9, 9, Diagonals::one_way);
   for (const double degrees : {10.0, 40.0, 70.0}) {
     TwoLevels cloth(sheet, {}, {"{type: strain_limit, limit: 1.0608}"}, {0});
-    const Positions& fine = cloth.starts[1];
-    // The midpoint of an edge at the pinned corner, which has no vertex on the coarse level.
-    int midpoint = 0;
-    while (fine.row(midpoint) != Eigen::RowVector3d(1.0 / 16, 0, 0)) ++midpoint;
-    cloth.prescribe({{0, fine.row(0), 0}, {midpoint, fine.row(midpoint), 0}});
+    const int midpoint = pin_beside_the_corner(cloth);
     const double angle = degrees * M_PI / 180;
     const Positions turned = sheet.vertices * Eigen::AngleAxisd(-angle, Eigen::Vector3d::UnitZ()).matrix();
     const Refined refined = cloth.refine(turned);
@@ -353,14 +360,8 @@ TEST_CASE("A level whose prolonged state an energy does not allow starts from th
       {"neo_hookean", "hinge", "gravity",
        "{type: formula, density: \"-log(1 - max(s1-1,0)^2/0.36) - log(1 - max(s2-1,0)^2/0.36)\"}"},
       {0});
-  const Positions& fine = cloth.starts[1];
-  int midpoint = 0;
-  while (fine.row(midpoint) != Eigen::RowVector3d(1.0 / 16, 0, 0)) REQUIRE(++midpoint < fine.rows());
-  cloth.prescribe({{0, fine.row(0), 0}, {midpoint, fine.row(midpoint), 0}});
-  Progression cascade;
-  cascade.newton.max_steps = 50;
-  Observer silent;
-  const LevelResult finer = cascade.solve(cloth, silent).at(1);
+  pin_beside_the_corner(cloth);
+  const LevelResult finer = cascaded(cloth).at(1);
   CHECK(finer.outcome != Outcome::infeasible);
   CHECK_THAT(finer.message,
              Catch::StartsWith("the refined state is outside the domain of an energy; the level starts"));
