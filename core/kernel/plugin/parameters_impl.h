@@ -148,8 +148,8 @@ class Declaration {
   }
 
   /// An enum, written as one of the words.
-  template <class Enum>
-  ParameterHandle add_choice(const std::string& name, Enum Struct::*member,
+  template <class Enum, class Owner>
+  ParameterHandle add_choice(const std::string& name, Enum Owner::*member,
                              std::vector<std::pair<std::string, Enum>> words,
                              const std::string& description = "") {
     Parameter& p = append(name, "text", member, description);

@@ -1,7 +1,11 @@
 #include "plugins/solver/pcs/proxy_objective.h"
 
+#include <algorithm>
+#include <cmath>
 #include <utility>
 
+#include "core/numerics/hierarchy/hierarchy.h"
+#include "core/numerics/model/level_model.h"
 #include "core/numerics/model/lone_pins.h"
 
 namespace drape {
@@ -36,22 +40,44 @@ void add_blocks(const BlockMatrix& part, const std::vector<int>& slots, double f
 
 }  // namespace
 
-ProxyObjective::ProxyObjective(const Problem& problem, int level, ChooseParts choose_parts,
-                               const ProxyOptions& options)
-    : Objective(problem.model(level)),
-      problem_(problem),
-      level_(level),
-      choose_parts_(std::move(choose_parts)),
-      options_(options) {
+std::vector<ProxyPart> proxy_parts(const Problem& problem, int level, const ProxyOptions& options) {
+  const ProxyInterpolation& seen_by = options.seen_by;
+  const int above = problem.finest() - level;
+  std::vector<ProxyPart> parts;
+  for (const auto& [role, interpolated_by] :
+       {std::pair(EnergyRole::membrane, seen_by.membrane), std::pair(EnergyRole::external, seen_by.external),
+        std::pair(EnergyRole::position, seen_by.external), std::pair(EnergyRole::bending, seen_by.bending)}) {
+    ProxyPart part;
+    const auto factor = problem.model(level)->midpoint_factor(role);
+    if (interpolated_by == Interpolation::midpoint && factor) {
+      part.factor = std::pow(*factor, above);
+    } else {
+      part.above = above;
+      part.matrix_above = std::min(options.depth, above);
+      part.interpolation = &problem.hierarchy.weights(interpolated_by);
+    }
+    auto same = std::ranges::find_if(parts, [&](ProxyPart other) {
+      other.roles = {};
+      return other == part;
+    });
+    if (same == parts.end()) same = parts.insert(parts.end(), part);
+    same->roles.add(role);
+  }
+  return parts;
+}
+
+ProxyObjective::ProxyObjective(const Problem& problem, int level, const ProxyOptions& options)
+    : Objective(problem.model(level)), problem_(problem), level_(level), options_(options) {
   ProxyObjective::model_changed();
 }
 
 void ProxyObjective::model_changed() {
-  if (options_.effective)  // a schedule may change which vertices a pin selects
+  // A schedule may change which vertices a pin selects.
+  if (options_.effective && options_.seen_by.membrane == Interpolation::midpoint)
     effective_ = std::make_shared<const LevelModel>(model().with_effective_membranes(
         problem_.finest() - level_, lone_pins(model(), [&] { return problem_.model(problem_.finest()); })));
   if (is_plain_) return;
-  std::vector<ProxyPart> parts = choose_parts_();
+  std::vector<ProxyPart> parts = proxy_parts(problem_, level_, options_);
   const bool differ = parts != parts_;
   if (differ) {
     parts_ = std::move(parts);
@@ -59,8 +85,9 @@ void ProxyObjective::model_changed() {
   }
   for (FinerPart& finer : finer_) {
     finer.model = problem_.model(level_ + finer.part.above);
-    finer.matrix_model =
-        options_.matrix == ProxyMatrix::galerkin ? problem_.model(level_ + finer.part.matrix_above) : nullptr;
+    finer.matrix_model = options_.hessian == ProxyMatrix::galerkin
+                             ? problem_.model(level_ + finer.part.matrix_above)
+                             : nullptr;
   }
   if (differ) make_matrices();
 }
@@ -85,7 +112,7 @@ void ProxyObjective::make_matrices() {
   const std::shared_ptr<const BlockPattern> before = matrix_.pattern;
   std::vector<std::shared_ptr<const BlockPattern>> patterns;
   for (FinerPart& finer : finer_) {
-    if (options_.matrix == ProxyMatrix::coarse) continue;
+    if (options_.hessian == ProxyMatrix::coarse) continue;
     const ProxyPart& part = finer.part;
     finer.matrices.emplace_back(finer.matrix_model->pattern());
     for (int k = part.matrix_above; k > 0; --k) {
@@ -94,13 +121,13 @@ void ProxyObjective::make_matrices() {
     }
     patterns.push_back(finer.matrices.back().pattern);
   }
-  if (options_.matrix == ProxyMatrix::coarse || !own_.empty()) patterns.push_back(model().pattern());
+  if (options_.hessian == ProxyMatrix::coarse || !own_.empty()) patterns.push_back(model().pattern());
   matrix_ = BlockMatrix(united(patterns));
   if (before && before != matrix_.pattern) smooth_pattern_changed();
   for (FinerPart& finer : finer_)
     if (!finer.matrices.empty()) finer.slots = slots_of(*finer.matrices.back().pattern, *matrix_.pattern);
   own_slots_.clear();
-  if (options_.matrix == ProxyMatrix::coarse || own_.empty() || matrix_.pattern == model().pattern()) return;
+  if (options_.hessian == ProxyMatrix::coarse || own_.empty() || matrix_.pattern == model().pattern()) return;
   own_matrix_ = BlockMatrix(model().pattern());
   own_slots_ = slots_of(*model().pattern(), *matrix_.pattern);
 }
@@ -157,7 +184,7 @@ void ProxyObjective::add_own_hessians(const Positions& x, Projection projection,
 }
 
 BlockMatrix& ProxyObjective::smooth_matrix(const Positions& x, Projection projection) {
-  if (is_plain_ || options_.matrix == ProxyMatrix::coarse) {
+  if (is_plain_ || options_.hessian == ProxyMatrix::coarse) {
     (is_plain_ ? own_model() : model()).hessian(x, projection, matrix_);
     return matrix_;
   }

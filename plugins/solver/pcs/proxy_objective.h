@@ -1,15 +1,41 @@
 #pragma once
 
-#include <functional>
 #include <memory>
 #include <vector>
 
 #include "core/kernel/interfaces/solver.h"
+#include "core/kernel/plugin/parameters.h"
 #include "core/numerics/hierarchy/transfer.h"
 #include "core/numerics/linear_algebra/galerkin.h"
 #include "core/numerics/model/objective.h"
 
 namespace drape {
+
+/// Interpolation through which a proxy's energies see the fine mesh, for each role.
+struct ProxyInterpolation {
+  Interpolation membrane = Interpolation::midpoint;
+  Interpolation bending = Interpolation::midpoint;
+  Interpolation external = Interpolation::midpoint;
+  Interpolation state = Interpolation::midpoint;
+
+  static void declare(Declaration<ProxyInterpolation>& d);
+};
+
+/// Matrix for search directions on coarse levels.
+enum class ProxyMatrix {
+  coarse,   ///< Hessian of the level's own plain model (PCS, section 4.2)
+  galerkin  ///< Galerkin product Pᵀ H P of the model `matrix_above` levels up
+};
+
+/// Choices of a proxy.
+struct ProxyOptions {
+  ProxyInterpolation seen_by;
+  ProxyMatrix hessian = ProxyMatrix::galerkin;
+  int depth = 2;  ///< matrix_above of a part on the finest level, unless that is nearer
+  /// The level's own membranes are LevelModel::with_effective_membranes, unless the refiner sees them.
+  bool effective = true;
+  bool relaxes = true;  ///< switch_to_plain() replaces the parts by the level's own energies
+};
 
 /// Part of a proxy: the energies of some roles in the plain model `above` levels up, at the prolonged state.
 struct ProxyPart {
@@ -23,30 +49,20 @@ struct ProxyPart {
   bool operator==(const ProxyPart&) const = default;
 };
 
-/// Matrix for search directions on coarse levels.
-enum class ProxyMatrix {
-  coarse,   ///< Hessian of the level's own plain model (PCS, section 4.2)
-  galerkin  ///< Galerkin product Pᵀ H P of the model `matrix_above` levels up
-};
-
-/// Choices of a proxy beside its parts.
-struct ProxyOptions {
-  ProxyMatrix matrix = ProxyMatrix::galerkin;
-  bool relaxes = false;    ///< switch_to_plain() replaces the parts by the level's own energies
-  bool effective = false;  ///< the level's own membranes are LevelModel::with_effective_membranes
-};
+/// Parts of the proxy of a coarse level for the finest model. An energy that midpoint refinement multiplies
+/// by a known factor (Energy::midpoint_factor) is evaluated on the level itself, any other on the finest one.
+/// The parts refer to the problem's hierarchy.
+std::vector<ProxyPart> proxy_parts(const Problem& problem, int level, const ProxyOptions& options);
 
 /// Proxy F_l(x) = Σ parts(x) + B_l(x) + D_l(x) + S_l(x): shell energies and loads of finer levels as
 /// functions of the vertices of level l, with that level's own contact and strain limits (PCS, section 4).
 /// The gradient is exact.
 class ProxyObjective : public Objective {
  public:
-  using ChooseParts = std::function<std::vector<ProxyPart>()>;
-
   /// Refers to `problem`. Chooses the parts again for every load: a schedule may change an energy's midpoint
   /// factor.
-  ProxyObjective(const Problem& problem, int level, ChooseParts choose_parts, const ProxyOptions& options);
-  bool is_proxy() const override { return !is_plain_ || options_.effective; }
+  ProxyObjective(const Problem& problem, int level, const ProxyOptions& options);
+  bool is_proxy() const override { return !is_plain_ || effective_; }
   bool switch_to_plain() override;
 
  protected:
@@ -76,7 +92,6 @@ class ProxyObjective : public Objective {
 
   const Problem& problem_;
   int level_;
-  ChooseParts choose_parts_;
   ProxyOptions options_;
   bool is_plain_ = false;
   std::shared_ptr<const LevelModel> effective_;  // the level's model with effective membranes, or null

@@ -1,11 +1,11 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
+#include <cmath>
 
+#include "core/numerics/hierarchy/hierarchy.h"
+#include "plugins/solver/pcs/proxy_objective.h"
 #include "tests/support/evaluate.h"
 #include "tests/support/solve.h"
-#include "tests/support/unregistered.h"
-// After it:
-#include "plugins/solver/pcs/pcs.cpp"
 
 using namespace drape;
 
@@ -49,20 +49,11 @@ constexpr ProxyInterpolation by_midpoints;
 constexpr ProxyInterpolation mixed{Interpolation::midpoint, Interpolation::refiner, Interpolation::midpoint,
                                    Interpolation::midpoint};
 
-std::vector<ProxyPart> proxy_parts(const Problem& problem, int level, int depth,
-                                   const ProxyInterpolation& interpolation) {
-  PcsSolver solver;
-  solver.depth = depth;
-  solver.seen_by = interpolation;
-  return solver.parts(problem, level);
-}
-
 /// The proxy of a level for the finest one.
 ProxyObjective proxy_of(const Problem& problem, int level, int depth,
                         const ProxyInterpolation& interpolation = by_refiner,
                         ProxyMatrix matrix = ProxyMatrix::galerkin) {
-  return ProxyObjective(
-      problem, level, [=, &problem] { return proxy_parts(problem, level, depth, interpolation); }, {matrix});
+  return ProxyObjective(problem, level, {interpolation, matrix, depth, false, false});
 }
 
 }  // namespace
@@ -93,7 +84,7 @@ TEST_CASE("By midpoints the proxy's energy is that of the coarse surface on the 
     const double expected = f.finest_value(x, level, f.problem.hierarchy.midpoints);
     REQUIRE(std::abs(expected - f.problem.models[level]->value(x)) > 1e-3 * std::abs(expected));
     CHECK(value_of(proxy, x) == Approx(expected).epsilon(1e-11));
-    const auto parts = proxy_parts(f.problem, level, 1, by_midpoints);
+    const auto parts = proxy_parts(f.problem, level, {by_midpoints});
     CHECK(std::all_of(parts.begin(), parts.end(), [](const ProxyPart& part) { return part.above == 0; }));
     CHECK(proxy.matrix(x, Projection::clamp).pattern == f.problem.models[level]->pattern());
   }
@@ -101,7 +92,7 @@ TEST_CASE("By midpoints the proxy's energy is that of the coarse surface on the 
 
 TEST_CASE("An energy without a factor is evaluated on the finest mesh by midpoints", "[proxy_objective]") {
   const Fixture f(Overrides{{"energies", "[neo_hookean, midedge_bending, gravity]"}});
-  const auto parts = proxy_parts(f.problem, 0, 1, by_midpoints);
+  const auto parts = proxy_parts(f.problem, 0, {by_midpoints});
   REQUIRE(parts.size() == 2);
   CHECK(parts[0].above == 0);
   CHECK(parts[1].above == 2);
@@ -157,12 +148,11 @@ TEST_CASE("The coarse matrix is the plain model's", "[proxy_objective]") {
 TEST_CASE("A proxy that relaxes switches to the plain energy of its level, once", "[proxy_objective]") {
   const Fixture f;
   const ProxyInterpolation interpolation = GENERATE(by_refiner, by_midpoints);
-  const auto parts = proxy_parts(f.problem, 0, 1, interpolation);
   const Positions x = f.state(0);
-  ProxyObjective never(f.problem, 0, [&] { return parts; }, {ProxyMatrix::galerkin});
+  ProxyObjective never = proxy_of(f.problem, 0, 1, interpolation);
   CHECK_FALSE(never.switch_to_plain());
   CHECK(never.is_proxy());
-  ProxyObjective proxy(f.problem, 0, [&] { return parts; }, {ProxyMatrix::galerkin, true});
+  ProxyObjective proxy(f.problem, 0, {interpolation, ProxyMatrix::galerkin, 1, false, true});
   PlainObjective plain(*f.problem.models[0]);
   Positions g, expected;
   plain.gradient(x, expected);
@@ -226,8 +216,7 @@ TEST_CASE("Membranes of coarse levels buckle below the mesh, before the proxy re
   Positions x = f.state(0);
   x.col(0) *= 0.6;
   REQUIRE(buckling.value(x, {EnergyRole::membrane}) < 0.5 * plain.value(x, {EnergyRole::membrane}));
-  ProxyObjective proxy(f.problem, 0, [&] { return proxy_parts(f.problem, 0, 1, by_midpoints); },
-                       {ProxyMatrix::galerkin, true, true});
+  ProxyObjective proxy(f.problem, 0, {by_midpoints, ProxyMatrix::galerkin, 1, true, true});
   const double bending = plain.value(x, {EnergyRole::bending});
   REQUIRE(bending > 1e-4 * std::abs(buckling.value(x)));
   CHECK(value_of(proxy, x) == Approx(buckling.value(x) + 3 * bending).epsilon(1e-12));
@@ -240,8 +229,7 @@ TEST_CASE("Membranes of coarse levels buckle below the mesh, before the proxy re
   buckling.hessian(x, Projection::clamp, h);
   CHECK(proxy.matrix(x, Projection::clamp).values == h.values);
   // Seen by the refiner, membranes are the finest level's.
-  ProxyObjective by_loop(f.problem, 0, [&] { return proxy_parts(f.problem, 0, 1, by_refiner); },
-                         {ProxyMatrix::galerkin, false, true});
+  ProxyObjective by_loop(f.problem, 0, {by_refiner, ProxyMatrix::galerkin, 1, true, false});
   ProxyObjective expected_by_loop = proxy_of(f.problem, 0, 1);
   CHECK(value_of(by_loop, x) == value_of(expected_by_loop, x));
 }
@@ -255,15 +243,14 @@ TEST_CASE("A proxy follows a midpoint factor that a schedule takes away, as a re
        "energy: \"3*k*length^2/area*(bend - crease)^2\"}]"},
       {"schedule",
        "{steps: 1, keys: [{parameter: energies.plastic.crease, times: [0, 1], values: [0, 0.3]}]}"}});
-  PcsSolver solver;
   const Positions x = f.state(0);
   LoadStepping& load = *f.problem.load_stepping;
   load.begin(0, true);
-  const auto proxy = solver.objective(f.problem, 0);
-  proxy->matrix(x, Projection::clamp);
+  ProxyObjective proxy(f.problem, 0, ProxyOptions());
+  proxy.matrix(x, Projection::clamp);
   while (!load.finished()) load.advance(0, x);
-  proxy->set_model(f.problem.model(0), x, x);
-  const auto resumed = solver.objective(f.problem, 0);  // made under the load of a checkpoint
-  CHECK(value_of(*proxy, x) == value_of(*resumed, x));
-  CHECK(dense(proxy->matrix(x, Projection::clamp)) == dense(resumed->matrix(x, Projection::clamp)));
+  proxy.set_model(f.problem.model(0), x, x);
+  ProxyObjective resumed(f.problem, 0, ProxyOptions());  // made under the load of a checkpoint
+  CHECK(value_of(proxy, x) == value_of(resumed, x));
+  CHECK(dense(proxy.matrix(x, Projection::clamp)) == dense(resumed.matrix(x, Projection::clamp)));
 }
