@@ -195,8 +195,8 @@ TEST_CASE(
 
 TEST_CASE("NaN in the Hessian at a fixed vertex is not part of the Newton matrix", "[newton]") {
   NewtonCase c;
-  const LevelResult r = c.solve({.force_tolerance = tight},
-                                {{"broken", energy_of(BrokenHessian(c.centres, 0))}}, c.pinned());
+  const LevelResult r =
+      c.solve({.force_tolerance = tight}, {{"broken", energy_of(BrokenHessian(c.centres, 0))}}, c.pinned());
   INFO(r.message);
   CHECK(r.outcome == Outcome::converged);
 }
