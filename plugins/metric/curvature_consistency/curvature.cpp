@@ -74,17 +74,13 @@ class RingSearch {
   std::vector<int> found_;
 };
 
-VertexCurvatures sized(Eigen::Index n) {
-  return {Eigen::VectorXd(n), Eigen::VectorXd(n), Eigen::VectorXd(n), Eigen::VectorXd(n)};
-}
-
 }  // namespace
 
 VertexCurvatures fit_curvatures(const Positions& x, const Triangles& triangles, const Topology& topology,
                                 int rings) {
   const int n = static_cast<int>(x.rows());
   const Positions normals = vertex_normals(x, triangles, topology);
-  VertexCurvatures result = sized(n);
+  VertexCurvatures result{Eigen::VectorXd(n), Eigen::VectorXd(n), Eigen::VectorXd(n)};
   parallel_for(n, grain, [&](int begin, int end) {
     RingSearch search(topology.vertex_vertices, n);
     std::vector<Vector3d> offsets;
@@ -107,16 +103,16 @@ VertexCurvatures fit_curvatures(const Positions& x, const Triangles& triangles, 
       const PointCurvatures at_i = quadric_curvatures(fit_quadric(offsets));
       result.mean[i] = at_i.mean / scale;
       result.gaussian[i] = at_i.gaussian / (scale * scale);
-      result.kappa1[i] = at_i.kappa1 / scale;
-      result.kappa2[i] = at_i.kappa2 / scale;
+      const double kappa1 = at_i.kappa1 / scale, kappa2 = at_i.kappa2 / scale;
+      result.strongest[i] = std::abs(kappa1) >= std::abs(kappa2) ? kappa1 : kappa2;
     }
   });
   return result;
 }
 
 VertexCurvatures ddg_curvatures(const Positions& x, const Triangles& triangles, const Topology& topology) {
-  VertexCurvatures result = sized(x.rows());
-  result.mean = mean_curvature(x, triangles, topology.hinges(triangles));
+  VertexCurvatures result{
+      mean_curvature(x, triangles, topology.hinges(triangles)), Eigen::VectorXd(x.rows()), {}};
   parallel_for(static_cast<int>(x.rows()), grain, [&](int begin, int end) {
     for (int i = begin; i < end; ++i) {
       double angles = 0, area = 0;
@@ -133,17 +129,9 @@ VertexCurvatures ddg_curvatures(const Positions& x, const Triangles& triangles, 
                                  " have no area");
       const double whole = topology.on_border[i] ? std::numbers::pi : 2 * std::numbers::pi;
       result.gaussian[i] = (whole - angles) / area;
-      const double radius = std::sqrt(std::max(result.mean[i] * result.mean[i] - result.gaussian[i], 0.0));
-      result.kappa1[i] = result.mean[i] + radius;
-      result.kappa2[i] = result.mean[i] - radius;
     }
   });
   return result;
-}
-
-Eigen::VectorXd strongest_curvature(const VertexCurvatures& curvatures) {
-  return (curvatures.kappa1.array().abs() >= curvatures.kappa2.array().abs())
-      .select(curvatures.kappa1, curvatures.kappa2);
 }
 
 }  // namespace drape

@@ -110,8 +110,8 @@ class CurvatureConsistency : public Metric {
              {"d_K_fit", integral(other_fit.gaussian, fit.gaussian)},
              {"d_K_ddg", integral(other_ddg.gaussian, ddg.gaussian)}},
             {{"H_difference", other_fit.mean - fit.mean},
-             {"principal_curvature", strongest_curvature(fit)},
-             {"principal_curvature_other", strongest_curvature(other_fit)}}};
+             {"principal_curvature", fit.strongest},
+             {"principal_curvature_other", other_fit.strongest}}};
   }
 
   RecentCurvatures curvatures_;
