@@ -10,14 +10,14 @@
 namespace drape {
 
 /// A few packs of elements of k vertices, which a kernel evaluates together; unused ones repeat the last.
-template <int k, int W, int size>
+template <int k, int size>
 struct ElementBatch {
-  using T = Pack<W>;
+  using T = Pack<native_pack_width>;
   using Vector = Eigen::Matrix<T, 3, 1>;
   using Hessian = SymmetricMatrix<3 * (k - 1), T>;
 
   const Positions* x;
-  const ElementPack<k, W>* elements[size];
+  const ElementPack<k>* elements[size];
   const T* rest[size];  ///< rest numbers of each pack
 
   /// The differences x_i - x_0 of a pack.
@@ -26,7 +26,7 @@ struct ElementBatch {
 
 /// Sum of one kernel over many elements, as ElementEnergy, for a kernel that has a state of its own and needs
 /// several packs at once to be fast. A Kernel has `vertices` (k), `batch` (packs), `Rest` (a fixed-size
-/// vector of doubles) and, with Batch = ElementBatch<k, native_pack_width, batch>,
+/// vector of doubles) and, with Batch = ElementBatch<k, batch>,
 ///
 ///     void value(const Batch&, T* energies) const;
 ///     void gradient(const Batch&, T* energies, Vector (*g)[k - 1]) const;
@@ -80,9 +80,9 @@ class BatchedEnergy final : public BoundEnergy {
 
  private:
   static constexpr int k = Kernel::vertices, size = Kernel::batch;
-  using Batch = ElementBatch<k, native_pack_width, size>;
+  using Batch = ElementBatch<k, size>;
   using T = typename Batch::T;
-  using Packs = PackedElements<k, Kernel::Rest::SizeAtCompileTime, native_pack_width>;
+  using Packs = PackedElements<k, Kernel::Rest::SizeAtCompileTime>;
 
   template <class Body>
   void for_each_batch(int first, int end, const Positions& x, const Body& body) const {

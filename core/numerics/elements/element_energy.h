@@ -47,7 +47,7 @@ void projected_hessian(const Kernel& kernel, const Eigen::Matrix<T, 3, 1>* d, co
 ///
 /// All are static, or const members of a kernel that holds numbers which all elements share. NaN values count
 /// as +∞.
-template <class Kernel, int W = native_pack_width>
+template <class Kernel>
 class ElementEnergy : public BoundEnergy {
  public:
   /// Vertices m×k of the elements, their rest data, and an order of the elements.
@@ -96,9 +96,9 @@ class ElementEnergy : public BoundEnergy {
 
  private:
   static constexpr int k = Kernel::vertices;
-  using Packs = PackedElements<k, Kernel::Rest::SizeAtCompileTime, W>;
+  using Packs = PackedElements<k, Kernel::Rest::SizeAtCompileTime>;
   using Elements = typename Packs::Elements;
-  using T = Pack<W>;
+  using T = typename Packs::T;
   using Vector = Eigen::Matrix<T, 3, 1>;
   using Hessian = SymmetricMatrix<3 * (k - 1), T>;
 

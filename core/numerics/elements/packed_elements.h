@@ -18,8 +18,9 @@ namespace drape {
 
 /// W elements of k vertices, evaluated together: gathers their vertices and scatters their derivatives.
 /// Element functions depend on the k - 1 differences d_i = x_i - x_0.
-template <int k, int W>
+template <int k>
 struct ElementPack {
+  static constexpr int W = native_pack_width;
   using T = Pack<W>;
   using Vector = Eigen::Matrix<T, 3, 1>;
 
@@ -94,11 +95,12 @@ inline Stencils in_order(const Stencils& elements, const ElementOrder& order) {
 
 /// The elements of an energy in packs of W with their rest numbers, chunk by chunk of an order, and sums over
 /// them. Energies that are NaN or -∞ count as +∞.
-template <int k, int rest_size, int W>
+template <int k, int rest_size>
 class PackedElements {
  public:
+  static constexpr int W = native_pack_width;
   using T = Pack<W>;
-  struct Elements : ElementPack<k, W> {
+  struct Elements : ElementPack<k> {
     T rest[rest_size];
   };
 

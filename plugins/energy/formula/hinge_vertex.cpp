@@ -19,7 +19,7 @@ class HingeFormulaKernel {
   static constexpr int vertices = 4, batch = Program::batch_packs;
   using Rest = RestHinge;
   using T = Pack<native_pack_width>;
-  using Batch = ElementBatch<4, native_pack_width, batch>;
+  using Batch = ElementBatch<4, batch>;
   using Vector = Batch::Vector;
 
   explicit HingeFormulaKernel(Programs programs) : programs_(std::move(programs)) {}

@@ -24,7 +24,7 @@ class StrainKernel {
   static constexpr int vertices = 3, batch = Program::batch_packs;
   using Rest = MaterialTriangle;
   using T = Pack<native_pack_width>;
-  using Batch = ElementBatch<3, native_pack_width, batch>;
+  using Batch = ElementBatch<3, batch>;
   using Vector = Batch::Vector;
 
   StrainKernel(Programs programs, bool with_stretches)

@@ -30,7 +30,7 @@ class BoundMidedgeBending final : public BoundEnergy {
 
  private:
   static constexpr int W = native_pack_width, most_vertices = 12;
-  using Angles = ElementPack<4, W>;
+  using Angles = ElementPack<4>;
   using Numbers = std::vector<Eigen::Vector3d>;
 
   struct Term {
