@@ -7,11 +7,15 @@
 #include "core/numerics/patterns/generate.h"
 
 namespace drape {
+namespace {
 
+/// Green strains of a triangle with these principal stretches, at an angle in the material's frame.
 Eigen::Vector3d green_strains(double s1, double s2, double angle) {
   const double c = std::cos(angle), s = std::sin(angle), e1 = 0.5 * (s1 * s1 - 1), e2 = 0.5 * (s2 * s2 - 1);
   return {c * c * e1 + s * s * e2, s * s * e1 + c * c * e2, c * s * (e1 - e2)};
 }
+
+}  // namespace
 
 bool is_isotropic(const std::vector<MaterialTriangle>& triangles, bool size_or_place,
                   const std::function<double(const Eigen::Vector3d&, const double*)>& energy) {

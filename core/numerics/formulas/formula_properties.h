@@ -18,9 +18,6 @@ namespace drape {
 bool is_isotropic(const std::vector<MaterialTriangle>& triangles, bool size_or_place,
                   const std::function<double(const Eigen::Vector3d& strains, const double* place)>& energy);
 
-/// Green strains of a triangle with these principal stretches, at an angle in the material's frame.
-Eigen::Vector3d green_strains(double s1, double s2, double angle);
-
 /// The static `role` of an energy's parameters, or the usual one of its kind.
 template <class Parameters>
 constexpr EnergyRole role_or(EnergyRole usual) {
