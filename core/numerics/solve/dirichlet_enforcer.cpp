@@ -29,18 +29,19 @@ constexpr int max_idle_moves = 4;
 
 }  // namespace
 
-void DirichletEnforcer::begin(const Positions& x) {
+void DirichletEnforcer::begin() {
   set_satisfied();
-  const auto& vertices = model_->dirichlet();
+  const auto& vertices = model().dirichlet();
   for (std::size_t k = 0; k < vertices.size(); ++k)
-    if (x.row(vertices[k].vertex) != vertices[k].target.transpose())
+    if (iterate_.x().row(vertices[k].vertex) != vertices[k].target.transpose())
       s_.unsatisfied.push_back(static_cast<int>(k));
 }
 
-Positions DirichletEnforcer::displacement_to_targets(const Positions& x) const {
+Positions DirichletEnforcer::displacement_to_targets() const {
+  const Positions& x = iterate_.x();
   Positions displacement = Positions::Zero(x.rows(), 3);
   for (int k : s_.unsatisfied) {
-    const DirichletVertex& d = model_->dirichlet()[k];
+    const DirichletVertex& d = model().dirichlet()[k];
     displacement.row(d.vertex) = d.target.transpose() - x.row(d.vertex);
   }
   return displacement;
@@ -48,7 +49,7 @@ Positions DirichletEnforcer::displacement_to_targets(const Positions& x) const {
 
 void DirichletEnforcer::set_satisfied() {
   s_ = {};
-  fixed_ = model_->fixed();
+  fixed_ = model().fixed();
   penalty_.reset();
 }
 
@@ -57,11 +58,11 @@ bool DirichletEnforcer::note_move(double fraction) {
   return s_.idle < max_idle_moves;
 }
 
-void DirichletEnforcer::begin_penalty(const std::string& blocked_by) {
-  s_.blocked_by = blocked_by;
+void DirichletEnforcer::begin_penalty() {
+  s_.blocked_by = iterate_.limited_by();
   // The number of the modulus, as in the supplement, but not below what the membrane would notice
   // (departure).
-  s_.stiffness = std::max(model_->material().mean_membrane_modulus(),
+  s_.stiffness = std::max(model().material().mean_membrane_modulus(),
                           min_initial_stiffness * membrane_stiffness() / smallest_mass());
   s_.best = INFINITY;
   s_.idle = 0;
@@ -69,24 +70,24 @@ void DirichletEnforcer::begin_penalty(const std::string& blocked_by) {
 }
 
 double DirichletEnforcer::membrane_stiffness() const {
-  return model_->material().mean_membrane_modulus() * model_->material().thickness;
+  return model().material().mean_membrane_modulus() * model().material().thickness;
 }
 
 double DirichletEnforcer::smallest_mass() const {
   double least = INFINITY;
-  for (int k : s_.unsatisfied) least = std::min(least, model_->masses()[model_->dirichlet()[k].vertex]);
+  for (int k : s_.unsatisfied) least = std::min(least, model().masses()[model().dirichlet()[k].vertex]);
   return least;
 }
 
 double DirichletEnforcer::patch_width() const {
-  return std::sqrt(smallest_mass() / (model_->material().density * model_->material().thickness));
+  return std::sqrt(smallest_mass() / (model().material().density * model().material().thickness));
 }
 
 void DirichletEnforcer::restore(const State& s) {
-  fixed_ = model_->fixed();
+  fixed_ = model().fixed();
   s_ = s;
   for (const int k : s_.unsatisfied)
-    if (static_cast<std::size_t>(k) >= model_->dirichlet().size())
+    if (static_cast<std::size_t>(k) >= model().dirichlet().size())
       throw std::runtime_error("the checkpoint has a pinned vertex that its load does not have");
   if (s.released) release();
 }
@@ -94,16 +95,16 @@ void DirichletEnforcer::restore(const State& s) {
 void DirichletEnforcer::release() {
   std::vector<PositionPenalty::Term> terms;
   for (int k : s_.unsatisfied) {
-    const DirichletVertex& d = model_->dirichlet()[k];
+    const DirichletVertex& d = model().dirichlet()[k];
     fixed_[d.vertex] = 0;
-    terms.push_back({d.vertex, d.target, s_.stiffness * model_->masses()[d.vertex]});
+    terms.push_back({d.vertex, d.target, s_.stiffness * model().masses()[d.vertex]});
   }
   penalty_ = std::make_unique<PositionPenalty>(std::move(terms));
 }
 
-void DirichletEnforcer::increase_penalty(const Positions& x, const std::string& blocked_by) {
-  s_.blocked_by = blocked_by;
-  const double distance = max_violation(x);
+void DirichletEnforcer::increase_penalty() {
+  s_.blocked_by = iterate_.limited_by();
+  const double distance = max_violation();
   if (distance <= max_remaining * s_.best && s_.best - distance > min_gain * patch_width()) {
     s_.best = distance;
     s_.idle = 0;
@@ -113,7 +114,7 @@ void DirichletEnforcer::increase_penalty(const Positions& x, const std::string& 
   if (s_.idle >= max_idle_doublings &&
       s_.stiffness * smallest_mass() > excess_stiffness * membrane_stiffness()) {
     s_.infeasible = true;
-    fixed_ = model_->fixed();
+    fixed_ = model().fixed();
     penalty_.reset();
     return;
   }
@@ -121,28 +122,28 @@ void DirichletEnforcer::increase_penalty(const Positions& x, const std::string& 
   release();
 }
 
-double DirichletEnforcer::violation(const Positions& x, int unsatisfied) const {
-  const DirichletVertex& d = model_->dirichlet()[unsatisfied];
-  return (x.row(d.vertex) - d.target.transpose()).norm();
+double DirichletEnforcer::violation(int unsatisfied) const {
+  const DirichletVertex& d = model().dirichlet()[unsatisfied];
+  return (iterate_.x().row(d.vertex) - d.target.transpose()).norm();
 }
 
-double DirichletEnforcer::max_violation(const Positions& x) const {
+double DirichletEnforcer::max_violation() const {
   double most = 0;
-  for (int k : s_.unsatisfied) most = std::max(most, violation(x, k));
+  for (int k : s_.unsatisfied) most = std::max(most, violation(k));
   return most;
 }
 
-std::string DirichletEnforcer::message(const Positions& x) const {
+std::string DirichletEnforcer::message() const {
   std::map<int, int> worst_of_pin;
   for (int k : s_.unsatisfied) {
-    const auto [it, first] = worst_of_pin.try_emplace(model_->dirichlet()[k].pin, k);
-    if (!first && violation(x, k) > violation(x, it->second)) it->second = k;
+    const auto [it, first] = worst_of_pin.try_emplace(model().dirichlet()[k].pin, k);
+    if (!first && violation(k) > violation(it->second)) it->second = k;
   }
   std::string text;
   for (const auto& [pin, k] : worst_of_pin) {
     text += (text.empty() ? "" : ", ") + ("pin " + std::to_string(pin)) + " stopped " +
-            three_digits(violation(x, k)) + " m short of its target (vertex " +
-            std::to_string(model_->dirichlet()[k].vertex) + ")";
+            three_digits(violation(k)) + " m short of its target (vertex " +
+            std::to_string(model().dirichlet()[k].vertex) + ")";
   }
   return text + (s_.blocked_by.empty() ? "" : ", blocked by " + s_.blocked_by);
 }

@@ -6,6 +6,7 @@
 
 #include "core/numerics/model/level_model.h"
 #include "core/numerics/model/position_penalty.h"
+#include "core/numerics/step/iterate.h"
 
 namespace drape {
 
@@ -17,11 +18,9 @@ namespace drape {
 /// targets are reached the vertices are fixed and the penalty is dropped.
 class DirichletEnforcer {
  public:
-  /// Refers to `model` until set_model replaces it.
-  explicit DirichletEnforcer(const LevelModel& model) : model_(&model) { fixed_ = model.fixed(); }
-  /// Replaces the model by that of the same level under another load. Call begin() next, which finds the
-  /// targets that x has not reached.
-  void set_model(const LevelModel& model) { model_ = &model; }
+  /// Refers to the iterate. Once that has the model of another load, call begin(), which finds the targets
+  /// that x has not reached.
+  explicit DirichletEnforcer(const Iterate& iterate) : iterate_(iterate), fixed_(model().fixed()) {}
 
   /// Everything that does not follow from the model.
   struct State {
@@ -40,9 +39,9 @@ class DirichletEnforcer {
   void restore(const State& state);
 
   /// Starts over at x: the model has new targets, or a new level begins.
-  void begin(const Positions& x);
+  void begin();
   /// n×3 [m]: from x to the targets for vertices that are not there, zero elsewhere.
-  Positions displacement_to_targets(const Positions& x) const;
+  Positions displacement_to_targets() const;
   bool active() const { return !s_.unsatisfied.empty() && !s_.infeasible; }
   /// Whether some targets were found to be out of reach. Their vertices stay fixed where they are.
   bool infeasible() const { return s_.infeasible; }
@@ -55,31 +54,32 @@ class DirichletEnforcer {
 
   /// Records that x has been set to all targets: fixes all Dirichlet vertices and drops the penalty.
   void set_satisfied();
-  /// Releases the unsatisfied vertices and adds the penalty; `blocked_by` names what stopped the filtered
-  /// move, and may be empty.
-  void begin_penalty(const std::string& blocked_by);
+  /// Releases the unsatisfied vertices and adds the penalty.
+  void begin_penalty();
   /// Doubles the penalty. Once doublings have long stopped reducing the distance, fixes the vertices where
   /// they are instead: the targets are infeasible.
-  void increase_penalty(const Positions& x, const std::string& blocked_by);
+  void increase_penalty();
 
   /// One flag a vertex: 1 where it is fixed now.
   const std::vector<char>& fixed() const { return fixed_; }
   /// The penalty; null where there is none.
   const BoundEnergy* penalty() const { return penalty_.get(); }
   /// Largest distance of a Dirichlet vertex from its target [m].
-  double max_violation(const Positions& x) const;
+  double max_violation() const;
   /// "pin 0 stopped 0.012 m short of its target (vertex 7), blocked by …": each pin's farthest vertex.
-  std::string message(const Positions& x) const;
+  std::string message() const;
 
  private:
   /// Releases the unsatisfied vertices to a penalty of the present stiffness.
   void release();
-  double violation(const Positions& x, int unsatisfied) const;
+  double violation(int unsatisfied) const;
   double membrane_stiffness() const;  // [N/m]
   double smallest_mass() const;       // of the unsatisfied vertices [kg]
   double patch_width() const;         // of the cloth that one such vertex stands for [m]
 
-  const LevelModel* model_;
+  const LevelModel& model() const { return iterate_.model(); }
+
+  const Iterate& iterate_;
   std::vector<char> fixed_;
   State s_;                                   // all but `released`
   std::unique_ptr<PositionPenalty> penalty_;  // of released vertices

@@ -13,7 +13,7 @@ constexpr double min_gap_of_move = 2e-6;
 }  // namespace
 
 void DirichletPredictor::enforce() {
-  if (iterate_.objective().enforces_dirichlet()) enforcer_.begin(iterate_.x());
+  if (iterate_.objective().enforces_dirichlet()) enforcer_.begin();
   update_constraints();
   if (enforcer_.active()) begin_penalty_unless_moving(predict(false, true));
 }
@@ -31,7 +31,7 @@ void DirichletPredictor::begin_penalty_unless_moving(double fraction) {
 }
 
 void DirichletPredictor::begin_penalty() {
-  enforcer_.begin_penalty(iterate_.limited_by());
+  enforcer_.begin_penalty();
   update_constraints();
 }
 
@@ -40,7 +40,7 @@ void DirichletPredictor::increase_penalty() {
   if (enforcer_.is_moving()) {
     begin_penalty();
   } else {
-    enforcer_.increase_penalty(iterate_.x(), iterate_.limited_by());
+    enforcer_.increase_penalty();
     update_constraints();
   }
 }
@@ -56,7 +56,7 @@ double DirichletPredictor::predict(bool whole, bool with_inertia) {
 
 double DirichletPredictor::move(bool whole) {
   Objective& objective = iterate_.objective();
-  const Positions displacement = enforcer_.displacement_to_targets(iterate_.x());
+  const Positions displacement = enforcer_.displacement_to_targets();
   Positions force, response;
   {
     PhaseTimer t(iterate_.result().seconds_by_phase, "solve");

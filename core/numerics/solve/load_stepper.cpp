@@ -31,7 +31,7 @@ constexpr const char* load_phase = "load stepping";
 
 }  // namespace
 
-LoadStepper::LoadStepper(LoadStepping* load_stepping, Iterate& iterate, DirichletEnforcer& dirichlet,
+LoadStepper::LoadStepper(LoadStepping* load_stepping, Iterate& iterate, const DirichletEnforcer& dirichlet,
                          Observer& observer)
     : load_stepping_(load_stepping), iterate_(iterate), dirichlet_(dirichlet), observer_(observer) {}
 
@@ -76,8 +76,7 @@ void LoadStepper::advance(bool at_equilibrium) {
         "what remains of an increment counts as none";
 }
 
-/// Gives the iterate and the enforcer the model of the load that was reached. The cloth was at `from` when
-/// the load changed.
+/// Gives the iterate the model of the load that was reached. The cloth was at `from` when the load changed.
 void LoadStepper::update_model(const Positions& from) {
   std::shared_ptr<const LevelModel> model;
   {
@@ -85,7 +84,6 @@ void LoadStepper::update_model(const Positions& from) {
     model = load_stepping_->model(iterate_.result().level);
   }
   iterate_.set_model(std::move(model), from);
-  dirichlet_.set_model(iterate_.model());
 }
 
 /// Largest extrapolation factor: smaller the more equilibrium has corrected the last prediction.
@@ -160,7 +158,7 @@ void LoadStepper::report_increment() {
   row.iterations = result.iterations - s_.start.iterations;
   row.energy = iterate_.energy_without_friction();
   row.force_residual = result.force_residual;
-  row.max_constraint_violation = dirichlet_.max_violation(result.x);
+  row.max_constraint_violation = dirichlet_.max_violation();
   observer_.increment_finished(row, result.x);
 }
 

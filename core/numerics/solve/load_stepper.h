@@ -34,7 +34,7 @@ class LoadStepper {
   void restore(const State& state) { s_ = state; }
 
   /// Refers to all arguments; without load stepping (null) there are no increments.
-  LoadStepper(LoadStepping* load_stepping, Iterate& iterate, DirichletEnforcer& dirichlet,
+  LoadStepper(LoadStepping* load_stepping, Iterate& iterate, const DirichletEnforcer& dirichlet,
               Observer& observer);
 
   /// Whether increments remain.
@@ -73,7 +73,7 @@ class LoadStepper {
 
   LoadStepping* load_stepping_;
   Iterate& iterate_;
-  DirichletEnforcer& dirichlet_;
+  const DirichletEnforcer& dirichlet_;
   Observer& observer_;
   State s_;
   std::string limit_text_;

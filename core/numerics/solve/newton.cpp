@@ -44,7 +44,7 @@ class Newton {
         step_(
             iterate_, check_, parameters, [this](int k) { report(k); }, [this] { return is_to_end(); },
             run.hierarchy),
-        dirichlet_(objective.model()),
+        dirichlet_(iterate_),
         predictor_(dirichlet_, iterate_, step_, run.load_stepping != nullptr),
         load_(run.load_stepping, iterate_, dirichlet_, run.observer) {
     result_.x = std::move(x);
@@ -236,7 +236,7 @@ class Newton {
   void note_unreached_targets() {
     constexpr const char* begin = "at pseudo-time ";
     if (dirichlet_.infeasible() && result_.message.find(begin) == std::string::npos)
-      add_to_message(begin + three_digits(*load_.time()) + " " + dirichlet_.message(iterate_.x()));
+      add_to_message(begin + three_digits(*load_.time()) + " " + dirichlet_.message());
   }
 
   void increase_penalty() {
@@ -260,7 +260,7 @@ class Newton {
     add_to_message(end.message);
     // At a start without finite forces pins have not been enforced.
     if (failed && std::isfinite(result_.force_residual) && (dirichlet_.active() || dirichlet_.infeasible()))
-      add_to_message(dirichlet_.message(result_.x));
+      add_to_message(dirichlet_.message());
     add_to_message(end.after_pins);
     if (failed) add_to_message(weak_barrier(f_.model().with_stiffness(f_.contacts().stiffness()), result_.x));
     load_.store_progress(result_);

@@ -60,7 +60,7 @@ struct StepperCase {
   NewtonProblem problem{{energy_of(Wells(NewtonProblem::rest().array() + 0.3, 10, 0))}};
   FakeLoads loads;
   IncrementRecorder observer;
-  DirichletEnforcer dirichlet{problem.model};
+  DirichletEnforcer dirichlet{problem.iterate};
   LoadStepper stepper{&loads, problem.iterate, dirichlet, observer};
 
   StepperCase() { loads.unchanged = &problem.model; }
