@@ -26,17 +26,102 @@ constexpr double min_initial_stiffness = 0.1;
 constexpr double min_move = 5e-3;
 /// … and after so many of them in a row the penalty takes over.
 constexpr int max_idle_moves = 4;
+/// Below this gap, as a fraction of the bounding box diagonal, pins move on only by their penalty: each move
+/// takes most of a gap, and gaps far below this one leave the line search no descent.
+constexpr double min_gap_of_move = 2e-6;
 
 }  // namespace
 
-void DirichletEnforcer::begin() {
-  set_satisfied();
-  const auto& vertices = model().dirichlet();
-  for (std::size_t k = 0; k < vertices.size(); ++k)
-    if (iterate_.x().row(vertices[k].vertex) != vertices[k].target.transpose())
-      s_.unsatisfied.push_back(static_cast<int>(k));
+DirichletEnforcer::DirichletEnforcer(Iterate& iterate, NewtonStep& step, bool in_parts)
+    : iterate_(iterate), step_(step), in_parts_(in_parts), fixed_(model().fixed()) {
+  update_constraints();
 }
 
+void DirichletEnforcer::restore(const State& s) {
+  fixed_ = model().fixed();
+  s_ = s;
+  for (const int k : s_.unsatisfied)
+    if (static_cast<std::size_t>(k) >= model().dirichlet().size())
+      throw std::runtime_error("the checkpoint has a pinned vertex that its load does not have");
+  if (s.released) release();
+  update_constraints();
+}
+
+void DirichletEnforcer::enforce() {
+  if (iterate_.objective().enforces_dirichlet()) {
+    set_satisfied();
+    const auto& vertices = model().dirichlet();
+    for (std::size_t k = 0; k < vertices.size(); ++k)
+      if (iterate_.x().row(vertices[k].vertex) != vertices[k].target.transpose())
+        s_.unsatisfied.push_back(static_cast<int>(k));
+  }
+  update_constraints();
+  if (active()) begin_penalty_unless_moving(predict(false, true));
+}
+
+void DirichletEnforcer::move_on() {
+  // The inertia of steps that contact has made short would hold the cloth back, and the pins would run into
+  // it.
+  begin_penalty_unless_moving(predict(false, false));
+}
+
+void DirichletEnforcer::increase_penalty() {
+  if (predict(true, true) == 1) return;
+  if (is_moving())
+    begin_penalty();
+  else
+    double_penalty();
+}
+
+/// Fixes all Dirichlet vertices where x has them, at their targets, and drops the penalty.
+void DirichletEnforcer::set_satisfied() {
+  s_ = {};
+  fixed_ = model().fixed();
+  penalty_.reset();
+}
+
+/// Moves Dirichlet vertices towards their targets and the other vertices by the linearised response, as far
+/// as limits and contact allow; with `whole`, only if the whole motion is feasible. Returns the feasible
+/// fraction.
+double DirichletEnforcer::predict(bool whole, bool with_inertia) {
+  const double fraction = step_.factorise(with_inertia) ? move(whole) : 0;
+  update_constraints();
+  return fraction;
+}
+
+double DirichletEnforcer::move(bool whole) {
+  Objective& objective = iterate_.objective();
+  const Positions displacement = displacement_to_targets();
+  Positions force, response;
+  {
+    PhaseTimer t(iterate_.result().seconds_by_phase, "solve");
+    step_.factor().matrix().multiply(displacement, force);
+    for (const DirichletVertex& d : model().dirichlet()) force.row(d.vertex).setZero();
+    step_.factor().solve(force, response);
+  }
+  const Positions direction = displacement - response;
+
+  Positions trial = iterate_.x() + direction, gradient;
+  model().set_dirichlet(trial);
+  const StepLimit limit = iterate_.max_step(trial);
+  iterate_.set_limited_by(limit.by);
+  PhaseTimer t(iterate_.result().seconds_by_phase, "gradient");
+  double fraction = limit.fraction;
+  while (fraction > LineSearch::min_step_length) {
+    if (fraction < 1) trial = iterate_.x() + fraction * direction;
+    if (std::isfinite(objective.gradient(trial, gradient))) break;
+    fraction *= 0.5;
+  }
+  if (fraction == 1) {
+    set_satisfied();
+    iterate_.move_to(trial);
+  } else if (!whole && fraction > LineSearch::min_step_length) {
+    iterate_.move_to(trial);
+  }
+  return fraction;
+}
+
+/// n×3 [m]: from x to the targets for unsatisfied vertices, zero elsewhere.
 Positions DirichletEnforcer::displacement_to_targets() const {
   const Positions& x = iterate_.x();
   Positions displacement = Positions::Zero(x.rows(), 3);
@@ -47,12 +132,14 @@ Positions DirichletEnforcer::displacement_to_targets() const {
   return displacement;
 }
 
-void DirichletEnforcer::set_satisfied() {
-  s_ = {};
-  fixed_ = model().fixed();
-  penalty_.reset();
+void DirichletEnforcer::begin_penalty_unless_moving(double fraction) {
+  if (fraction == 1) return;
+  const bool moves = in_parts_ && note_move(fraction) && !iterate_.has_gap_below(min_gap_of_move);
+  if (!moves) begin_penalty();
 }
 
+/// Records a move by this fraction of the way that remained. Returns false once moves have long gained
+/// nothing.
 bool DirichletEnforcer::note_move(double fraction) {
   s_.idle = fraction < min_move ? s_.idle + 1 : 0;
   return s_.idle < max_idle_moves;
@@ -67,6 +154,41 @@ void DirichletEnforcer::begin_penalty() {
   s_.best = INFINITY;
   s_.idle = 0;
   release();
+  update_constraints();
+}
+
+/// Once doublings have long stopped reducing the distance, fixes the vertices where they are instead: the
+/// targets are infeasible.
+void DirichletEnforcer::double_penalty() {
+  s_.blocked_by = iterate_.limited_by();
+  const double distance = max_violation();
+  if (distance <= max_remaining * s_.best && s_.best - distance > min_gain * patch_width()) {
+    s_.best = distance;
+    s_.idle = 0;
+  } else {
+    ++s_.idle;
+  }
+  if (s_.idle >= max_idle_doublings &&
+      s_.stiffness * smallest_mass() > excess_stiffness * membrane_stiffness()) {
+    s_.infeasible = true;
+    fixed_ = model().fixed();
+    penalty_.reset();
+  } else {
+    s_.stiffness *= 2;
+    release();
+  }
+  update_constraints();
+}
+
+/// Releases the unsatisfied vertices to a penalty of the present stiffness.
+void DirichletEnforcer::release() {
+  std::vector<PositionPenalty::Term> terms;
+  for (int k : s_.unsatisfied) {
+    const DirichletVertex& d = model().dirichlet()[k];
+    fixed_[d.vertex] = 0;
+    terms.push_back({d.vertex, d.target, s_.stiffness * model().masses()[d.vertex]});
+  }
+  penalty_ = std::make_unique<PositionPenalty>(std::move(terms));
 }
 
 double DirichletEnforcer::membrane_stiffness() const {
@@ -81,45 +203,6 @@ double DirichletEnforcer::smallest_mass() const {
 
 double DirichletEnforcer::patch_width() const {
   return std::sqrt(smallest_mass() / (model().material().density * model().material().thickness));
-}
-
-void DirichletEnforcer::restore(const State& s) {
-  fixed_ = model().fixed();
-  s_ = s;
-  for (const int k : s_.unsatisfied)
-    if (static_cast<std::size_t>(k) >= model().dirichlet().size())
-      throw std::runtime_error("the checkpoint has a pinned vertex that its load does not have");
-  if (s.released) release();
-}
-
-void DirichletEnforcer::release() {
-  std::vector<PositionPenalty::Term> terms;
-  for (int k : s_.unsatisfied) {
-    const DirichletVertex& d = model().dirichlet()[k];
-    fixed_[d.vertex] = 0;
-    terms.push_back({d.vertex, d.target, s_.stiffness * model().masses()[d.vertex]});
-  }
-  penalty_ = std::make_unique<PositionPenalty>(std::move(terms));
-}
-
-void DirichletEnforcer::increase_penalty() {
-  s_.blocked_by = iterate_.limited_by();
-  const double distance = max_violation();
-  if (distance <= max_remaining * s_.best && s_.best - distance > min_gain * patch_width()) {
-    s_.best = distance;
-    s_.idle = 0;
-  } else {
-    ++s_.idle;
-  }
-  if (s_.idle >= max_idle_doublings &&
-      s_.stiffness * smallest_mass() > excess_stiffness * membrane_stiffness()) {
-    s_.infeasible = true;
-    fixed_ = model().fixed();
-    penalty_.reset();
-    return;
-  }
-  s_.stiffness *= 2;
-  release();
 }
 
 double DirichletEnforcer::violation(int unsatisfied) const {

@@ -5,7 +5,7 @@
 #include <optional>
 
 #include "core/kernel/files/message_text.h"
-#include "core/numerics/solve/dirichlet_predictor.h"
+#include "core/numerics/solve/dirichlet_enforcer.h"
 #include "core/numerics/solve/newton_report.h"
 #include "core/numerics/solve/newton_state.h"
 #include "core/numerics/solve/start_fault.h"
@@ -44,12 +44,10 @@ class Newton {
         step_(
             iterate_, check_, parameters, [this](int k) { report(k); }, [this] { return is_to_end(); },
             run.hierarchy),
-        dirichlet_(iterate_),
-        predictor_(dirichlet_, iterate_, step_, run.load_stepping != nullptr),
+        dirichlet_(iterate_, step_, run.load_stepping != nullptr),
         load_(run.load_stepping, iterate_, dirichlet_, run.observer) {
     result_.x = std::move(x);
     result_.level = f_.model().level().index;
-    predictor_.update_constraints();
   }
 
   LevelResult run() {
@@ -89,7 +87,7 @@ class Newton {
     else
       result_.force_residual = std::numeric_limits<double>::quiet_NaN();
     if (!std::isfinite(iterate_.force_residual())) return false;
-    predictor_.enforce();
+    dirichlet_.enforce();
     check_.restart_drift();  // what pins carry along has not drifted
     return true;
   }
@@ -118,7 +116,6 @@ class Newton {
     switched_to_plain_ = s.switched_to_plain;
     if (switched_to_plain_) f_.switch_to_plain();
     dirichlet_.restore(s.dirichlet);
-    predictor_.update_constraints();
     f_.contacts().restore(s.contacts, iterate_.x());
     iterate_.evaluate();
     step_.restore(s.step);
@@ -135,7 +132,7 @@ class Newton {
         increase_penalty();
         at_floor = false;
       }
-      while (step_.factor().fault().empty() && dirichlet_.penalty() && check_.is_within(near_equilibrium))
+      while (step_.factor().fault().empty() && dirichlet_.has_penalty() && check_.is_within(near_equilibrium))
         increase_penalty();
       if (!step_.factor().fault().empty()) return End{Outcome::stalled, step_.factor().fault()};
       const bool in_tolerance = !dirichlet_.active() && check_.in_tolerance();
@@ -217,7 +214,7 @@ class Newton {
     step_.controller().end_limit();
     load_.advance(at_equilibrium);
     check_.restart();
-    predictor_.enforce();
+    dirichlet_.enforce();
     check_.restart_drift();
   }
 
@@ -226,7 +223,7 @@ class Newton {
   void move_on_if_relaxed() {
     const bool relaxed = step_.step_length() == 1 && iterate_.force_residual() <= relaxed_residual;
     if (!relaxed && load_.steps() % max_steps_between_moves != 0) return;
-    predictor_.move_on();
+    dirichlet_.move_on();
     check_.restart();
     check_.restart_drift();
   }
@@ -241,7 +238,7 @@ class Newton {
 
   void increase_penalty() {
     check_.restart();
-    predictor_.increase_penalty();
+    dirichlet_.increase_penalty();
   }
 
   void report(int iteration) {
@@ -279,7 +276,6 @@ class Newton {
   EquilibriumCheck check_;
   NewtonStep step_;
   DirichletEnforcer dirichlet_;
-  DirichletPredictor predictor_;
   LoadStepper load_;
   bool switched_to_plain_ = false;  // the proxy was replaced by the plain energy
   bool stuck_ = false;  // the last step found no descent, at the rounding floor or with pins under way

@@ -58,9 +58,12 @@ struct IncrementRecorder : Observer {
 
 struct StepperCase {
   NewtonProblem problem{{energy_of(Wells(NewtonProblem::rest().array() + 0.3, 10, 0))}};
+  NewtonParameters parameters;
+  EquilibriumCheck check{problem.iterate, parameters};
+  NewtonStep step{problem.iterate, check, parameters, [](int) {}, [] { return false; }};
+  DirichletEnforcer dirichlet{problem.iterate, step, true};
   FakeLoads loads;
   IncrementRecorder observer;
-  DirichletEnforcer dirichlet{problem.iterate};
   LoadStepper stepper{&loads, problem.iterate, dirichlet, observer};
 
   StepperCase() { loads.unchanged = &problem.model; }
