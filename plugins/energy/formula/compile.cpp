@@ -1,3 +1,4 @@
+#include <iterator>
 #include <map>
 #include <string>
 #include <vector>
@@ -67,7 +68,7 @@ class Compiler {
 
   /// All symbols of the element are inputs, none of them a variable.
   Compiler(const Law& law, const Material& material) : law_(law), symbols_(symbols_of(law.kind)) {
-    for (std::size_t i = 0; i < symbols_.size(); ++i) {
+    for (int i = 0; i < std::ssize(symbols_); ++i) {
       const auto value = symbols_[i].value;
       define(symbols_[i].name, value ? J(value(MaterialSymbols(material))) : J(read(i)));
     }
@@ -75,15 +76,9 @@ class Compiler {
   }
 
   void define(const std::string& name, const J& jet) { names_[name] = jet; }
-  template <class Input>
-  Term read(Input input) {
-    return graph_.input(static_cast<int>(input));
-  }
+  Term read(int input) { return graph_.input(input); }
   /// Makes an input variable i.
-  template <class Input>
-  J variable(Input input, int i) {
-    return names_[symbols_[static_cast<std::size_t>(input)].name] = J::variable(read(input), i);
-  }
+  J variable(int input, int i) { return names_[symbols_[input].name] = J::variable(read(input), i); }
 
   Programs compile() {
     J energy(0.0);
@@ -130,7 +125,7 @@ class Compiler {
 template <int N>
 void define_strains(Compiler<N>& c) {
   using I = TriangleInput;
-  for (const I strain : {I::g11, I::g22, I::g12}) c.variable(strain, static_cast<int>(strain));
+  for (const int strain : {I::g11, I::g22, I::g12}) c.variable(strain, strain);
   const auto ratio = area_ratio<N>(c.read(I::g11), c.read(I::g22), c.read(I::g12), c.read(I::det));
   c.define("J", ratio);
   c.define("log J", log(ratio));

@@ -59,7 +59,7 @@ class HingeFormulaKernel {
   [[gnu::noinline, gnu::flatten]] void run(const Batch& packs, const Program& program, T* registers,
                                            Vector (*kept)[3]) const {
     using I = HingeInput;
-    constexpr I inputs[] = {I::rest, I::length, I::h1, I::h2, I::area, I::u, I::v, I::w};
+    constexpr int inputs[] = {I::rest, I::length, I::h1, I::h2, I::area, I::u, I::v, I::w};
     constexpr int numbers = Rest::SizeAtCompileTime;
     int of_rest[numbers];
     for (int r = 0; r < numbers; ++r) of_rest[r] = program.register_of(inputs[r]) * batch;

@@ -41,9 +41,12 @@ std::string name_of(ElementKind kind);
 
 /// Inputs of a program, numbered as the kind's symbols_of. In place of J a triangle has det C; that of theta
 /// is not read.
-enum class TriangleInput { g11, g22, g12, s1, s2, det, area, u, v, w };
-enum class HingeInput { theta, rest, bend, length, h1, h2, area, u, v, w };
-enum class VertexInput { x, y, z, u, v, w, area, mass };
+struct TriangleInput {
+  enum : int { g11, g22, g12, s1, s2, det, area, u, v, w };
+};
+struct HingeInput {
+  enum : int { theta, rest, bend, length, h1, h2, area, u, v, w };
+};
 
 /// A name that a formula may use.
 struct Symbol {

@@ -72,7 +72,7 @@ class StrainKernel {
   [[gnu::noinline, gnu::flatten]] void read(const Batch& packs, const Program& program, T* registers,
                                             Deformation* kept) const {
     using I = TriangleInput;
-    const auto of = [&](I input) { return registers + program.register_of(input) * batch; };
+    const auto of = [&](int input) { return registers + program.register_of(input) * batch; };
     T *const g11 = of(I::g11), *const g22 = of(I::g22), *const g12 = of(I::g12), *const det = of(I::det),
              *const s1 = of(I::s1), *const s2 = of(I::s2);
     T* const of_rest[] = {of(I::area), of(I::u), of(I::v), of(I::w)};

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <iterator>
 #include <vector>
 
 #include "plugins/energy/formula/law.h"
@@ -20,16 +21,9 @@ class Program {
   explicit Program(const std::vector<Term>& outputs);
 
   /// Whether the program reads an input.
-  template <class Input>
-  bool reads(Input input) const {
-    return register_of(input) < most_registers;
-  }
+  bool reads(int input) const { return register_of(input) < most_registers; }
   /// The register of an input, to be filled before run; the last slot for one that is not read.
-  template <class Input>
-  int register_of(Input input) const {
-    const auto number = static_cast<std::size_t>(input);
-    return number < inputs_.size() ? inputs_[number] : most_registers;
-  }
+  int register_of(int input) const { return input < std::ssize(inputs_) ? inputs_[input] : most_registers; }
   /// The register of an output after run.
   int output(int i) const { return outputs_[i]; }
   /// An output's packs after run with batch_packs.
