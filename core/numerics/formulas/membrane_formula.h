@@ -119,7 +119,7 @@ class MembraneFormula final : public Energy {
     if (reads(law) & Trace::stretches) {
       const std::vector<MaterialTriangle> triangles = material_triangles(level);
       return bind_stretches(PrincipalFormula<Law>{law}, level,
-                            [&](int t) { return Eigen::Vector4d(triangles[t].tail<4>()); });
+                            [&](int t) { return Eigen::Vector4d(triangles[t].template tail<4>()); });
     }
     return reads(law) & Trace::place ? bind_with<8>(law, level) : bind_with<5>(law, level);
   }
