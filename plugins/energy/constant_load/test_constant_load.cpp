@@ -27,8 +27,3 @@ TEST_CASE("constant_load: forces by area and on the nearest vertex") {
   CHECK(bound->stencils().rows() == 0);
   CHECK(load.role() == EnergyRole::external);
 }
-
-TEST_CASE("constant_load: nothing by default") {
-  const Level level = Level::of(0, grid({2, 3}, 5, 4, Diagonals::one_way));
-  CHECK(gradient_of(*ConstantLoad().bind(level, Material()), level.rest.vertices).norm() == 0);
-}
