@@ -45,22 +45,16 @@ class TargetObjective : public Objective {
 
   /// Partitions the triangles at y into F and the violating ones; returns the number of violating ones.
   int partition_by_strain_limit(const Positions& y) {
-    violating_.assign(model().level().triangle_count(), 0);
+    std::vector<char> violating(model().level().triangle_count(), 0);
     for (const BoundEnergy* energy : model().limits())
       if (const StretchLimited* limit = energy->stretch_limit())
-        for (const StretchedTriangle& t : limit->violations(y)) violating_[t.triangle] = 1;
-    const int count = static_cast<int>(std::count(violating_.begin(), violating_.end(), 1));
+        for (const StretchedTriangle& t : limit->violations(y)) violating[t.triangle] = 1;
+    const int count = static_cast<int>(std::count(violating.begin(), violating.end(), 1));
     restricted_limits_.clear();
-    std::vector<const BoundEnergy*> limits;
-    for (const BoundEnergy* energy : model().limits()) {
-      const StretchLimited* limit = energy->stretch_limit();
-      if (limit && count > 0) {
-        restricted_limits_.push_back(limit->restricted(violating_));
-        limits.push_back(restricted_limits_.back().get());
-      } else {
-        limits.push_back(energy);
-      }
-    }
+    std::vector<const BoundEnergy*> limits = model().limits();
+    for (const BoundEnergy*& energy : limits)
+      if (const StretchLimited* limit = energy->stretch_limit(); limit && count > 0)
+        energy = restricted_limits_.emplace_back(limit->restricted(violating)).get();
     set_limits(limits);
     smooth_changed();
     const Material& material = model().material();
@@ -68,7 +62,7 @@ class TargetObjective : public Objective {
     slots_.reset();
     if (count > 0) {
       penalty_ = make_stretch_penalty(model().level(), material.thickness, material.mean_membrane_modulus(),
-                                      violating_);
+                                      violating);
       slots_ = std::make_unique<BlockSlots>(*pattern_, penalty_->stencils());
     }
     return count;
@@ -122,7 +116,6 @@ class TargetObjective : public Objective {
   Positions target_;
   std::shared_ptr<const BlockPattern> pattern_;
   BlockMatrix matrix_;
-  std::vector<char> violating_;
   std::vector<std::unique_ptr<BoundEnergy>> restricted_limits_;
   std::unique_ptr<BoundEnergy> penalty_;
   std::unique_ptr<BlockSlots> slots_;
