@@ -4,6 +4,7 @@
 
 #include "core/numerics/elements/jet.h"
 #include "plugins/energy/formula/program.h"
+#include "tests/support/evaluate.h"
 
 using namespace drape;
 using namespace drape::formula;
@@ -178,22 +179,16 @@ TEST_CASE("derivatives are exact for every function") {
       "tanh(x*y)",     "x^3*y^-2",          "(x + y)^2.5",        "(x*y)^(z)",      "2^(x*y)",
       "x^0.5*y^1.5",   "abs(x*y - z)",      "min(x*y, z, x + 4)", "max(x*y, z)",    "if(x > y, x*z, y*z^2)",
       "-x*y + -(z*x)", "(x + y)/(z*x + 2)", "sign(x)*x*y",        "x/3 + 2/x",      "1/(x*y)^3"};
-  const double p[3] = {0.7, 1.3, 0.9};
+  const Eigen::Vector3d p(0.7, 1.3, 0.9);
   for (const std::string& energy : energies) {
     INFO(energy);
-    const auto moved = [&](int i, double h) {
-      double q[3] = {p[0], p[1], p[2]};
-      q[i] += h;
-      return at(energy, q[0], q[1], q[2]);
-    };
-    const std::vector<double> own = at(energy, p[0], p[1], p[2]);
-    constexpr double h = 1e-3;
+    const auto outputs = [&](const Eigen::Vector3d& q) { return at(energy, q[0], q[1], q[2]); };
+    const std::vector<double> own = outputs(p);
+    const Eigen::MatrixXd slopes = differences(outputs, p, 1e-3);
     for (int i = 0; i < 3; ++i) {
-      const auto a = moved(i, -2 * h), b = moved(i, -h), c = moved(i, h), d = moved(i, 2 * h);
-      const auto slope = [&](int k) { return (8 * (c[k] - b[k]) - (d[k] - a[k])) / (12 * h); };
-      CHECK(own[1 + i] == Approx(slope(0)).epsilon(1e-8).margin(1e-9));
+      CHECK(own[1 + i] == Approx(slopes(0, i)).epsilon(1e-8).margin(1e-9));
       for (int j = 0; j < 3; ++j)
-        CHECK(own[4 + Jet<3, double>::index(i, j)] == Approx(slope(1 + j)).epsilon(1e-8).margin(1e-9));
+        CHECK(own[4 + Jet<3, double>::index(i, j)] == Approx(slopes(1 + j, i)).epsilon(1e-8).margin(1e-9));
     }
   }
 }
