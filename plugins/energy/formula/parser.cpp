@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 
@@ -162,15 +163,13 @@ class Parser {
   template <class Operand>
   int from_left(std::initializer_list<const char*> words, const Operand& operand) {
     int left = operand();
-    for (;;) {
-      bool found = false;
-      for (const char* word : words) found = found || is(word);
-      if (!found) return left;
+    while (std::ranges::any_of(words, [this](const char* word) { return is(word); })) {
       const Token word = token_;
       advance();
       const int right = operand();
       left = call(word, {left, right});
     }
+    return left;
   }
 
   int sign() {

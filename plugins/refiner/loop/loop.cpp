@@ -70,16 +70,14 @@ class LoopRefiner : public Refiner {
     return corner;
   }
 
-  /// Weight β of each of `valence` neighbours of an inner vertex (Warren 1995).
-  static double neighbour_weight(int valence) { return valence == 3 ? 3.0 / 16 : 3.0 / (8.0 * valence); }
-
  private:
   using Weights = std::vector<Eigen::Triplet<double>>;
 
   static void add_inner_vertex(int v, const Topology& topology, Weights& weights) {
     const AdjacencyList& neighbours = topology.vertex_vertices;
-    const double beta = neighbour_weight(neighbours.size(v));
-    weights.emplace_back(v, v, 1 - neighbours.size(v) * beta);
+    const int valence = neighbours.size(v);
+    const double beta = valence == 3 ? 3.0 / 16 : 3.0 / (8.0 * valence);  // Warren 1995
+    weights.emplace_back(v, v, 1 - valence * beta);
     for (const int* u = neighbours.begin(v); u != neighbours.end(v); ++u) weights.emplace_back(v, *u, beta);
   }
 
