@@ -111,13 +111,6 @@ Term operator-(const Term& a) {
   return apply(Op::negate, a);
 }
 
-std::size_t TermGraph::Hash::operator()(const Key& key) const {
-  std::size_t hash = static_cast<std::size_t>(key.op);
-  for (const std::int64_t word : key.words)
-    hash = (hash ^ static_cast<std::size_t>(word)) * 0x9e3779b97f4a7c15ULL + (hash >> 29);
-  return hash;
-}
-
 Term TermGraph::find_or_add(const Key& key, Node node) {
   const auto [found, is_new] = index_.try_emplace(key, static_cast<int>(nodes_.size()));
   if (is_new) {

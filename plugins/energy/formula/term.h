@@ -1,9 +1,10 @@
 #pragma once
 
 #include <array>
+#include <compare>
 #include <cstdint>
 #include <limits>
-#include <unordered_map>
+#include <map>
 #include <vector>
 
 #include "core/numerics/linear_algebra/pack_functions.h"
@@ -136,16 +137,13 @@ class TermGraph {
   struct Key {
     Op op;
     std::array<std::int64_t, 6> words;
-    bool operator==(const Key&) const = default;
-  };
-  struct Hash {
-    std::size_t operator()(const Key& key) const;
+    auto operator<=>(const Key&) const = default;
   };
 
   Term find_or_add(const Key& key, Node node);
 
   std::vector<Node> nodes_;
-  std::unordered_map<Key, int, Hash> index_;
+  std::map<Key, int> index_;
 };
 
 }  // namespace drape::formula
