@@ -26,38 +26,34 @@ std::vector<LevelResult> Progression::resume(const Problem& problem, const Metho
     const NewtonState* state = from.of(l);
     const bool anew = l == first || !refines();
     if (problem.load_stepping && !state) problem.load_stepping->begin(l, anew);
-    Refined start;
-    if (anew)
-      start.x = problem.starts[l];
-    else if (!state) {
-      start = refine_safely(problem, l - 1, results.back().x,
-                            problem.hierarchy.weights(interpolation())[l - 1], clock, observer);
-      if (start.fault.empty() && !start.cancelled &&
-          !std::isfinite(problem.model(l)->energy_without_contact(start.x)))
-        start.fault = "the refined state is outside the domain of an energy";
-    }
-    if (!state) observer.level_started(l);
     LevelResult result;
+    if (anew) {
+      result.x = problem.starts[l];
+    } else if (!state) {
+      result = refine_safely(problem, l - 1, results.back().x,
+                             problem.hierarchy.weights(interpolation())[l - 1], clock, observer);
+      result.iterations = 0;  // the level's own are counted
+      if (has_converged(result.outcome) &&
+          !std::isfinite(problem.model(l)->energy_without_contact(result.x))) {
+        result.outcome = Outcome::stalled;
+        result.message = "the refined state is outside the domain of an energy";
+      }
+    }
     result.level = l;
-    result.factorisations = start.factorisations;
-    result.analyses = start.analyses;
-    result.flops = start.flops;
-    result.seconds = start.seconds;
-    if (!anew) result.seconds_by_phase["refinement"] = start.seconds;
-    if (!start.fault.empty()) {
-      result.message = start.fault + "; the level starts from the scene's start instead";
-      start.x = problem.starts[l];
+    if (!state) observer.level_started(l);
+    if (result.outcome == Outcome::stalled) {
+      result.message += "; the level starts from the scene's start instead";
+      result.x = problem.starts[l];
       if (problem.load_stepping) problem.load_stepping->begin(l, true);
     }
-    if (start.cancelled) {
-      result.x = std::move(start.x);
-      result.outcome = Outcome::cancelled;
+    if (result.outcome == Outcome::cancelled) {
       result.message = "stopped on request";
     } else {
+      Positions start = std::move(result.x);
       LevelRun run{clock, observer, l < problem.finest(), result, state, problem.load_stepping.get()};
       run.hierarchy = &problem.hierarchy;
       if (!anew) run.stiffness = results.back().contact_stiffness;
-      result = minimise(*objective(problem, l), std::move(start.x), newton, run);
+      result = minimise(*objective(problem, l), std::move(start), newton, run);
     }
     result.from_initial_state = anew;
     results.push_back(std::move(result));

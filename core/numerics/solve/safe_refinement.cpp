@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <string>
 
 #include "core/numerics/elements/stretch_penalty.h"
 #include "core/numerics/model/stretch_limit.h"
@@ -159,23 +160,22 @@ bool is_collision_free(const LevelModel& model, const Positions& x, const Positi
 
 }  // namespace
 
-Refined refine_safely(const Problem& problem, int level, const Positions& x,
-                      const ProlongationMatrix& weights, const Stopwatch& clock, Observer& observer) {
+LevelResult refine_safely(const Problem& problem, int level, const Positions& x,
+                          const ProlongationMatrix& weights, const Stopwatch& clock, Observer& observer) {
   const Stopwatch watch;
   const std::shared_ptr<const LevelModel> finer = problem.model(level + 1);
   const LevelModel& model = *finer;
   Positions target = weights * x;
   model.set_dirichlet(target);
-  Refined refined;
-  if (model.contacts().empty() && model.limits().empty()) {
-    refined.x = std::move(target);
-    refined.seconds = watch.seconds();
-    return refined;
+  LevelResult refined;
+  bool is_feasible = model.contacts().empty() && model.limits().empty();
+  if (!is_feasible) {
+    refined.x = problem.hierarchy.midpoints[level] * x;
+    move_dirichlet_vertices(model, refined.x);
+    is_feasible = strain_limit_violations(model.limits(), target, 1).empty() &&
+                  is_collision_free(model, refined.x, target);
   }
-  refined.x = problem.hierarchy.midpoints[level] * x;
-  move_dirichlet_vertices(model, refined.x);
-  const bool within_limits = strain_limit_violations(model.limits(), target, 1).empty();
-  if (within_limits && is_collision_free(model, refined.x, target)) {
+  if (is_feasible) {
     refined.x = std::move(target);
   } else {
     TargetObjective objective(model, refined.x, std::move(target));
@@ -195,17 +195,19 @@ Refined refine_safely(const Problem& problem, int level, const Positions& x,
       refined.analyses += result.analyses;
       refined.flops += result.flops;
       const int violating = objective.partition_by_strain_limit(refined.x);
-      refined.cancelled = descent.cancelled();
+      if (descent.cancelled()) refined.outcome = Outcome::cancelled;
       idle = violating < fewest || has_converged(result.outcome) ? 0 : idle + 1;
       fewest = std::min(fewest, violating);
-      if (violating == 0 || refined.cancelled || idle == max_idle_rounds) break;
+      if (violating == 0 || descent.cancelled() || idle == max_idle_rounds) break;
       objective.relax_target(refined.x);
     }
-    if (!refined.cancelled) refined.fault = strain_limit_violations(model.limits(), refined.x, max_named);
-    if (!refined.fault.empty())
-      refined.fault = "the refined state violates the strain limit: " + refined.fault;
+    const std::string violations = strain_limit_violations(model.limits(), refined.x, max_named);
+    if (refined.outcome != Outcome::cancelled && !violations.empty()) {
+      refined.outcome = Outcome::stalled;
+      refined.message = "the refined state violates the strain limit: " + violations;
+    }
   }
-  refined.seconds = watch.seconds();
+  refined.seconds = refined.seconds_by_phase["refinement"] = watch.seconds();
   return refined;
 }
 

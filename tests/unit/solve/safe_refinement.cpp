@@ -45,7 +45,7 @@ struct TwoLevels : Problem {
   Positions target(const Positions& x) const { return hierarchy.prolongations[0] * x; }
   Positions midpoint(const Positions& x) const { return hierarchy.midpoints[0] * x; }
 
-  Refined refine(const Positions& x) const {
+  LevelResult refine(const Positions& x) const {
     Observer silent;
     return refine_safely(*this, 0, x, hierarchy.prolongations[0], Stopwatch(), silent);
   }
@@ -173,8 +173,8 @@ TEST_CASE("Without contact and limits the refined state is the prolonged one, wi
   cloth.prescribe({{7, target, 0}});
   Positions x = cloth.starts[0];
   for (Eigen::Index i = 0; i < x.rows(); ++i) x(i, 2) = std::sin(3.0 * i);
-  const Refined refined = cloth.refine(x);
-  CHECK(refined.fault.empty());
+  const LevelResult refined = cloth.refine(x);
+  CHECK(refined.message.empty());
   CHECK(refined.iterations == 0);
   Positions expected = cloth.target(x);
   REQUIRE(expected(7, 2) != 0.25);
@@ -189,8 +189,8 @@ TEST_CASE("If contact and limits allow, the refined state is the prolonged one")
   for (Eigen::Index i = 0; i < x.rows(); ++i) x(i, 2) = 0.5 + 0.02 * std::sin(3.0 * i);  // over the ball
   REQUIRE(largest_distance(cloth.target(x), cloth.midpoint(x)) > 1e-3);
   REQUIRE(cloth.violations(1, cloth.target(x)) == 0);
-  const Refined refined = cloth.refine(x);
-  CHECK(refined.fault.empty());
+  const LevelResult refined = cloth.refine(x);
+  CHECK(refined.message.empty());
   CHECK(refined.iterations == 0);
   CHECK(largest_distance(refined.x, cloth.target(x)) < rounding);
 }
@@ -200,8 +200,8 @@ TEST_CASE("A sheet around a ball is refined without touching it") {
   const Positions x = over_the_ball(cloth), target = cloth.target(x);
   REQUIRE(cloth.intersections(0, x) == 0);
   REQUIRE(cloth.intersections(1, target) > 20);
-  const Refined refined = cloth.refine(x);
-  CHECK(refined.fault.empty());
+  const LevelResult refined = cloth.refine(x);
+  CHECK(refined.message.empty());
   CHECK(refined.iterations > 0);
   CHECK(cloth.intersections(1, refined.x) == 0);
   // No vertex is further from its target than the ball and d̂ require.
@@ -218,8 +218,8 @@ TEST_CASE("A fold that would be smoothed through another layer is refined beside
   const Positions x = tent_over_its_own_end(cloth.starts[0], 2e-3), target = cloth.target(x);
   REQUIRE(cloth.intersections(0, x) == 0);
   REQUIRE(cloth.intersections(1, target) > 5);
-  const Refined refined = cloth.refine(x);
-  CHECK(refined.fault.empty());
+  const LevelResult refined = cloth.refine(x);
+  CHECK(refined.message.empty());
   CHECK(cloth.intersections(1, refined.x) == 0);
   // Away from the ridge and the end below it, nothing keeps the sheet from its target.
   const Positions& rest = cloth.hierarchy.levels[1].rest.vertices;
@@ -250,8 +250,8 @@ TEST_CASE("A stretched disc is refined within its strain limit, although refinem
   for (Eigen::Index i = 0; i < x.rows(); ++i) x(i, 2) = 0.01 * std::sin(8 * x(i, 0)) * std::cos(7 * x(i, 1));
   REQUIRE(cloth.violations(0, x) == 0);
   REQUIRE(cloth.violations(1, cloth.midpoint(x)) > 5);
-  const Refined refined = cloth.refine(x);
-  CHECK(refined.fault.empty());
+  const LevelResult refined = cloth.refine(x);
+  CHECK(refined.message.empty());
   CHECK(cloth.violations(1, refined.x) == 0);
   CHECK(largest_distance(refined.x, cloth.target(x)) < 2e-3);
   CHECK(largest_distance(refined.x, cloth.target(x)) <
@@ -274,15 +274,15 @@ struct TornApart : TwoLevels {
 
 TEST_CASE("Triangles that cannot be within the strain limit are named") {
   const TornApart cloth;
-  const Refined refined = cloth.refine(cloth.starts[0]);
+  const LevelResult refined = cloth.refine(cloth.starts[0]);
   CHECK(refined.x.row(1) == cloth.pin_target.transpose());
   REQUIRE(cloth.violations(1, refined.x) > 0);
-  CHECK_THAT(refined.fault,
+  CHECK_THAT(refined.message,
              Catch::Matches("the refined state violates the strain limit: triangle [0-9]+, stretched to "
                             "[12]\\.[0-9]+ \\(limit 1\\.1\\).*"));
   const auto& limit = *cloth.models[1]->limits()[0]->stretch_limit();
   const std::string first = to_string(limit.violations(refined.x)[0], 1.1);
-  CHECK_THAT(refined.fault, Catch::Contains(": " + first));
+  CHECK_THAT(refined.message, Catch::Contains(": " + first));
 }
 
 TEST_CASE("A refinement that contact cuts to nothing fails after few steps") {
@@ -291,11 +291,11 @@ TEST_CASE("A refinement that contact cuts to nothing fails after few steps") {
   cloth.contacts_ = {jam};
   cloth.prescribe({});
   const Positions x = 1.5 * cloth.starts[0];
-  const Refined refined = cloth.refine(x);
+  const LevelResult refined = cloth.refine(x);
   CHECK(refined.iterations > 10);
   CHECK(refined.iterations < 60);
   CHECK(jam->motions() < 150);
-  CHECK_THAT(refined.fault, Catch::StartsWith("the refined state violates the strain limit: "));
+  CHECK_THAT(refined.message, Catch::StartsWith("the refined state violates the strain limit: "));
 }
 
 TEST_CASE("If refinement fails, the level starts from the scene's start, and its message says so") {
@@ -332,9 +332,9 @@ TEST_CASE("The cloth follows a vertex that is pinned on the finer level alone, w
     const int midpoint = pin_beside_the_corner(cloth);
     const double angle = degrees * M_PI / 180;
     const Positions turned = sheet.vertices * Eigen::AngleAxisd(-angle, Eigen::Vector3d::UnitZ()).matrix();
-    const Refined refined = cloth.refine(turned);
-    CAPTURE(degrees, refined.fault, refined.iterations);
-    CHECK(refined.fault.empty());
+    const LevelResult refined = cloth.refine(turned);
+    CAPTURE(degrees, refined.message, refined.iterations);
+    CHECK(refined.message.empty());
     CHECK(cloth.violations(1, refined.x) == 0);
     CHECK(refined.x.row(midpoint) == cloth.starts[1].row(midpoint));
   }
@@ -347,8 +347,8 @@ TEST_CASE("A pin that cannot reach its target moves there as far as contact allo
   Eigen::Vector3d target = cloth.starts[1].row(12);
   target.z() = 0.2;
   cloth.prescribe({{12, target, 0}});
-  const Refined refined = cloth.refine(x);
-  CHECK(refined.fault.empty());
+  const LevelResult refined = cloth.refine(x);
+  CHECK(refined.message.empty());
   CHECK(refined.x(12, 2) > 0.3);
   CHECK(refined.x(12, 2) < 0.31 - 1e-3);
   CHECK(cloth.intersections(1, refined.x) == 0);
