@@ -2,54 +2,13 @@
 
 #include <catch2/catch.hpp>
 
+#include "tests/support/fake_loads.h"
 #include "tests/support/newton_problem.h"
 #include "tests/support/test_energies.h"
 
 using namespace drape;
 
 namespace {
-
-/// Three increments that change nothing and are applied as far as a test says.
-class FakeLoads : public LoadStepping {
- public:
-  double allowed = 1;   ///< by advance()
-  bool follows = true;  ///< whether advance_by() applies anything
-  bool to_equilibrium = true;
-  const LevelModel* unchanged = nullptr;  ///< the model under every load
-  std::vector<double> fractions;          ///< that advance_by() applied
-  Positions last;                         ///< the cloth that was last asked about
-
-  int increment_count() const override { return 3; }
-  bool equilibrates() const override { return to_equilibrium; }
-  void begin(int, bool) override {}
-  LoadSteppingState state() const override { return {increment_, {applied_}}; }
-  void restore(int, const LoadSteppingState&) override {}
-  std::shared_ptr<const LevelModel> model(int) override { return {std::shared_ptr<void>(), unchanged}; }
-  int increment() const override { return increment_; }
-  bool complete() const override { return applied_ == 1; }
-  double time() const override { return 10.0 * increment_; }
-  StepLimit advance(int, const Positions& x) override {
-    if (complete()) {
-      ++increment_;
-      applied_ = 0;
-    }
-    last = x;
-    apply(allowed);
-    return {allowed, allowed < 1 ? "the post" : ""};
-  }
-  bool advance_by(double fraction, int, const Positions& x) override {
-    if (!follows) return false;
-    last = x;
-    fractions.push_back(fraction);
-    apply(fraction);
-    return true;
-  }
-
- private:
-  void apply(double fraction) { applied_ = fraction == 1 ? 1 : applied_ + fraction * (1 - applied_); }
-  int increment_ = 0;
-  double applied_ = 1;
-};
 
 struct IncrementRecorder : Observer {
   std::vector<IncrementRow> rows;

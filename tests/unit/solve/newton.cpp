@@ -5,9 +5,9 @@
 #include <limits>
 
 #include "core/kernel/files/message_text.h"
-#include "core/kernel/interfaces/load_stepping.h"
 #include "core/numerics/patterns/generate.h"
 #include "core/numerics/solve/newton_state.h"
+#include "tests/support/fake_loads.h"
 #include "tests/support/keeping_observer.h"
 #include "tests/support/test_energies.h"
 
@@ -43,21 +43,6 @@ struct LimitsOnce : NoEnergy {
     return asked++ == 0 ? StepLimit{0.5, "the limiter"} : StepLimit();
   }
   mutable int asked = 0;
-};
-
-/// A schedule at its end.
-struct AtItsEnd : LoadStepping {
-  int increment_count() const override { return 0; }
-  bool equilibrates() const override { return true; }
-  void begin(int, bool) override {}
-  LoadSteppingState state() const override { return {}; }
-  void restore(int, const LoadSteppingState&) override {}
-  std::shared_ptr<const LevelModel> model(int) override { return nullptr; }
-  int increment() const override { return 0; }
-  bool complete() const override { return true; }
-  double time() const override { return 0; }
-  StepLimit advance(int, const Positions&) override { return {}; }
-  bool advance_by(double, int, const Positions&) override { return true; }
 };
 
 const std::vector<NamedEnergy> only_weight = {{"weight", energy_of(Weight(), EnergyRole::external)}};
@@ -359,7 +344,8 @@ TEST_CASE("A step without descent is no equilibrium although the pins reach thei
                           {"limit", energy_of(LimitsOnce(), EnergyRole::limit)}},
                          pins);
   PlainObjective objective(model);
-  AtItsEnd loads;
+  FakeLoads loads;
+  loads.increments = 0;  // a schedule at its end
   const Stopwatch clock;
   LevelRun run{clock, c.observer};
   run.load_stepping = &loads;
