@@ -114,17 +114,14 @@ std::vector<int> Topology::components() const {
 }
 
 Eigen::Matrix<int, Eigen::Dynamic, 4, Eigen::RowMajor> Topology::hinges(const Triangles& triangles) const {
-  const auto side_of = [&](int triangle, int edge) {
-    return triangle_edges(triangle, 0) == edge ? 0 : triangle_edges(triangle, 1) == edge ? 1 : 2;
-  };
   const auto inner_count = (edge_triangles.col(1).array() != -1).count();
   Eigen::Matrix<int, Eigen::Dynamic, 4, Eigen::RowMajor> hinges(inner_count, 4);
   for (int e = 0, h = 0; e < edges.rows(); ++e) {
     if (edge_triangles(e, 1) == -1) continue;
     const int s = edge_triangles(e, 0), t = edge_triangles(e, 1);
-    const int k = side_of(s, e);
+    const int k = corner_opposite(e, s);
     hinges.row(h++) << triangles(s, (k + 1) % 3), triangles(s, (k + 2) % 3), triangles(s, k),
-        triangles(t, side_of(t, e));
+        triangles(t, corner_opposite(e, t));
   }
   return hinges;
 }

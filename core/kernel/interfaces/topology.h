@@ -83,6 +83,10 @@ struct Topology {
   /// The first vertex of each connected component, ascending.
   std::vector<int> components() const;
 
+  /// The corner of a triangle that lies opposite one of its edges, 0 … 2.
+  int corner_opposite(int edge, int triangle) const {
+    return triangle_edges(triangle, 0) == edge ? 0 : triangle_edges(triangle, 1) == edge ? 1 : 2;
+  }
   /// h×4 stencils of the inner edges: edge ends (0, 1), then the vertices opposite it in its two
   /// triangles, so that triangles (0, 1, 2) and (1, 0, 3) have the mesh's orientation.
   Eigen::Matrix<int, Eigen::Dynamic, 4, Eigen::RowMajor> hinges(const Triangles& triangles) const;

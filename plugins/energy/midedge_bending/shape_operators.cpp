@@ -21,12 +21,6 @@ std::vector<int> hinge_of_edge(const Topology& topology) {
   return hinges;
 }
 
-int corner_opposite(const Level& level, int triangle, int edge) {
-  for (int corner = 0; corner < 2; ++corner)
-    if (level.topology.triangle_edges(triangle, corner) == edge) return corner;
-  return 2;
-}
-
 /// A point's foot on an edge (0 … 1 along it) and its distance from the edge.
 struct Foot {
   double along, distance;
@@ -82,8 +76,9 @@ class EdgeNormals {
 
   Correction correction(int edge) const {
     const Triangles& triangles = level_.rest.triangles;
-    const int t[2] = {level_.topology.edge_triangles(edge, 0), level_.topology.edge_triangles(edge, 1)};
-    const int c[2] = {corner_opposite(level_, t[0], edge), corner_opposite(level_, t[1], edge)};
+    const Topology& topology = level_.topology;
+    const int t[2] = {topology.edge_triangles(edge, 0), topology.edge_triangles(edge, 1)};
+    const int c[2] = {topology.corner_opposite(edge, t[0]), topology.corner_opposite(edge, t[1])};
     const int from = triangles(t[0], (c[0] + 1) % 3), to = triangles(t[0], (c[0] + 2) % 3);
 
     // The edge lies on the x-axis about the origin and has length 1; triangle 0 is on its left.
@@ -104,18 +99,17 @@ class EdgeNormals {
     add(edge, own);
     for (int side = 0; side < 2; ++side)
       for (int k = 1; k < 3; ++k) {  // the triangle's other edges
-        const int corner = (c[side] + k) % 3, other = level_.topology.triangle_edges(t[side], corner);
+        const int corner = (c[side] + k) % 3, other = topology.triangle_edges(t[side], corner);
         if (hinges_[other] == -1) continue;
         const auto place = [&](int which) {
           const int v = triangles(t[side], which % 3);
           return v == from ? own.from : v == to ? own.to : side == 0 ? own.left : own.right;
         };
-        const int beyond = level_.topology.edge_triangles(other, 0) == t[side]
-                               ? level_.topology.edge_triangles(other, 1)
-                               : level_.topology.edge_triangles(other, 0);
+        const int beyond =
+            topology.edge_triangles(other, topology.edge_triangles(other, 0) == t[side] ? 1 : 0);
         const int a = triangles(t[side], (corner + 1) % 3), b = triangles(t[side], (corner + 2) % 3);
         const Foot foot(vertex(a), vertex(b),
-                        vertex(triangles(beyond, corner_opposite(level_, beyond, other))));
+                        vertex(triangles(beyond, topology.corner_opposite(other, beyond))));
         Unfolded pair{place(corner + 1), place(corner + 2), place(corner), {}, 0, foot.distance / length};
         pair.left_distance = 2 * triangle_area(t[side]) / ((vertex(b) - vertex(a)).norm() * length);
         pair.right = right_corner(pair.from, pair.to, foot.along, pair.right_distance);

@@ -87,11 +87,8 @@ class LoopRefiner : public Refiner {
     const bool border = topology.edge_triangles(e, 1) == -1;
     for (int end = 0; end < 2; ++end) weights.emplace_back(row, topology.edges(e, end), border ? 0.5 : 0.375);
     if (border) return;
-    for (int side = 0; side < 2; ++side) {
-      const int t = topology.edge_triangles(e, side);
-      for (int k = 0; k < 3; ++k)
-        if (topology.triangle_edges(t, k) == e) weights.emplace_back(row, coarse.rest.triangles(t, k), 0.125);
-    }
+    for (const int t : topology.edge_triangles.row(e))
+      weights.emplace_back(row, coarse.rest.triangles(t, topology.corner_opposite(e, t)), 0.125);
   }
 };
 
