@@ -97,28 +97,25 @@ Stencils BoundMidedgeBending::triangle_vertices(const Level& level, const ShapeO
 
 void BoundMidedgeBending::make_terms(const ShapeOperators& operators,
                                      const std::vector<int>& place_of_angle) {
-  of_angle_.start.assign(angle_count_ + 1, 0);
   for (const int t : triangle_order_.elements) {
     const auto row = stencils_.row(angle_count_ + static_cast<Eigen::Index>(of_triangle_.start.size()));
-    of_triangle_.start.push_back(static_cast<int>(of_triangle_.all.size()));
+    of_triangle_.start.push_back(static_cast<int>(of_triangle_.items.size()));
     for (int i = operators.start[t]; i < operators.start[t + 1]; ++i) {
       const int angle = place_of_angle[operators.terms[i].hinge];
-      of_triangle_.all.push_back({angle, operators.terms[i].weight});
-      ++of_angle_.start[angle + 1];
+      of_triangle_.items.push_back({angle, operators.terms[i].weight});
       auto& local = local_.emplace_back();
       for (int k = 0; k < 4; ++k)
         local[k] =
             static_cast<signed char>(std::find(row.begin(), row.end(), stencils_(angle, k)) - row.begin());
     }
   }
-  of_triangle_.start.push_back(static_cast<int>(of_triangle_.all.size()));
+  of_triangle_.start.push_back(static_cast<int>(of_triangle_.items.size()));
 
-  for (int a = 0; a < angle_count_; ++a) of_angle_.start[a + 1] += of_angle_.start[a];
-  of_angle_.all.resize(of_triangle_.all.size());
-  std::vector<int> end(of_angle_.start.begin(), of_angle_.start.end() - 1);
-  for (std::size_t t = 0; t + 1 < of_triangle_.start.size(); ++t)
-    for (int i = of_triangle_.start[t]; i < of_triangle_.start[t + 1]; ++i)
-      of_angle_.all[end[of_triangle_.all[i].item]++] = {static_cast<int>(t), of_triangle_.all[i].weight};
+  const auto triangles = static_cast<int>(triangle_order_.elements.size());
+  of_angle_ = Grouped<Term>::of(angle_count_, [&](const auto& add) {
+    for (int t = 0; t < triangles; ++t)
+      for (const Term& term : of_triangle_.row(t)) add(term.item, {t, term.weight});
+  });
 }
 
 template <class Body>
@@ -154,8 +151,7 @@ std::vector<double> BoundMidedgeBending::bends(const Positions& x,
 
 Eigen::Vector3d BoundMidedgeBending::numbers_of(int triangle, const std::vector<double>& bends) const {
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-  for (int i = of_triangle_.start[triangle]; i < of_triangle_.start[triangle + 1]; ++i)
-    sum += of_triangle_.all[i].weight * bends[of_triangle_.all[i].item];
+  for (const Term& term : of_triangle_.row(triangle)) sum += term.weight * bends[term.item];
   return sum;
 }
 
@@ -208,9 +204,7 @@ Pack<BoundMidedgeBending::W> BoundMidedgeBending::moments(const Angles& pack, co
   Pack<W> result = 0.0;
   for (int lane = 0; lane < pack.active; ++lane) {
     double sum = 0;
-    const int a = pack.first + lane;
-    for (int i = of_angle_.start[a]; i < of_angle_.start[a + 1]; ++i)
-      sum += of_angle_.all[i].weight.dot(numbers[of_angle_.all[i].item]);
+    for (const Term& term : of_angle_.row(pack.first + lane)) sum += term.weight.dot(numbers[term.item]);
     result.v[lane] = 2 * sum;
   }
   return result;
@@ -252,7 +246,7 @@ void BoundMidedgeBending::add_triangle(int t, const Eigen::Vector3d& numbers,
   int count = 0;
   while (count < row.size() && row[count] != -1) jacobians[count++].setZero();
   for (int i = of_triangle_.start[t]; i < of_triangle_.start[t + 1]; ++i) {
-    const Term& term = of_triangle_.all[i];
+    const Term& term = of_triangle_.items[i];
     const AngleGradient& g = gradients[term.item];
     for (int k = 0; k < 4; ++k) jacobians[local_[i][k]] += term.weight * g[k].transpose();
   }

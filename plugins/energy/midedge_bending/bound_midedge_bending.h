@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "core/kernel/interfaces/energy.h"
+#include "core/kernel/interfaces/topology.h"
 #include "core/numerics/elements/packed_elements.h"
 #include "plugins/energy/midedge_bending/shape_operators.h"
 
@@ -37,10 +38,6 @@ class BoundMidedgeBending final : public BoundEnergy {
     int item;  ///< the angle of a triangle's term, or the triangle of an angle's term
     Eigen::Vector3d weight;
   };
-  struct Terms {
-    std::vector<int> start;
-    std::vector<Term> all;
-  };
   /// An angle's derivatives by its four vertices.
   using AngleGradient = std::array<Eigen::Vector3d, 4>;
 
@@ -69,7 +66,7 @@ class BoundMidedgeBending final : public BoundEnergy {
   std::vector<int> first_pack_;  // of each chunk of angles, and one more
   std::vector<double> rest_angles_;
   std::vector<BendingFriction> friction_;  // f √Ā and q0 Ā of each triangle; empty without friction
-  Terms of_triangle_, of_angle_;
+  Grouped<Term> of_triangle_, of_angle_;
   // For each term of of_triangle_: columns of its angle's vertices in the triangle's row of stencils_.
   std::vector<std::array<signed char, 4>> local_;
   Stencils stencils_;

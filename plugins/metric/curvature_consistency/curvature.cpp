@@ -31,8 +31,7 @@ Positions vertex_normals(const Positions& x, const Triangles& triangles, const T
   parallel_for(static_cast<int>(x.rows()), grain, [&](int begin, int end) {
     for (int i = begin; i < end; ++i) {
       Vector3d sum = Vector3d::Zero();
-      for (const int* t = topology.vertex_triangles.begin(i); t != topology.vertex_triangles.end(i); ++t)
-        sum += area_vector(x, triangles, *t);
+      for (const int t : topology.vertex_triangles.row(i)) sum += area_vector(x, triangles, t);
       const double length = sum.norm();
       if (!(length > 0))
         throw std::runtime_error(
@@ -58,10 +57,10 @@ class RingSearch {
     for (int ring = 0; ring < rings && next < found_.size(); ++ring)
       for (const std::size_t last = found_.size(); next < last; ++next) {
         const int from = found_[next];
-        for (const int* j = neighbours_.begin(from); j != neighbours_.end(from); ++j) {
-          if (marks_[*j] == centre) continue;
-          marks_[*j] = centre;
-          found_.push_back(*j);
+        for (const int j : neighbours_.row(from)) {
+          if (marks_[j] == centre) continue;
+          marks_[j] = centre;
+          found_.push_back(j);
         }
       }
     found_.erase(found_.begin());
@@ -116,10 +115,10 @@ VertexCurvatures ddg_curvatures(const Positions& x, const Triangles& triangles, 
   parallel_for(static_cast<int>(x.rows()), grain, [&](int begin, int end) {
     for (int i = begin; i < end; ++i) {
       double angles = 0, area = 0;
-      for (const int* t = topology.vertex_triangles.begin(i); t != topology.vertex_triangles.end(i); ++t) {
-        const int k = triangles(*t, 0) == i ? 0 : triangles(*t, 1) == i ? 1 : 2;
-        const Vector3d to_next = vertex(x, triangles(*t, (k + 1) % 3)) - vertex(x, i);
-        const Vector3d to_last = vertex(x, triangles(*t, (k + 2) % 3)) - vertex(x, i);
+      for (const int t : topology.vertex_triangles.row(i)) {
+        const int k = triangles(t, 0) == i ? 0 : triangles(t, 1) == i ? 1 : 2;
+        const Vector3d to_next = vertex(x, triangles(t, (k + 1) % 3)) - vertex(x, i);
+        const Vector3d to_last = vertex(x, triangles(t, (k + 2) % 3)) - vertex(x, i);
         const double twice_area = to_next.cross(to_last).norm();
         angles += std::atan2(twice_area, to_next.dot(to_last));
         area += twice_area / 6;

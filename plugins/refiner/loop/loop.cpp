@@ -78,7 +78,7 @@ class LoopRefiner : public Refiner {
     const int valence = neighbours.size(v);
     const double beta = valence == 3 ? 3.0 / 16 : 3.0 / (8.0 * valence);  // Warren 1995
     weights.emplace_back(v, v, 1 - valence * beta);
-    for (const int* u = neighbours.begin(v); u != neighbours.end(v); ++u) weights.emplace_back(v, *u, beta);
+    for (const int u : neighbours.row(v)) weights.emplace_back(v, u, beta);
   }
 
   static void add_edge(int e, const Level& coarse, Weights& weights) {
