@@ -85,8 +85,8 @@ Stencils BoundMidedgeBending::triangle_vertices(const Level& level, const ShapeO
   for (int t = 0; t < level.triangle_count(); ++t) {
     vertices.row(t).head<3>() = level.rest.triangles.row(t);
     int count = 3;
-    for (int i = operators.start[t]; i < operators.start[t + 1]; ++i)
-      for (const int v : level.hinges.row(operators.terms[i].hinge)) {
+    for (const ShapeOperators::Term& term : operators.terms.row(t))
+      for (const int v : level.hinges.row(term.hinge)) {
         int* const end = &vertices(t, 0) + count;
         if (std::find(end - count, end, v) == end) vertices(t, count++) = v;
       }
@@ -100,9 +100,9 @@ void BoundMidedgeBending::make_terms(const ShapeOperators& operators,
   for (const int t : triangle_order_.elements) {
     const auto row = stencils_.row(angle_count_ + static_cast<Eigen::Index>(of_triangle_.start.size()));
     of_triangle_.start.push_back(static_cast<int>(of_triangle_.items.size()));
-    for (int i = operators.start[t]; i < operators.start[t + 1]; ++i) {
-      const int angle = place_of_angle[operators.terms[i].hinge];
-      of_triangle_.items.push_back({angle, operators.terms[i].weight});
+    for (const auto& [hinge, weight] : operators.terms.row(t)) {
+      const int angle = place_of_angle[hinge];
+      of_triangle_.items.push_back({angle, weight});
       auto& local = local_.emplace_back();
       for (int k = 0; k < 4; ++k)
         local[k] =

@@ -4,6 +4,8 @@
 #include <Eigen/Geometry>
 #include <array>
 #include <cmath>
+#include <utility>
+#include <vector>
 
 #include "core/numerics/elements/orthotropic_stiffness.h"
 #include "core/numerics/mesh/grain.h"
@@ -208,9 +210,9 @@ ShapeOperators ShapeOperators::of(const Level& level, const Material& material, 
   for (int e = 0; e < level.topology.edges.rows(); ++e)
     if (normals.hinge(e) != -1) corrections[e] = normals.correction(e);
 
-  ShapeOperators result;
+  Grouped<Term> terms;
   for (int t = 0; t < level.triangle_count(); ++t) {
-    result.start.push_back(static_cast<int>(result.terms.size()));
+    terms.start.push_back(static_cast<int>(terms.items.size()));
     Eigen::Vector3d x[3];
     for (int i = 0; i < 3; ++i) x[i] = level.rest.vertices.row(level.rest.triangles(t, i)).transpose();
     const std::array<Eigen::Vector3d, 3> directions = edge_directions(
@@ -224,12 +226,12 @@ ShapeOperators ShapeOperators::of(const Level& level, const Material& material, 
       projection -= free * (free.transpose() * projection).eval();
     }
     const auto add = [&](int hinge, const Eigen::Vector3d& weight) {
-      for (std::size_t i = result.start.back(); i < result.terms.size(); ++i)
-        if (result.terms[i].hinge == hinge) {
-          result.terms[i].weight += weight;
+      for (std::size_t i = terms.start.back(); i < terms.items.size(); ++i)
+        if (terms.items[i].hinge == hinge) {
+          terms.items[i].weight += weight;
           return;
         }
-      result.terms.push_back({hinge, weight});
+      terms.items.push_back({hinge, weight});
     };
     for (int i = 0; i < 3; ++i) {
       const int e = level.topology.triangle_edges(t, i);
@@ -241,8 +243,8 @@ ShapeOperators ShapeOperators::of(const Level& level, const Material& material, 
       for (int j = 0; j < c.size; ++j) add(c.hinges[j], direction * (sign * c.weights[j]));
     }
   }
-  result.start.push_back(static_cast<int>(result.terms.size()));
-  return result;
+  terms.start.push_back(static_cast<int>(terms.items.size()));
+  return {std::move(terms)};
 }
 
 }  // namespace drape

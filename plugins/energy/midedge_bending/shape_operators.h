@@ -1,10 +1,10 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <vector>
 
 #include "core/kernel/interfaces/level.h"
 #include "core/kernel/interfaces/material.h"
+#include "core/kernel/interfaces/topology.h"
 
 namespace drape {
 
@@ -15,8 +15,7 @@ struct ShapeOperators {
     int hinge;               ///< row of Level::hinges
     Eigen::Vector3d weight;  ///< [√J]
   };
-  std::vector<int> start;  ///< triangles + 1; terms of triangle t are start[t] … start[t + 1] - 1
-  std::vector<Term> terms;
+  Grouped<Term> terms;  ///< of each triangle
 
   /// For the energy Ā k ((1 - ν) tr S² + ν (tr S)²) of a triangle with rest area Ā and shape operator S, or
   /// with the material's rigidity by direction Ā (½ c11 S11² + ½ c22 S22² + c12 S11 S22 + 2 c66 S12²), from

@@ -59,10 +59,8 @@ double angle_at(const Level& level, const Positions& x, int hinge) {
 /// What has the energy of a triangle as its squared norm, by the operators of the level [√J].
 Eigen::Vector3d bend_of(const ShapeOperators& operators, const Level& level, const Positions& x, int t) {
   Eigen::Vector3d s = Eigen::Vector3d::Zero();
-  for (int i = operators.start[t]; i < operators.start[t + 1]; ++i) {
-    const auto& [hinge, weight] = operators.terms[i];
+  for (const auto& [hinge, weight] : operators.terms.row(t))
     s += weight * (angle_at(level, x, hinge) - angle_at(level, level.rest.vertices, hinge));
-  }
   return s;
 }
 
