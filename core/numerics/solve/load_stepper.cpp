@@ -67,11 +67,13 @@ void LoadStepper::advance(bool at_equilibrium) {
                               ? (closed ? max_blocked_increments : s_.blocked_increments + 1)
                               : 0;
   if (!blocked()) return;
+  blocked_text_ = "the increment to pseudo-time " + three_digits(load_stepping_->time()) +
+                  " cannot be completed" + limit_text_;
   if (closed)
-    limit_text_ += "; the gap is " + three_digits(iterate_.objective().contacts().smallest_gap()) +
-                   " m: at its target the obstacle touches or crosses the cloth";
+    blocked_text_ += "; the gap is " + three_digits(iterate_.objective().contacts().smallest_gap()) +
+                     " m: at its target the obstacle touches or crosses the cloth";
   else
-    limit_text_ +=
+    blocked_text_ +=
         "; if there is room up to the target, raise the schedule's \"steps\": a part below a thousandth of "
         "what remains of an increment counts as none";
 }

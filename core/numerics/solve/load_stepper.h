@@ -58,8 +58,8 @@ class LoadStepper {
   void advance(bool at_equilibrium);
   /// Whether the current increment cannot be completed.
   bool blocked() const;
-  /// What limited the last advance, as Iterate::limit_text().
-  const std::string& limit_text() const { return limit_text_; }
+  /// Why it cannot.
+  const std::string& blocked_text() const { return blocked_text_; }
   /// Reports the current increment to the observer; does nothing without a schedule.
   void report_increment();
 
@@ -76,7 +76,8 @@ class LoadStepper {
   const DirichletEnforcer& dirichlet_;
   Observer& observer_;
   State s_;
-  std::string limit_text_;
+  std::string limit_text_;  // what limited the last advance, as Iterate::limit_text()
+  std::string blocked_text_;
 };
 
 }  // namespace drape

@@ -143,7 +143,7 @@ class Newton {
       }
       if (load_.loading() && !dirichlet_.active() && (at_equilibrium || load_.advances_at_once())) {
         advance_increment(at_equilibrium);
-        if (load_.blocked()) return End{Outcome::infeasible, blocked_text(load_)};
+        if (load_.blocked()) return End{Outcome::infeasible, load_.blocked_text()};
       }
       if (check_.is_cycling()) damp_cycle();
       if (load_.steps() == p_.max_steps)

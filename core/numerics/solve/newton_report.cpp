@@ -65,11 +65,6 @@ void record_contacts(const ActiveContacts& contacts, LevelResult& result) {
   result.seconds_by_phase["gradient"] -= contacts.seconds_building();
 }
 
-std::string blocked_text(const LoadStepper& load) {
-  return "the increment to pseudo-time " + three_digits(*load.time()) + " cannot be completed" +
-         load.limit_text();
-}
-
 std::string max_steps_text(const LevelResult& so_far, const NewtonParameters& p,
                            const EquilibriumCheck& check) {
   const std::string begin = "no equilibrium within max_steps = " + std::to_string(p.max_steps) + "; ";

@@ -19,9 +19,6 @@ void record_contacts(const ActiveContacts& contacts, LevelResult& result);
 /// Why a cloth that has drifted by `drift` of its diagonals [1], more than `most`, will not come to rest.
 std::string drift_text(double drift, double most, const LevelModel& model);
 
-/// Why the increment under way ends the level.
-std::string blocked_text(const LoadStepper& load);
-
 /// Tells which tolerance is not met, and whether the force residual still falls.
 std::string max_steps_text(const LevelResult& so_far, const NewtonParameters& p,
                            const EquilibriumCheck& check);

@@ -116,7 +116,8 @@ TEST_CASE("An increment that twenty attempts hardly advance is blocked") {
   c.stepper.advance(true);
   CHECK(c.stepper.blocked());
   CHECK(c.problem.iterate.limit_text() == "; the step is limited by the post");
-  CHECK_THAT(c.stepper.limit_text(),
-             Catch::StartsWith("; the step is limited by the post; if there is room") &&
+  CHECK_THAT(c.stepper.blocked_text(),
+             Catch::StartsWith("the increment to pseudo-time 10 cannot be completed; the step is limited by "
+                               "the post; if there is room") &&
                  Catch::Contains("raise the schedule's \"steps\""));
 }
