@@ -106,8 +106,8 @@ std::vector<int> Topology::components() const {
     while (!open.empty()) {
       const int from = open.back();
       open.pop_back();
-      for (const int* to = vertex_vertices.begin(from); to != vertex_vertices.end(from); ++to)
-        if (!seen[*to]) seen[*to] = 1, open.push_back(*to);
+      for (const int to : vertex_vertices.row(from))
+        if (!seen[to]) seen[to] = 1, open.push_back(to);
     }
   }
   return first;

@@ -24,7 +24,7 @@ AdjacencyList rows_of(const std::vector<IndexPairs>& lists, int row_count, int c
   });
   return AdjacencyList::of(row_count, [&](const auto& add) {
     for (int j = 0; j < column_count; ++j)
-      for (const int* i = columns.begin(j); i != columns.end(j); ++i) add(*i, j);
+      for (const int i : columns.row(j)) add(i, j);
   });
 }
 

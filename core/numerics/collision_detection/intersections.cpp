@@ -107,12 +107,12 @@ std::vector<TrianglePair> meeting(const TriangleMesh& mesh, const TriangleMesh& 
   const int count = static_cast<int>(mesh.triangles.rows());
   const auto test = [&](int begin, int end, std::vector<TrianglePair>& found) {
     for (int s = begin; s < end; ++s)
-      for (const int* t = candidates.begin(s); t != candidates.end(s); ++t) {
-        std::array<int, 3> a = vertices(mesh, s), b = vertices(other, *t);
+      for (const int t : candidates.row(s)) {
+        std::array<int, 3> a = vertices(mesh, s), b = vertices(other, t);
         const int shared = same ? share_first(a, b) : 0;
         if (!meet(corners(mesh.vertices, a), corners(other.vertices, b), shared)) continue;
         const Vector near = mesh.vertices.row(a[0]);
-        found.push_back({s, *t, near + middle_of_both(box_of(mesh, s, near), box_of(other, *t, near))});
+        found.push_back({s, t, near + middle_of_both(box_of(mesh, s, near), box_of(other, t, near))});
       }
   };
   return parallel_collect<TrianglePair>(count, triangles_per_task, test);

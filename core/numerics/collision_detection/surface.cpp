@@ -33,7 +33,7 @@ Surface Surface::of(const TriangleMesh& rest, const Topology& topology) {
       const int v = s.triangles(t, k), e = s.triangle_edges(t, k);
       s.vertex_area[v] += s.triangle_area[t] / 3;
       s.edge_area[e] += s.triangle_area[t] / 3;
-      if (*topology.vertex_triangles.begin(v) == t) s.vertex_corner[v] = 3 * t + k;
+      if (topology.vertex_triangles.row(v).front() == t) s.vertex_corner[v] = 3 * t + k;
       if (topology.edge_triangles(e, 0) == t) s.edge_corner[e] = 3 * t + k;
     }
   }

@@ -65,7 +65,7 @@ bool collect(const AdjacencyList& rows, const LinearMotion& motion, long limit,
     if (number.load(std::memory_order_relaxed) > limit) return;
     std::vector<ContactPair> untested;
     for (int s = begin; s < end; ++s)
-      for (const int* t = rows.begin(s); t != rows.end(s); ++t) visit(s, *t, untested);
+      for (const int t : rows.row(s)) visit(s, t, untested);
     std::vector<ContactPair>& list = lists[begin / rows_per_task];
     append_near(untested, motion, list);
     number += std::ssize(list);

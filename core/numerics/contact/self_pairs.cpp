@@ -75,10 +75,10 @@ bool collect_near(const Surface& cloth, const AdjacencyList& rows, const LinearM
       lanes.size = 0;
     };
     for (int row = begin; row < end && number.load(std::memory_order_relaxed) <= limit; ++row)
-      for (const int* other = rows.begin(row); other != rows.end(row); ++other) {
+      for (const int other : rows.row(row)) {
         a[lanes.size] = row;
-        b[lanes.size] = *other;
-        lanes.add(vertices_of<kind>(cloth, row, *other), motion);
+        b[lanes.size] = other;
+        lanes.add(vertices_of<kind>(cloth, row, other), motion);
         if (lanes.full()) test();
       }
     test();

@@ -55,7 +55,7 @@ ProlongationMatrix rest_interpolation(const Level& coarse, const Positions& fine
     const int b = v < n ? v : coarse.topology.edges(v - n, 1);
     const Eigen::Vector3d midpoint = 0.5 * (rest.vertices.row(a) + rest.vertices.row(b));
     const AdjacencyList& around = coarse.topology.vertex_triangles;
-    if ((point - midpoint).norm() <= unmoved * longest_side(rest, *around.begin(a))) {
+    if ((point - midpoint).norm() <= unmoved * longest_side(rest, around.row(a).front())) {
       weights.emplace_back(v, a, a == b ? 1 : 0.5);
       if (b != a) weights.emplace_back(v, b, 0.5);
       continue;

@@ -72,9 +72,7 @@ class PathSearch {
   }
 
  private:
-  std::span<const int> around(int v) const {
-    return {level_.topology.vertex_triangles.begin(v), level_.topology.vertex_triangles.end(v)};
-  }
+  std::span<const int> around(int v) const { return level_.topology.vertex_triangles.row(v); }
   /// Whether a path from the pair's first primitive begins in triangle t, and whether one ends there.
   bool begins(const ContactPair& pair, int t) const {
     return pair.kind == PairKind::point_triangle || has(t, pair.vertices[1]);

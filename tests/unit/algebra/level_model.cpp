@@ -166,7 +166,7 @@ TEST_CASE("A pinned vertex is lone if none of its neighbours is pinned, on the c
   };
   CHECK(lone({0, 8}, {0, 8}) == std::vector<int>{0, 8});
   CHECK(lone({0, 1, 8}, {0, 1, 8}) == std::vector<int>{8});
-  CHECK(lone({0, 8}, {0, *finest.topology.vertex_vertices.begin(0), 8}) == std::vector<int>{8});
+  CHECK(lone({0, 8}, {0, finest.topology.vertex_vertices.row(0).front(), 8}) == std::vector<int>{8});
   CHECK(lone_pins(*model(coarse, {0, 1}), []() -> std::shared_ptr<const LevelModel> { throw 0; }).empty());
 
   const Eigen::VectorXd softening = softening_at_pins(coarse, {0}, 0.3, 1);

@@ -13,7 +13,10 @@ namespace {
 
 const Triangles two_triangles{{0, 1, 2}, {2, 1, 3}};
 
-std::vector<int> row(const AdjacencyList& list, int i) { return {list.begin(i), list.end(i)}; }
+std::vector<int> row(const AdjacencyList& list, int i) {
+  const auto items = list.row(i);
+  return {items.begin(), items.end()};
+}
 
 }  // namespace
 

@@ -28,8 +28,8 @@ class EdgeSprings : public NoEnergy {
       : rest_(rest.vertices), k_(k), load_(load), fault_(fault) {
     const Topology topology = Topology::of(rest.triangles, static_cast<int>(rest.vertices.rows()));
     for (int i = 0; i < rest_.rows(); ++i)
-      for (const int* j = topology.vertex_vertices.begin(i); j != topology.vertex_vertices.end(i); ++j)
-        if (i < *j) edges_.push_back({i, *j});
+      for (const int j : topology.vertex_vertices.row(i))
+        if (i < j) edges_.push_back({i, j});
   }
 
   double value(const Positions& x) const override {
