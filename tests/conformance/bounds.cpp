@@ -14,8 +14,8 @@ using namespace drape;
 
 namespace {
 
-bool is_numeric(const std::string& type) {
-  return type.find("number") != std::string::npos || type.find("integer") != std::string::npos;
+bool is_numeric(const Parameter& p) {
+  return p.type.kind == ValueKind::number || p.type.kind == ValueKind::integer;
 }
 
 /// Calls visit(schema, parameter, default) for every number and list of numbers of a schema and of its
@@ -25,7 +25,7 @@ void for_each_number(const std::string& name, const Schema& schema, const Visit&
   const ConfigNode defaults = schema.write(schema.fresh().get());
   for (const Parameter& p : schema.parameters) {
     INFO(name << "." << p.name);
-    if (is_numeric(p.type)) visit(schema, p, *defaults.find(p.name));
+    if (is_numeric(p)) visit(schema, p, *defaults.find(p.name));
     if (p.section) for_each_number(name + "." + p.name, *p.section, visit);
   }
 }
@@ -80,7 +80,7 @@ TEST_CASE("Every declared number has a finite minimum and maximum, with its defa
 
 TEST_CASE("Numbers beyond the bounds are refused by name, each component of a list too", "[conformance]") {
   for_each_number([](const Schema& schema, const Parameter& p, const ConfigNode&) {
-    const bool list = p.type.starts_with("list of "), whole = p.type.find("integer") != std::string::npos;
+    const bool list = p.type.is_list(), whole = p.type.kind == ValueKind::integer;
     for (const char* number :
          {whole ? "-2147483648" : "-1e300", whole ? "99999999999" : "1e300", "1e400", ".inf"}) {
       INFO(number);

@@ -28,8 +28,8 @@ std::string range_text(const Parameter& p) {
 }
 
 std::string type_text(const Parameter& p) {
-  const bool list = p.type.starts_with("list of ");
-  std::string type = p.type;
+  const bool list = p.type.is_list();
+  std::string type = p.type.text();
   if (!p.plugin_kind.empty()) type = (list ? "list of plugins, " : "plugin, ") + p.plugin_kind;
   if (list && p.size) type = std::to_string(p.size) + type.substr(std::string("list of").size());
   return type + (p.nullable ? " or null" : "");
@@ -41,17 +41,19 @@ void collect(const Schema& schema, const ConfigNode& defaults, int depth, const 
   for (const Parameter& p : schema.parameters) {
     const ConfigNode* initial = defaults.find(p.name);
     Row row{depth, prefix + p.name, &p, type_text(p), "", range_text(p), ""};
-    const bool is_shared = shared && p.type == "section" && p.section->name == shared->schema.name &&
+    const bool is_section = p.type.is_one(ValueKind::section);
+    const bool is_shared = shared && is_section && p.section->name == shared->schema.name &&
                            initial->one_line() == defaults_of(shared->schema).one_line();
     if (is_shared) row.link = shared->link;
     if (p.required)
       row.initial = "required";
-    else if (p.type != "section" && initial)
+    else if (!is_section && initial)
       row.initial = initial->one_line();
     rows.push_back(row);
     if (is_shared) continue;
-    if (p.type == "section") collect(*p.section, *initial, depth + 1, row.path + ".", shared, rows);
-    if (p.type == "list of sections")
+    if (is_section)
+      collect(*p.section, *initial, depth + 1, row.path + ".", shared, rows);
+    else if (p.section)
       collect(*p.section, defaults_of(*p.section), depth + 1, row.path + "[].", shared, rows);
   }
 }

@@ -19,7 +19,7 @@ bool is_missing(const ConfigNode* node) {
 /// Whether the experiment's key chooses one plugin, as `refiner` and `contact` do.
 bool chooses_plugin(const std::string& key) {
   const Parameter* p = parameter_named(experiment_schema(), key);
-  return p && p->type == "node" && !p->plugin_kind.empty();
+  return p && p->type.is_one(ValueKind::node) && !p->plugin_kind.empty();
 }
 
 /// The path of the first list on the way whose items the words name although it has none; "" without one.
@@ -32,7 +32,7 @@ std::string missing_list(const ConfigNode& experiment, const std::vector<std::st
     if (!p) return "";
     path += (path.empty() ? "" : ".") + words[k];
     if (node) node = node->find(words[k]);
-    if (p->type == "list of sections" || p->type == "list of nodes") {
+    if (p->type.is_list() && !p->type.of_scalars()) {
       if (is_missing(node)) return path;
       const auto index = node->index_of(words[++k]);
       if (!index) return "";

@@ -9,8 +9,10 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-Json scalar_schema(const std::string& type, const Parameter& p) {
-  Json json = {{"type", type == "text" ? "string" : type}};  // for the others both have one word
+/// Of a scalar parameter, or of an item of its list or map.
+Json scalar_schema(const Parameter& p) {
+  const bool is_text = p.type.kind == ValueKind::text;
+  Json json = {{"type", is_text ? "string" : p.type.item().text()}};  // for the others both have one word
   if (std::isfinite(p.minimum)) json[p.open_minimum ? "exclusiveMinimum" : "minimum"] = p.minimum;
   if (std::isfinite(p.maximum)) json[p.open_maximum ? "exclusiveMaximum" : "maximum"] = p.maximum;
   if (!p.choices.empty()) json["enum"] = p.choices;
@@ -33,7 +35,7 @@ Json plugin_schema(const std::string& kind, const Registry& registry) {
 
 /// A map from names to numbers, alone or with their units.
 Json named_constants_schema(const Parameter& p) {
-  const Json number = scalar_schema("number", p);
+  const Json number = scalar_schema(p);
   const Json with_unit = {{"type", "object"},
                           {"properties", {{"value", number}, {"unit", {{"type", "string"}}}}},
                           {"required", Json::array({"value"})},
@@ -41,26 +43,24 @@ Json named_constants_schema(const Parameter& p) {
   return {{"type", "object"}, {"additionalProperties", {{"anyOf", Json::array({number, with_unit})}}}};
 }
 
-Json item_schema(const std::string& type, const Parameter& p, const Registry* registry) {
-  if (type == "map of numbers") return named_constants_schema(p);
-  if (type == "section") return json_schema(*p.section, registry);
-  if (type != "node") return scalar_schema(type, p);
+/// Of a parameter's value, or of an item of its list.
+Json item_schema(const Parameter& p, const Registry* registry) {
+  if (p.type.is_map()) return named_constants_schema(p);
+  if (p.section) return json_schema(*p.section, registry);
+  if (p.type.of_scalars()) return scalar_schema(p);
   return registry && !p.plugin_kind.empty() ? plugin_schema(p.plugin_kind, *registry) : Json::object();
 }
 
 Json parameter_schema(const Parameter& p, const Registry* registry) {
-  const std::string list = "list of ";
-  Json json;
-  if (p.type.starts_with(list)) {
-    const std::string type = p.type.substr(list.size(), p.type.size() - list.size() - 1);
-    json = {{"type", "array"}, {"items", item_schema(type, p, registry)}};
+  Json json = item_schema(p, registry);
+  if (p.type.is_list()) {
+    json = {{"type", "array"}, {"items", json}};
     if (p.size) {
       json["minItems"] = p.size;
       json["maxItems"] = p.size;
     }
-  } else {
-    json = item_schema(p.type, p, registry);
-    if (p.or_list) json = {{"anyOf", Json::array({json, Json{{"type", "array"}, {"items", json}}})}};
+  } else if (p.or_list) {
+    json = {{"anyOf", Json::array({json, Json{{"type", "array"}, {"items", json}}})}};
   }
   if (!p.shorthand_key.empty()) json = {{"anyOf", Json::array({json, Json{{"type", "string"}}})}};
   if (p.nullable) json = {{"anyOf", Json::array({json, Json{{"type", "null"}}})}};
@@ -130,7 +130,7 @@ Json json_schema(const Schema& schema, const Registry* registry) {
     Json& property = properties[p.name] = parameter_schema(p, registry);
     if (p.required)
       required.push_back(p.name);
-    else if (p.type != "section")
+    else if (!p.type.is_one(ValueKind::section))
       property["default"] = json_value(*defaults.find(p.name));
   }
   Json json = {{"type", "object"}, {"properties", properties}, {"additionalProperties", false}};

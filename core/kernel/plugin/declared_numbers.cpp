@@ -23,7 +23,7 @@ std::optional<DeclaredNumbers> DeclaredNumbers::find(const Schema& outermost, vo
     const Parameter* p = parameter_named(*found.schema_, words[k]);
     if (!p) return std::nullopt;
     const std::string label = "\"" + p->name + "\"";
-    const bool is_list = p->type.starts_with("list of "), is_map = p->type == "map of numbers";
+    const bool is_list = p->type.is_list(), is_map = p->type.is_map();
     std::optional<std::size_t> item;
     if ((is_list || is_map) && k + 1 < words.size()) {
       const ConfigNode all = p->write(object);
@@ -32,14 +32,14 @@ std::optional<DeclaredNumbers> DeclaredNumbers::find(const Schema& outermost, vo
       if (is_map && k + 2 == words.size() && words[k + 1] == "value") ++k;
     }
     if (p->section) {
-      if (p->type != "section" && !item) return std::nullopt;
+      if (is_list && !item) return std::nullopt;
       found.sections_.push_back({p, item.value_or(0)});
       object = p->section_in(object, item.value_or(0));
       found.schema_ = p->section.get();
       continue;
     }
     const ConfigNode all = p->write(object);
-    const bool numeric = p->type.ends_with("number") || p->type.ends_with("numbers");
+    const bool numeric = p->type.kind == ValueKind::number;
     if (k + 1 < words.size() || !numeric || (is_map && !item) || all.kind == NodeKind::null)
       return std::nullopt;
     found.parameter_ = p;

@@ -37,27 +37,27 @@ std::string range_fault(double value, const Parameter& p) {
 }
 
 /// What a scalar must be if it is not, else "".
-std::string scalar_fault(const std::string& type, const ConfigNode& node, const Parameter& p) {
+std::string scalar_fault(const ConfigNode& node, const Parameter& p) {
   const bool plain = node.kind == NodeKind::scalar && !node.quoted;
-  if (type == "integer") {
+  if (p.type.kind == ValueKind::integer) {
     const auto value = plain ? parse_integer(node.scalar) : std::nullopt;
     return value ? range_fault(*value, p) : "an integer";
   }
-  if (type == "number") {
+  if (p.type.kind == ValueKind::number) {
     if (plain && (node.scalar == ".nan" || node.scalar == ".inf" || node.scalar == "-.inf"))
       return "a finite number";
     const auto value = plain ? parse_number(node.scalar) : std::nullopt;
     return value ? range_fault(*value, p) : "a number";
   }
-  if (type == "boolean")
+  if (p.type.kind == ValueKind::boolean)
     return plain && (node.scalar == "true" || node.scalar == "false") ? "" : "true or false";
   if (node.kind != NodeKind::scalar) return p.choices.empty() ? "text" : quoted_choice(p.choices);
   return p.choices.empty() || is_one_of(node.scalar, p.choices) ? "" : quoted_choice(p.choices);
 }
 
-void check_scalar(const std::string& type, const std::string& label, const ConfigNode& node,
-                  const Parameter& p, ConfigErrors& errors) {
-  const std::string fault = scalar_fault(type, node, p);
+void check_scalar(const std::string& label, const ConfigNode& node, const Parameter& p,
+                  ConfigErrors& errors) {
+  const std::string fault = scalar_fault(node, p);
   if (fault.empty()) return;
   const std::string hint = node.kind == NodeKind::scalar ? did_you_mean(node.scalar, p.choices, "") : "";
   errors.push_back({node.where, label + " must be " + fault + ", not " + node.shown() +
@@ -66,19 +66,19 @@ void check_scalar(const std::string& type, const std::string& label, const Confi
 
 void check_list(const ConfigNode& node, const Parameter& p, ConfigErrors& errors) {
   const std::string label = "\"" + p.name + "\"";
-  std::string items = p.type.substr(std::string("list of ").size());
-  const std::string type = items.substr(0, items.size() - 1);
-  if (type == "section") items = "maps";
-  if (type == "node") items = p.plugin_kind.empty() ? "values" : "plugins of kind " + p.plugin_kind;
+  std::string items = p.type.item().text() + "s";
+  if (p.type.kind == ValueKind::section) items = "maps";
+  if (p.type.kind == ValueKind::node)
+    items = p.plugin_kind.empty() ? "values" : "plugins of kind " + p.plugin_kind;
   const std::string wanted = "a list of " + (p.size ? std::to_string(p.size) + " " : "") + items;
   if (node.kind != NodeKind::list) {
     errors.push_back({node.where, label + " must be " + wanted + ", not " + node.shown()});
   } else if (p.size && int(node.items.size()) != p.size) {
     errors.push_back(
         {node.where, label + " must be " + wanted + ", not of " + std::to_string(node.items.size())});
-  } else if (type != "section" && type != "node") {
+  } else if (p.type.of_scalars()) {
     for (size_t i = 0; i < node.items.size(); ++i)
-      check_scalar(type, "item " + std::to_string(i + 1) + " of " + label, node.items[i], p, errors);
+      check_scalar("item " + std::to_string(i + 1) + " of " + label, node.items[i], p, errors);
   }
 }
 
@@ -106,7 +106,7 @@ void check_named_constants(const ConfigNode& node, const Parameter& p, ConfigErr
     if (!names.insert(name).second)
       errors.push_back({node.key_locations[i], label + " is given twice; remove one of them"});
     if (number.kind != NodeKind::map) {
-      check_scalar("number", label, number, p, errors);
+      check_scalar(label, number, p, errors);
       continue;
     }
     for (size_t k = 0; k < number.entries.size(); ++k)
@@ -119,7 +119,7 @@ void check_named_constants(const ConfigNode& node, const Parameter& p, ConfigErr
     if (!value)
       errors.push_back({number.where, label + " has no \"value\""});
     else
-      check_scalar("number", label, *value, p, errors);
+      check_scalar(label, *value, p, errors);
     if (unit && unit->kind != NodeKind::scalar)
       errors.push_back({unit->where, "the unit of " + label + " must be text, as in N/m"});
   }
@@ -129,12 +129,12 @@ void check_named_constants(const ConfigNode& node, const Parameter& p, ConfigErr
 bool check(const ConfigNode& node, const Parameter& p, ConfigErrors& errors) {
   const size_t before = errors.size();
   if (p.nullable && node.kind == NodeKind::null) return true;
-  if (p.type.starts_with("list of "))
+  if (p.type.is_list())
     check_list(node, p, errors);
-  else if (p.type == "map of numbers")
+  else if (p.type.is_map())
     check_named_constants(node, p, errors);
-  else if (p.type != "section" && p.type != "node")
-    check_scalar(p.type, "\"" + p.name + "\"", node, p, errors);
+  else if (p.type.of_scalars())
+    check_scalar("\"" + p.name + "\"", node, p, errors);
   return errors.size() == before;
 }
 
@@ -172,6 +172,13 @@ ConfigNode completed(const ConfigNode& node, const Parameter& p, const void* obj
 
 }  // namespace
 
+std::string ParameterType::text() const {
+  constexpr const char* words[] = {"number", "integer", "boolean", "text", "section", "node"};
+  const std::string word = words[static_cast<int>(kind)];
+  if (shape == Shape::one) return word;
+  return (shape == Shape::list ? "list of " : "map of ") + word + "s";
+}
+
 void read_parameter(const Parameter& p, void* object, const ConfigNode& written, ConfigErrors& errors) {
   const ConfigNode value = completed(written, p, object);
   if (check(value, p, errors))
@@ -179,7 +186,7 @@ void read_parameter(const Parameter& p, void* object, const ConfigNode& written,
 }
 
 std::string number_fault(const Parameter& p, double value) {
-  const bool integer = p.type == "integer" || p.type == "list of integers";
+  const bool integer = p.type.kind == ValueKind::integer;
   return integer && value != std::rint(value) ? "an integer" : range_fault(value, p);
 }
 

@@ -14,12 +14,30 @@
 
 namespace drape {
 
+/// Kinds of values. A section is a map of parameters; a node is read later, as a plugin's.
+enum class ValueKind { number, integer, boolean, text, section, node };
+
+/// The type of a parameter: one value of a kind, a list of them, or a map from names to them.
+struct ParameterType {
+  enum class Shape { one, list, map };
+
+  ValueKind kind = ValueKind::text;
+  Shape shape = Shape::one;
+
+  bool is_one(ValueKind wanted) const { return shape == Shape::one && kind == wanted; }
+  bool is_list() const { return shape == Shape::list; }
+  bool is_map() const { return shape == Shape::map; }
+  /// Whether the value, or each item, is a scalar.
+  bool of_scalars() const { return kind != ValueKind::section && kind != ValueKind::node; }
+  ParameterType item() const { return {kind}; }
+  std::string text() const;  ///< as in help and messages: "number", "list of numbers", "map of numbers"
+};
+
 /// One parameter, declared once. Parsing, validation, `drape describe`, the reference page, the JSON schema
 /// and the saved config derive from it. Its default is the member's value in a default-constructed struct.
 struct Parameter {
   std::string name;
-  std::string type;         ///< "number", "integer", "boolean", "text", "section", "node", "list of …s",
-                            ///< "map of numbers"
+  ParameterType type;
   std::string description;  ///< one phrase: what it sets
   std::string unit;         ///< SI; empty or "1" if dimensionless
   std::string source;       ///< paper and equation, or design note
@@ -46,7 +64,7 @@ struct Parameter {
   std::function<void(const void* from, void* to)> assign;  ///< between two structs
   /// Number k of a number, a list or a map of numbers; null beyond the last one, and without a value.
   std::function<double*(void* object, std::size_t k)> number;
-  std::shared_ptr<const class Schema> section;  ///< type "section" and "list of sections"
+  std::shared_ptr<const class Schema> section;  ///< of a section, or of the items of a list of sections
   /// The struct of a section, or of an item of a list of sections; for these types only.
   std::function<void*(void* object, std::size_t item)> section_in;
   std::function<void*(void* object)> append;  ///< a list of sections: adds an item, and returns it

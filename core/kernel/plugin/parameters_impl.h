@@ -94,22 +94,22 @@ ConfigNode to_node(const std::optional<T>& value) {
 }
 
 // The config type of a member, of which only the type is looked at.
-inline std::string type_of(const double*) { return "number"; }
-inline std::string type_of(const int*) { return "integer"; }
-inline std::string type_of(const bool*) { return "boolean"; }
-inline std::string type_of(const std::string*) { return "text"; }
-inline std::string type_of(const ConfigNode*) { return "node"; }
-inline std::string type_of(const NamedConstants*) { return "map of numbers"; }
+inline ParameterType type_of(const double*) { return {ValueKind::number}; }
+inline ParameterType type_of(const int*) { return {ValueKind::integer}; }
+inline ParameterType type_of(const bool*) { return {ValueKind::boolean}; }
+inline ParameterType type_of(const std::string*) { return {ValueKind::text}; }
+inline ParameterType type_of(const ConfigNode*) { return {ValueKind::node}; }
+inline ParameterType type_of(const NamedConstants*) { return {ValueKind::number, ParameterType::Shape::map}; }
 template <class T>
-std::string type_of(const std::vector<T>*) {
-  return "list of " + type_of(static_cast<const T*>(nullptr)) + "s";
+ParameterType type_of(const std::vector<T>*) {
+  return {type_of(static_cast<const T*>(nullptr)).kind, ParameterType::Shape::list};
 }
 template <int N>
-std::string type_of(const Eigen::Matrix<double, N, 1>*) {
-  return "list of numbers";
+ParameterType type_of(const Eigen::Matrix<double, N, 1>*) {
+  return {ValueKind::number, ParameterType::Shape::list};
 }
 template <class T>
-std::string type_of(const std::optional<T>*) {
+ParameterType type_of(const std::optional<T>*) {
   return type_of(static_cast<const T*>(nullptr));
 }
 
@@ -131,7 +131,7 @@ class Declaration {
   /// `Owner` is Struct or a base of it; the description says in a phrase what the parameter sets.
   template <class Member, class Owner>
   ParameterHandle add(const std::string& name, Member Owner::*member, const std::string& description = "") {
-    const std::string type = parameter_detail::type_of(static_cast<const Member*>(nullptr));
+    const ParameterType type = parameter_detail::type_of(static_cast<const Member*>(nullptr));
     Parameter& p = append(name, type, member, description);
     p.number = [member](void* object, std::size_t k) {
       return parameter_detail::number(static_cast<Struct*>(object)->*member, k);
@@ -152,7 +152,7 @@ class Declaration {
   ParameterHandle add_choice(const std::string& name, Enum Owner::*member,
                              std::vector<std::pair<std::string, Enum>> words,
                              const std::string& description = "") {
-    Parameter& p = append(name, "text", member, description);
+    Parameter& p = append(name, {ValueKind::text}, member, description);
     for (const auto& [word, value] : words) p.choices.push_back(word);
     p.read = [member, words](void* object, const ConfigNode& node, ConfigErrors&) {
       for (const auto& [word, value] : words)
@@ -170,7 +170,7 @@ class Declaration {
   template <class Section, class Owner>
   ParameterHandle add_section(const std::string& name, Section Owner::*member,
                               const std::string& description = "") {
-    Parameter& p = append(name, "section", member, description);
+    Parameter& p = append(name, {ValueKind::section}, member, description);
     const auto section = std::make_shared<const Schema>(schema_of<Section>(name));
     p.section = section;
     p.read = [member, section](void* object, const ConfigNode& node, ConfigErrors& errors) {
@@ -187,7 +187,8 @@ class Declaration {
   template <class Section>
   ParameterHandle add_sections(const std::string& name, std::vector<Section> Struct::*member,
                                const std::string& description = "") {
-    Parameter& p = append(name, "list of sections", member, description);
+    const ParameterType type{ValueKind::section, ParameterType::Shape::list};
+    Parameter& p = append(name, type, member, description);
     const auto section = std::make_shared<const Schema>(schema_of<Section>(name));
     p.section = section;
     p.read = [member, section](void* object, const ConfigNode& node, ConfigErrors& errors) {
@@ -220,7 +221,7 @@ class Declaration {
 
  private:
   template <class Member, class Owner>
-  Parameter& append(const std::string& name, const std::string& type, Member Owner::*member,
+  Parameter& append(const std::string& name, ParameterType type, Member Owner::*member,
                     const std::string& description) {
     if (parameter_named(schema, name))
       throw std::runtime_error("parameter \"" + name + "\" is declared twice");

@@ -15,7 +15,7 @@ Schema section_schema(const RegistryEntry& entry) {
   Schema schema = entry.schema;
   Parameter type;
   type.name = "type";
-  type.type = "text";
+  type.type = {ValueKind::text};
   type.description = "which " + entry.kind;
   type.required = true;
   type.choices = {entry.name};

@@ -29,7 +29,7 @@ std::string hint_for(const std::string& key, const Schema& schema, const ConfigN
   std::vector<std::string> known, constants;
   for (const Parameter& p : schema.parameters) {
     if (!p.from_experiment) known.push_back(p.name);
-    if (const ConfigNode* written = p.type == "map of numbers" ? map.find(p.name) : nullptr)
+    if (const ConfigNode* written = p.type.is_map() ? map.find(p.name) : nullptr)
       for (const auto& [name, value] : written->entries) constants.push_back(name);
   }
   return did_you_mean(
