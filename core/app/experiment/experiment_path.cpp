@@ -48,18 +48,13 @@ std::string missing_list(const ConfigNode& experiment, const std::vector<std::st
 void lead_to_constant(const ConfigNode& experiment, std::vector<std::string>& words) {
   const ConfigNode* node = &experiment;
   for (std::size_t k = 0; k < words.size(); ++k) {
-    if (node->kind == NodeKind::list) {
-      const auto index = node->index_of(words[k]);
-      if (!index) return;
-      node = &node->items[*index];
-      continue;
+    const ConfigNode *next = node->child(words[k]), *constants = node->find(constants_key);
+    if (!next && constants && constants->find(words[k])) {
+      words.insert(words.begin() + static_cast<std::ptrdiff_t>(k), constants_key);
+      next = constants;
     }
-    const ConfigNode *next = node->find(words[k]), *constants = node->find(constants_key);
-    const bool is_constant = !next && constants && constants->find(words[k]);
-    if (is_constant) words.insert(words.begin() + static_cast<std::ptrdiff_t>(k), constants_key);
-    if (is_constant) next = constants;
     if (!next) return;
-    const bool is_last = k + 2 == words.size() && words[k] == constants_key;
+    const bool is_last = next == constants && k + 2 == words.size();
     const ConfigNode* number = is_last ? next->find(words[k + 1]) : nullptr;
     if (number && number->kind == NodeKind::map) words.emplace_back("value");
     node = next;
@@ -79,11 +74,8 @@ std::vector<std::string> words_of_path(const ConfigNode& experiment, const std::
 
 const ConfigNode* value_at(const ConfigNode& experiment, const std::string& path) {
   const ConfigNode* node = &experiment;
-  for (const std::string& word : words_of_path(experiment, path)) {
-    const auto index = node->kind == NodeKind::list ? node->index_of(word) : std::nullopt;
-    node = index ? &node->items[*index] : node->find(word);
-    if (!node) return nullptr;
-  }
+  for (const std::string& word : words_of_path(experiment, path))
+    if (node) node = node->child(word);
   return node;
 }
 

@@ -128,6 +128,12 @@ const ConfigNode* ConfigNode::find(const std::string& key) const {
   return nullptr;
 }
 
+const ConfigNode* ConfigNode::child(const std::string& word) const {
+  if (kind != Kind::list) return find(word);
+  const std::optional<std::size_t> index = index_of(word);
+  return index ? &items[*index] : nullptr;
+}
+
 const Location& ConfigNode::where_of(const std::string& key) const {
   const ConfigNode* entry = find(key);
   return entry ? entry->where : where;

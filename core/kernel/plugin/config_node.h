@@ -40,6 +40,8 @@ struct ConfigNode {
   std::vector<std::size_t> indices_of(const std::string& word) const;
   /// The index of the only item that it names; none if it names several.
   std::optional<std::size_t> index_of(const std::string& word) const;
+  /// The map entry, or the only item of a list, that a word of a path names; null without one.
+  const ConfigNode* child(const std::string& word) const;
 
   /// The plugin that the node chooses: a scalar's text, or that of a map's `type`; empty for others.
   const std::string& plugin_name() const;

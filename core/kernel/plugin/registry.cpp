@@ -55,8 +55,7 @@ Location location_of(const ConfigNode& written, const std::string& path,
                      const std::optional<std::size_t>& at) {
   const ConfigNode* node = &written;
   for (const std::string& word : split(path, '.')) {
-    const auto index = node->kind == ConfigNode::Kind::list ? node->index_of(word) : std::nullopt;
-    const ConfigNode* next = index ? &node->items[*index] : node->find(word);
+    const ConfigNode* next = node->child(word);
     if (!next) break;
     node = next;
   }
