@@ -4,7 +4,7 @@ import fs from 'node:fs';
 import path from 'node:path';
 import {before} from 'node:test';
 import {pathToFileURL} from 'node:url';
-import {checkWhole, contactConfig, downloaded, drawnShare, guarded, newPage, onFirstScreen, openPage, run, scratch, screens, test, until} from './support.mjs';
+import {checkWhole, contactConfig, downloaded, drawnShare, newPage, onFirstScreen, openPage, run, scratch, screens, test, until} from './support.mjs';
 
 const folder = scratch(), report = pathToFileURL(path.join(folder, 'out/report.html')).href;
 
@@ -13,8 +13,8 @@ async function writeReport(of) {
   await run(folder, 'report', of, '--width', '225');
 }
 
-before(() => guarded('the run that is reported', () => run(folder, 'run', contactConfig, '--out', 'out', '--method', 'all', '--quiet',
-  '--threads', '1', '--set', 'snapshots=0')));
+before(() => run(folder, 'run', contactConfig, '--out', 'out', '--method', 'all', '--quiet',
+  '--threads', '1', '--set', 'snapshots=0'));
 
 test('opens without a complaint or a request, on the preview beside its end', async () => {
   const {page, heard, state} = await openPage(report);

@@ -12,57 +12,24 @@ export const source = path.resolve(path.dirname(new URL(import.meta.url).pathnam
 
 export const contactConfig = path.join(source, 'tests/configs/data/contact.yaml');
 
-/// The most that a step of a test may take in its processes' time, as tests/support/limited.cpp measures it [s]; without limits
-/// by hand. And what is enough for an event to come: so many looks, and so much work of the commands that run [s].
-const factor = Number(process.env.DRAPE_TEST_PATIENCE || 1);
-const patience = {cpu: 100 * factor, idle: 40 * factor, looks: 30 * factor, work: 10 * factor};
-let at = {test: '', step: '', begun: taken()};
+const deadline = 600e3;  // [ms], many times what anything that a test waits for takes
 const commands = new Set(), complaints = [];  // of pages from the disk in the test under way
 let chrome, closes = false;
 
-function taken() {
-  const file = process.env.DRAPE_TEST_TIME;
-  const [cpu, idle] = file ? fs.readFileSync(file, 'utf8').trim().split(/\s+/).map(Number) : [0, 0];
-  return {cpu, idle};
-}
-
-function begin(step) {
-  at = {...at, step, begun: taken()};
-}
-
-function excess() {
-  const now = taken();
-  for (const what of ['cpu', 'idle'])
-    if (now[what] - at.begun[what] > patience[what]) return `${patience[what]} s of ${what === 'cpu' ? 'processor' : 'idle'} time`;
-  return '';
-}
-
-/// Runs part of a test. It fails when a step of it exceeds the patience, and names the step; what it has started ends with it.
-export async function guarded(name, body) {
-  at = {test: name};
-  complaints.length = 0;
-  begin('its beginning');
-  let timer;
-  const overdue = new Promise((_, reject) => {
-    timer = setInterval(() => { if (excess()) reject(new Error(`in vain for ${excess()}: ${at.step}`)); }, 200);
-  });
-  try {
-    await Promise.race([body(), overdue]);
-    if (complaints.length) throw new Error('a page complains: ' + complaints.join('; '));
-  } finally {
-    clearInterval(timer);
-    at = {...at, test: ''};
-    begin(`the end of what "${name}" has started`);
-    endCommands();
-    if (chrome) await Promise.all((await chrome).contexts().map(context => context.close()));
-  }
-}
-
-/// node:test's `test`, guarded.
+/// node:test's `test`. What it has started ends with it. It fails where a page complains.
 export function test(name, body) {
   if (!closes) after(async () => { if (chrome) await (await chrome).close(); });
   closes = true;
-  nodeTest(name, () => guarded(name, body));
+  nodeTest(name, async () => {
+    complaints.length = 0;
+    try {
+      await body();
+      if (complaints.length) throw new Error('a page complains: ' + complaints.join('; '));
+    } finally {
+      endCommands();
+      if (chrome) await Promise.all((await chrome).contexts().map(context => context.close()));
+    }
+  });
 }
 
 function endCommands() {
@@ -71,38 +38,18 @@ function endCommands() {
 }
 
 process.on('exit', endCommands);
-for (const signal of ['SIGINT', 'SIGTERM', 'SIGHUP'])
-  process.on(signal, () => {
-    console.error(`${signal} in "${at.test}", waiting for: ${at.step}`);
-    process.exit(1);
-  });
+for (const signal of ['SIGINT', 'SIGTERM', 'SIGHUP']) process.on(signal, () => process.exit(1));
 
-/// Processor time of a process [s].
-function processorTime(pid) {
-  try {
-    const fields = fs.readFileSync(`/proc/${pid}/stat`, 'utf8').replace(/^.*\) /s, '').split(' ');
-    return (Number(fields[11]) + Number(fields[12])) / 100;
-  } catch {
-    return 0;  // it has ended
-  }
-}
-
-/// Waits until the condition holds, which it looks up again and again, ever less often; the step ends then. Fails after enough looks
-/// and enough work of the commands: both take longer on a busy machine, as the event itself does.
-export async function until(step, condition, looks = patience.looks) {
-  const {test} = at, begun = new Map([...commands].map(command => [command, processorTime(command.pid)]));
-  begin(step);
-  for (let look = 1, pause = 20; ; ++look, pause = Math.min(1.5 * pause, 500)) {
+/// Waits until the condition holds, which it looks up again and again, ever less often. Fails after the deadline, and at once where a
+/// command has ended.
+export async function until(what, condition) {
+  const end = Date.now() + deadline;
+  for (let pause = 20; ; pause = Math.min(1.5 * pause, 500)) {
     const value = await condition();
-    if (test !== at.test) throw new Error(`the test has ended: ${test}`);
-    if (value) {
-      begin('the step after: ' + step);
-      return value;
-    }
+    if (value) return value;
     for (const {line, result, awaited} of commands)
-      if (result && !awaited) throw new Error(`${line} has ended with ${result.code} before: ${step}\n${result.err}`);
-    if (look > looks && [...begun].every(([{pid, result}, time]) => result || processorTime(pid) > time + patience.work))
-      throw new Error(`in vain for ${look} looks and ${patience.work} s of work: ${step}`);
+      if (result && !awaited) throw new Error(`${line} has ended with ${result.code} before: ${what}\n${result.err}`);
+    if (Date.now() > end) throw new Error(`in vain for ten minutes: ${what}`);
     await new Promise(resolve => setTimeout(resolve, pause));
   }
 }
@@ -115,18 +62,14 @@ export function scratch() {
 
 /// Starts the command, in a process group of its own. `ended()` resolves to its {code, out, err}.
 export function start(folder, ...args) {
-  return startProgram(folder, drape, ...args);
-}
-
-export function startProgram(folder, program, ...args) {
-  const child = spawn(program, args, {cwd: folder, stdio: ['ignore', 'pipe', 'pipe'], detached: true});
-  const command = {pid: child.pid, line: [path.basename(program), ...args].join(' '), text: {out: '', err: ''}, result: null, awaited: false};
+  const child = spawn(drape, args, {cwd: folder, stdio: ['ignore', 'pipe', 'pipe'], detached: true});
+  const command = {line: ['drape', ...args].join(' '), text: {out: '', err: ''}, result: null, awaited: false};
   command.kill = signal => {
     try { process.kill(-child.pid, signal); } catch { /* it has ended */ }
   };
   command.ended = () => {
     command.awaited = true;
-    return until('the end of: ' + command.line, () => command.result, Infinity);
+    return until('the end of: ' + command.line, () => command.result);
   };
   child.stdout.on('data', data => { command.text.out += data; });
   child.stderr.on('data', data => { command.text.err += data; });
@@ -147,7 +90,7 @@ export async function run(folder, ...args) {
 export function browser() {
   const {chromium} = createRequire(path.join(process.env.DRAPE_NODE_MODULES, '/'))('playwright-core');
   chrome ??= chromium.launch({
-    executablePath: process.env.DRAPE_CHROMIUM || '/usr/bin/chromium', timeout: 0,
+    executablePath: process.env.DRAPE_CHROMIUM || '/usr/bin/chromium', timeout: deadline,
     args: ['--headless=new', '--no-sandbox', '--use-gl=angle', '--use-angle=swiftshader', '--enable-unsafe-swiftshader',
       '--disable-background-networking', '--disable-component-update', '--disable-sync', '--no-first-run'],
   });
@@ -156,7 +99,7 @@ export function browser() {
 
 export async function newPage(options = {}) {
   const context = await (await browser()).newContext(options);
-  context.setDefaultTimeout(0);  // the step's patience is the limit
+  context.setDefaultTimeout(deadline);
   return context.newPage();
 }
 

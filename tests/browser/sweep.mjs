@@ -4,14 +4,14 @@ import fs from 'node:fs';
 import path from 'node:path';
 import {before} from 'node:test';
 import {pathToFileURL} from 'node:url';
-import {checkWhole, contactConfig, downloaded, drawnShare, guarded, listenTo, newPage, onFirstScreen, run, scratch, screens, source, test, until} from './support.mjs';
+import {checkWhole, contactConfig, downloaded, drawnShare, listenTo, newPage, onFirstScreen, run, scratch, screens, source, test, until} from './support.mjs';
 
 const folder = scratch();
 
-before(() => guarded('the sweep that is reported', async () => {
+before(async () => {
   await run(folder, 'sweep', path.join(source, 'tests/sweep/small_sweep.yaml'), '-o', 'sweep');
   await run(folder, 'report', 'sweep');
-}));
+});
 
 async function open(name, options = {}) {
   const page = await newPage({viewport: {width: 1200, height: 800}, ...options});
