@@ -7,6 +7,5 @@ std::filesystem::path commands() { return DRAPE_BUILD_DIR "/bin"; }
 std::filesystem::path plugins() { return DRAPE_BUILD_DIR "/lib/drape"; }
 std::filesystem::path test_plugins() { return DRAPE_BUILD_DIR "/tests/plugins"; }
 std::filesystem::path example_plugins() { return DRAPE_BUILD_DIR "/tests/examples"; }
-std::filesystem::path tests() { return DRAPE_BUILD_DIR "/tests"; }
 
 }  // namespace folders

@@ -148,8 +148,7 @@ Ended ended_by_two_signals(Command& command, int between = SIGTERM) {
     command.wait_until("the signal is delivered", [&] { return !command.has_pending(signal); });
     if (between == SIGTERM) break;
   }
-  command.send(SIGTERM);
-  return command.wait({20 * test_slowdown(), 10});
+  return command.ended_by(SIGTERM);
 }
 
 }  // namespace
@@ -184,8 +183,7 @@ TEST_CASE("before a run has begun the first signal ends the process") {
     DrapeAtWork command(line + " --allow-memory --levels 1 --set cloth.columns=2000 --set cloth.rows=2000",
                         folder);
     command.wait_until("it is at work", [&] { return command.processor_time() > 0.5; });
-    command.send(SIGTERM);
-    const Ended ended = command.wait({20 * test_slowdown(), 10});
+    const Ended ended = command.ended_by(SIGTERM);
     CHECK(ended.exit_code == 128 + SIGTERM);
     CHECK(ended.out == "");
     CHECK(!fs::exists(folder / "out"));

@@ -28,7 +28,7 @@ TEST_CASE(
                  "--allow-memory\n"));
 
   // The shell's limit is the machine's. Sanitizers ask for terabytes of addresses.
-  if (test_slowdown() > 1) return;
+  if (DRAPE_SANITIZED) return;
   const std::string line = "ulimit -v 2900000; exec " + drape_command +
                            " check e.yaml --levels 1 --set cloth.columns=300 --set cloth.rows=300";
   const Ended ended = Command(line, folder.path).wait();

@@ -13,7 +13,6 @@
 #include "tests/support/decompositions.h"
 #include "tests/support/evaluate.h"
 #include "tests/support/meshes.h"
-#include "tests/support/time_limit.h"
 
 using namespace drape;
 
@@ -116,7 +115,7 @@ Positions stacked(const Level& level, const BoundContact& contact, double gap, u
 template <class Body>
 void for_each_state(const std::vector<NamedModel>& models, const Body& body) {
   const Level level = two_sheets(40);
-  const unsigned states = test_slowdown() > 1 ? 1 : 3;  // sanitizers look at the code, not at the numbers
+  const unsigned states = DRAPE_SANITIZED ? 1 : 3;
   for (const NamedModel& named : models) {
     const auto contact = named.model->bind(level, Material());
     for (unsigned seed = 1; seed <= states; ++seed) {

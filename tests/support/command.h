@@ -21,7 +21,6 @@
 #include <vector>
 
 #include "tests/support/folders.h"
-#include "tests/support/time_limit.h"
 
 /// An empty folder, or one with this experiment in e.yaml, that goes away with the object.
 struct Scratch {
@@ -63,10 +62,15 @@ inline nlohmann::json json_in(const std::filesystem::path& file) {
   return nlohmann::json::parse(text_of(file));
 }
 
-/// Many times what any command of the tests takes to end …
-inline const TimeLimit command_limit{120 * test_slowdown(), 40};
-/// … and what one takes to bring about what a test waits for.
-inline const TimeLimit event_limit{40 * test_slowdown(), 40};
+/// Waits until the condition holds; fails the test case after ten minutes, many times what any takes.
+inline void wait_until(const std::string& what, const std::function<bool()>& condition) {
+  INFO("waiting until " << what);
+  const auto deadline = std::chrono::steady_clock::now() + std::chrono::minutes(10);
+  while (!condition()) {
+    if (std::chrono::steady_clock::now() > deadline) FAIL("in vain for ten minutes");
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  }
+}
 
 /// How a command ended; a signal's exit code is 128 + its number, as in a shell.
 struct Ended {
@@ -119,11 +123,9 @@ class Command {
     return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
   }
 
-  /// Fails the test case when the command takes more than the limit.
-  Ended wait(const TimeLimit& limit = command_limit) {
-    INFO("waiting for the end of: " << line_);
-    TimeTaken taken(pid_);
-    while (!has_ended()) pause(taken, limit);
+  /// Waits for its end.
+  Ended wait() {
+    ::wait_until("this has ended: " + line_, [&] { return has_ended(); });
     const int code = ended_.si_code == CLD_EXITED ? ended_.si_status : 128 + ended_.si_status;
     return {code, text_of(output_ / "out"), text_of(output_ / "err")};
   }
@@ -135,15 +137,15 @@ class Command {
   }
 
   /// Waits until the condition holds that the command is to bring about; fails the test case when the command
-  /// ends without, or takes more than the limit.
-  void wait_until(const std::string& what, const std::function<bool()>& condition,
-                  const TimeLimit& limit = event_limit) {
-    INFO("waiting until " << what << ", by: " << line_);
-    TimeTaken taken(pid_);
-    for (bool ended = false; !condition(); ended = has_ended()) {
+  /// ends without.
+  void wait_until(const std::string& what, const std::function<bool()>& condition) {
+    bool ended = false;
+    ::wait_until(what + ", by: " + line_, [&] {
+      if (condition()) return true;
       if (ended) FAIL("the command ended before; it said: " << text_of(output_ / "err"));
-      pause(taken, limit);
-    }
+      ended = has_ended();
+      return false;
+    });
   }
 
  private:
@@ -155,13 +157,6 @@ class Command {
   /// The ended command stays a zombie, so that its number, which is the group's, is given to no other.
   bool has_ended() {
     return waitid(P_PID, id_t(pid_), &ended_, WEXITED | WNOHANG | WNOWAIT) == 0 && ended_.si_pid;
-  }
-
-  static void pause(TimeTaken& taken, const TimeLimit& limit) {
-    taken.look();
-    const std::string excess = taken.excess(limit);
-    if (!excess.empty()) FAIL("the command " << excess);
-    std::this_thread::sleep_for(std::chrono::milliseconds(5));
   }
 
   const std::string line_;
@@ -179,13 +174,6 @@ inline long lines_in(const std::filesystem::path& file) {
 inline void wait_for_lines(Command& command, const std::filesystem::path& file, long lines) {
   command.wait_until(file.string() + " has " + std::to_string(lines) + " lines",
                      [&] { return lines_in(file) >= lines; });
-}
-
-/// Waits for what no command of the test itself brings about. The test's own limit ends a wait in vain
-/// (tests/support/limited.cpp), and Catch2 then names the test case.
-inline void wait_until(const std::string& what, const std::function<bool()>& condition) {
-  INFO("waiting until " << what);
-  while (!condition()) std::this_thread::sleep_for(std::chrono::milliseconds(5));
 }
 
 inline const std::string drape_command = (folders::commands() / "drape").string();

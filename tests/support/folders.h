@@ -10,5 +10,4 @@ std::filesystem::path commands();         ///< of drape and its companions
 std::filesystem::path plugins();          ///< that drape is shipped with
 std::filesystem::path test_plugins();     ///< a folder for each plugin of tests/plugins
 std::filesystem::path example_plugins();  ///< of the documents (examples/)
-std::filesystem::path tests();            ///< of the test programs
 }  // namespace folders

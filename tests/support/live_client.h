@@ -41,7 +41,7 @@ class LiveClient {
     return ::send(socket_, text.data(), text.size(), MSG_NOSIGNAL | MSG_DONTWAIT) == ssize_t(text.size());
   }
 
-  /// The bytes that come until the server closes the connection. The test's own limit ends a wait in vain.
+  /// The bytes that come until the server closes the connection. ctest's limit ends a wait in vain.
   std::string answer() const {
     std::string all;
     char buffer[4096];

@@ -16,7 +16,3 @@ using Matchers::StartsWith;
 inline auto Contains(const std::string& text) { return Matchers::ContainsSubstring(text); }
 
 }  // namespace Catch
-
-#ifdef CATCH_CONFIG_MAIN
-int main(int arguments, char** words) { return Catch::Session().run(arguments, words); }
-#endif
