@@ -1,10 +1,8 @@
 """What the tests of the Python module share. PYTHONPATH names the module's folder, DRAPE_BIN that of the command."""
 
 import copy
-import faulthandler
 import os
 import pathlib
-import signal
 import sys
 
 import pytest
@@ -40,11 +38,6 @@ def solved_by(experiment, solver):
     """The experiment with this solver in Python, own_solver, as its only method."""
     drape.register("own_solver", solver)
     return {**experiment, "methods": {"own_solver": {}}, "reference": {}}
-
-
-def pytest_configure():
-    """A test that hangs is sent SIGTERM (tests/support/limited.cpp): it says where it is, past pytest's capture of the output."""
-    faulthandler.register(signal.SIGTERM, file=os.fdopen(os.dup(sys.__stderr__.fileno()), "w"), chain=True)
 
 
 @pytest.fixture

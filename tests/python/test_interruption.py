@@ -2,12 +2,13 @@
 
 import os
 import signal
+import subprocess
 import threading
 from concurrent.futures import ThreadPoolExecutor
 
 import pytest
 from prototypes import NumpyStvk
-from waiting import completed, wait_until
+from waiting import wait_until
 
 import drape
 from conftest import with_membrane
@@ -51,7 +52,7 @@ def test_an_exception_in_a_callback_is_raised(experiment, where, tmp_path, comma
 
     with pytest.raises(Luck, match="out of luck"):
         experiment.run(out=tmp_path / "r", report=False, progress=False, **{where: fail})
-    ended = completed([command, "run", "--resume", tmp_path / "r", "-q", "--no-report"])
+    ended = subprocess.run([command, "run", "--resume", tmp_path / "r", "-q", "--no-report"])
     assert ended.returncode == 0
     plain = experiment.run(progress=False)["pcs"].levels[-1].x
     assert drape.read_run(tmp_path / "r")["pcs"].levels[-1].x.tobytes() == plain.tobytes()

@@ -11,7 +11,6 @@ from concurrent.futures import ThreadPoolExecutor
 
 import numpy
 import pytest
-from waiting import completed
 
 import drape
 from conftest import PRELOADED, SOURCE
@@ -151,7 +150,7 @@ small["energies"][0] = "springs"
 solver = drape.Experiment(small).solver("newton")
 next(solver)
 """
-    ended = completed([sys.executable, "-c", script], env={**os.environ, **PRELOADED})
+    ended = subprocess.run([sys.executable, "-c", script], env={**os.environ, **PRELOADED}, capture_output=True, text=True)
     assert (ended.returncode, ended.stderr) == (0, "")
 
 

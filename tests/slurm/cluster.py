@@ -106,10 +106,10 @@ class Cluster:
     def __exit__(self, *_):
         for name in reversed(list(self.daemons)):
             self.daemons[name].terminate()
-        try:
-            wait_until("the daemons have ended", lambda: all(d.poll() is not None for d in self.daemons.values()), idle=10)
-        except InVain:
-            for daemon in self.daemons.values():
+        for daemon in self.daemons.values():
+            try:
+                daemon.wait(timeout=60)
+            except subprocess.TimeoutExpired:
                 daemon.kill()
                 daemon.wait()
         for pid in processes():  # steps and their runs: all that knows of this cluster
@@ -190,7 +190,7 @@ SchedulerParameters=batch_sched_delay=0,sched_min_interval=0,sched_interval=1,bf
                     raise RuntimeError(f"{name} has ended before: {what}; logs:\n{self.logs()}")
             return holds()
         try:
-            wait_until(what, holds_with_all_daemons, cpu=80, idle=80)  # Slurm takes its time
+            wait_until(what, holds_with_all_daemons)
         except InVain as fault:
             raise RuntimeError(f"{fault}; logs:\n{self.logs()}") from None
 
