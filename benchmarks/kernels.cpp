@@ -2,9 +2,16 @@
 
 #include <cmath>
 #include <concepts>
+#include <memory>
 #include <random>
+#include <stdexcept>
+#include <string>
 
+#include "benchmarks/measure.h"
+#include "core/app/files/yaml_file.h"
+#include "core/kernel/interfaces/energy.h"
 #include "core/kernel/interfaces/level.h"
+#include "core/kernel/plugin/make.h"
 #include "core/numerics/elements/element_energy.h"
 #include "core/numerics/patterns/generate.h"
 #include "plugins/energy/midedge_bending/bound_midedge_bending.h"
@@ -60,6 +67,27 @@ const Cloth& cloth() {
 struct MidedgeAlike {};
 struct MidedgeIrregular {};
 
+// Stand for the plugin `formula` with the law of a compiled one.
+struct NeoHookeanFormula {
+  static constexpr const char* yaml =
+      "{type: formula, where: {l: log(J)}, density: \"thickness*(mu*(g11 + g22 - l) + lambda/2*l^2)\"}";
+};
+struct StvkFormula {
+  static constexpr const char* yaml =
+      "{type: formula, density: \"thickness*(mu*(g11^2 + g22^2 + 2*g12^2) + lambda/2*(g11 + g22)^2)\"}";
+};
+struct HingeFormula {
+  static constexpr const char* yaml = "{type: formula, per: hinge, energy: \"3*k*length^2/area*bend^2\"}";
+};
+
+std::unique_ptr<BoundEnergy> loaded_energy(const std::string& yaml, const Level& level) {
+  ConfigErrors errors;
+  const ConfigNode node = parse_yaml("energy: " + yaml, "benchmark", errors);
+  const auto energy = make_from<Energy>(all_plugins(), *node.find("energy"), errors);
+  if (!energy) throw std::runtime_error(errors.front().text());
+  return energy->bind(level, Material());
+}
+
 template <class Kernel>
 const Cloth& cloth_of() {
   return cloth();
@@ -75,6 +103,9 @@ const BoundEnergy& energy() {
   const Level& level = cloth_of<Kernel>().level;
   if constexpr (std::derived_from<Kernel, Energy>) {
     static const auto made = Kernel({}).bind(level, Material());
+    return *made;
+  } else if constexpr (requires { Kernel::yaml; }) {
+    static const auto made = loaded_energy(Kernel::yaml, level);
     return *made;
   } else {
     static const BoundMidedgeBending made(level, ShapeOperators::of(level, Material(), 0.02),
@@ -183,8 +214,11 @@ BENCHMARK(shell_hessian)->DRAPE_THREADS;
   BENCHMARK_TEMPLATE(hessian, Kernel, Projection::clamp)->DRAPE_THREADS; \
   BENCHMARK_TEMPLATE(hessian, Kernel, Projection::absolute)->DRAPE_THREADS
 DRAPE_KERNEL(NeoHookean);
+DRAPE_KERNEL(NeoHookeanFormula);
 DRAPE_KERNEL(Stvk);
+DRAPE_KERNEL(StvkFormula);
 DRAPE_KERNEL(Hinge);
+DRAPE_KERNEL(HingeFormula);
 DRAPE_KERNEL(QuadraticBending);
 DRAPE_KERNEL(MidedgeAlike);
 DRAPE_KERNEL(MidedgeIrregular);
