@@ -8,6 +8,7 @@ from operator import itemgetter
 
 from records import CONVERGED, RESULTS, WITHOUT_CONTACT, conditions, figure, median, read, seconds_text, stamps, usual_conditions, with_range
 
+TFLOP = itemgetter("tflop")
 METHODS = ["pcs", "cascadic", "newton"]
 MEASURED = ["cotton-broad", "wool-tropical", "polyester-tropical", "polyester-faille"]  # their drape coefficients
 FABRICS = [*MEASURED, *(f"{fabric} elastic" for fabric in MEASURED), "11oz-black-denim", "gray-interlock", "tango-red-jet-set", "cotton"]
@@ -47,10 +48,16 @@ def grouped(records, *keys):
     return found
 
 
-def over_cascadic(study, value):
-    """PCS's value over the cascadic method's, scene by scene and start by start."""
-    cascadic = {(r["scene"], r["seed"]): value(r) for r in finished(study, "cascadic")}
-    return [value(r) / cascadic[r["scene"], r["seed"]] for r in finished(study, "pcs", variant="default")]
+def start_by_start(study, value, other="cascadic"):
+    """PCS's value over another method's, scene by scene and start by start."""
+    base = {(r["scene"], r["seed"]): value(r) for r in finished(study, other)}
+    return [value(r) / base[r["scene"], r["seed"]] for r in finished(study, "pcs", variant="default")]
+
+
+def starts_above(study, value):
+    """Number of starts from which PCS has more than the cascadic method."""
+    ratios = start_by_start(study, value)
+    return f"{sum(ratio > 1 for ratio in ratios)} of {len(ratios)}"
 
 
 def lowest_to_highest(values):
@@ -77,6 +84,7 @@ def sphere(columns):
         "iterations": lambda r: ", ".join(figure(n) for n in iterations(r)),
         "preview [s]": lambda r: seconds_text([x["seconds_of_preview"] for x in r]),
         "total [s]": lambda r: seconds_text([x["seconds"] for x in r]),
+        "total flops, relative to direct": lambda r: figure(of(r, "tflop") / of(finished("sphere", "newton"), "tflop"), 2),
         "final energy [J]": lambda r: figure(of(r, "energy"), 6),
         "preview: RMS distance from the final state [diagonals]": lambda r: with_range([x["preview"]["distance_rms"] for x in r], lambda v: figure(v, 2)),
         "silhouette overlap": lambda r: preview(r, "silhouette_overlap"),
@@ -291,22 +299,22 @@ def solves(*names):
     return len(records), sum(r["intersections"] > 0 for r in records)
 
 
-def medians_over_cascadic(study, value):
-    """PCS's median over the cascadic method's, by scene."""
+def medians_over(other, study, value):
+    """PCS's median over another method's, by scene."""
     names = dict.fromkeys(r["scene"] for r in read(f"{study}.json"))
     return {name: median([value(r) for r in finished(study, "pcs", name, "default")])
-            / median([value(r) for r in finished(study, "cascadic", name)]) for name in names}
+            / median([value(r) for r in finished(study, other, name)]) for name in names}
 
 
-def scenes_above(study, value):
-    """Those on which PCS has more than the cascadic method, and how many times as much."""
-    found = [f"{name} ({figure(ratio, 2)})" for name, ratio in medians_over_cascadic(study, value).items() if ratio > 1]
+def scenes_above(study, value, other="cascadic"):
+    """Those on which PCS has more than another method, and how many times as much."""
+    found = [f"{name} ({figure(ratio)})" for name, ratio in medians_over(other, study, value).items() if ratio > 1]
     return " and ".join([", ".join(found[:-1]), found[-1]] if len(found) > 1 else found) or "none"
 
 
 def flops_of_five_scenes():
     """The lowest and the highest of the scenes with a fourth level but for the sphere."""
-    return lowest_to_highest([ratio for name, ratio in medians_over_cascadic("four_levels", lambda r: r["tflop"]).items() if name != "sphere"])
+    return lowest_to_highest([ratio for name, ratio in medians_over("cascadic", "four_levels", TFLOP).items() if name != "sphere"])
 
 
 def drape_coefficient(fabric):
@@ -324,8 +332,8 @@ TOP = ["preview, RMS: pcs / cascadic", "overlap", "finest level, iterations: pcs
        "total flops, relative to direct: pcs / cascadic", "final energy, pcs minus cascadic, start by start [J]"]
 
 BLOCKS = {
-    "sphere in full": lambda: sphere(["iterations", "preview [s]", "total [s]", "final energy [J]",
-                                      "preview: RMS distance from the final state [diagonals]", "silhouette overlap",
+    "sphere in full": lambda: sphere(["iterations", "preview [s]", "total [s]", "total flops, relative to direct",
+                                      "final energy [J]", "preview: RMS distance from the final state [diagonals]", "silhouette overlap",
                                       "preview: energy above the final state [J]", "level 1: RMS distance"]),
     "six scenes in full": lambda: scenes("previews", TOP),
     "four levels": lambda: scenes("four_levels", [
@@ -358,10 +366,18 @@ VALUES = {
     "sphere.distance_ratio": lambda: figure(
         median([r["preview"]["distance_rms"] for r in finished("sphere", "cascadic")])
         / median([r["preview"]["distance_rms"] for r in finished("sphere", "pcs")]), 2),
-    "sphere, previews": lambda: lowest_to_highest(over_cascadic("sphere", lambda r: r["preview"]["distance_rms"])),
-    "sphere, level 1": lambda: lowest_to_highest(over_cascadic("sphere", lambda r: r["level_1"]["distance_rms"])),
-    "sphere, time to the preview": lambda: lowest_to_highest(over_cascadic("sphere", lambda r: r["seconds_of_preview"])),
-    "flops from single starts": lambda: lowest_to_highest(over_cascadic("previews", lambda r: r["tflop"])),
+    "sphere, previews": lambda: lowest_to_highest(start_by_start("sphere", lambda r: r["preview"]["distance_rms"])),
+    "sphere, level 1": lambda: lowest_to_highest(start_by_start("sphere", lambda r: r["level_1"]["distance_rms"])),
+    "sphere, time to the preview": lambda: lowest_to_highest(start_by_start("sphere", lambda r: r["seconds_of_preview"])),
+    "sphere, later previews": lambda: starts_above("sphere", lambda r: r["seconds_of_preview"]),
+    "sphere, time to the end": lambda: lowest_to_highest(start_by_start("sphere", lambda r: r["seconds"])),
+    "sphere.slower": lambda: starts_above("sphere", lambda r: r["seconds"]),
+    "sphere, flops over direct": lambda: figure(medians_over("newton", "sphere", TFLOP)["sphere"], 2),
+    **{f"{study}, flops over direct from single starts": lambda study=study: lowest_to_highest(start_by_start(study, TFLOP, "newton"))
+       for study in ("sphere", "previews")},
+    "previews, more flops than direct": lambda: scenes_above("previews", TFLOP, "newton"),
+    "previews, higher energy": lambda: scenes_above("previews", lambda r: r["preview"]["energy_above_end"]),
+    "flops from single starts": lambda: lowest_to_highest(start_by_start("previews", TFLOP)),
     **{f"drape coefficient of {fabric}": lambda fabric=fabric: drape_coefficient(fabric) for fabric in FABRICS},
     "sphere.direct": lambda: median_seconds("newton", "seconds"),
     "usual conditions": usual_conditions,
@@ -369,7 +385,7 @@ VALUES = {
     **{f"{method}'s preview of the sphere [s]": lambda method=method: seconds_text(
         [r["seconds_of_preview"] for r in runs("sphere", method)]) for method in METHODS},
     "flops of pcs on five scenes, four levels": flops_of_five_scenes,
-    **{f"{study}, more flops": lambda study=study: scenes_above(study, lambda r: r["tflop"]) for study in ("previews", "four_levels")},
+    **{f"{study}, more flops": lambda study=study: scenes_above(study, TFLOP) for study in ("previews", "four_levels")},
     **{f"{study}, level 1 farther": lambda study=study: scenes_above(study, lambda r: r["level_1"]["distance_rms"])
        for study in ("previews", "four_levels")},
     "processor of Codim-IPC's BLAS": lambda: read("codim_ipc.json")["runs"][0]["codim_ipc"]["blas_kernels"],
