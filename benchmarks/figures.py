@@ -182,8 +182,7 @@ def decrements():
 
 
 def ratios():
-    rows = [[r["what"], r["against"], figure(r["ratio"], 2)] for r in read("ratios.json")["rows"]
-            if not r["what"].startswith("results/")]
+    rows = [[r["what"], r["against"], figure(r["ratio"], 2)] for r in read("ratios.json")["rows"] if r["seconds"] > 0]
     return table(["what", "over", "ratio"], rows, "llr")
 
 
@@ -201,6 +200,10 @@ def linear_solvers():
                   "the same for a solve", "cholmod: same bits as with one thread"], rows, "lrrrrrrl")
 
 
+def sum_of_changes(method, key):
+    return sum(r[method][key] for r in read("changes.json")["rows"])
+
+
 def changes():
     rows = []
     for r in read("changes.json")["rows"]:
@@ -208,6 +211,8 @@ def changes():
         for method in ("pcs", "newton"):
             cells += [str(r[method]["iterations"]), figure(r[method]["seconds"], 2)]
         rows.append(cells)
+    rows.append(["all of them"] + [text for method in ("pcs", "newton") for text in (
+        str(sum_of_changes(method, "iterations")), figure(sum_of_changes(method, "seconds")))])
     return table(["change", "PCS: Newton iterations", "s", "direct coarse: Newton iterations", "s"], rows, "lrrrr")
 
 
@@ -322,6 +327,17 @@ def drape_coefficient(fabric):
     return with_range([float(r["drape_coefficient"]) for r in rows if r["run"] == fabric], lambda v: f"{v:.1f}")
 
 
+def longer_changes():
+    """Of the changes after the start, the number on which PCS takes more iterations than the direct coarse model."""
+    after = read("changes.json")["rows"][1:]
+    return f"{sum(r['pcs']['iterations'] > r['newton']['iterations'] for r in after)} of {len(after)}"
+
+
+def pins_meet(key):
+    """The values of the hard case "pins meet" by all methods."""
+    return sorted({r[key] for r in read("hard.json") if r["run"] == "pins meet"})
+
+
 def row_count(name):
     """Rows of a table of runs and how many pass; no state of them may be missing."""
     rows = read(name)
@@ -388,6 +404,14 @@ VALUES = {
     **{f"{study}, more flops": lambda study=study: scenes_above(study, TFLOP) for study in ("previews", "four_levels")},
     **{f"{study}, level 1 farther": lambda study=study: scenes_above(study, lambda r: r["level_1"]["distance_rms"])
        for study in ("previews", "four_levels")},
+    "iterations of the coarse matrix": lambda: lowest_to_highest([matrix / galerkin for matrix, galerkin in zip(
+        *(iterations(runs("ablations", "pcs_loop", variant=variant))[:-1] for variant in ("coarse_matrix", "as_it_is")))]),
+    "changes with more iterations": longer_changes,
+    **{f"{key} of all changes": lambda key=key: " and ".join(figure(sum_of_changes(method, key)) for method in ("pcs", "newton"))
+       for key in ("iterations", "seconds")},
+    "milliseconds of a load": lambda: lowest_to_highest([r["load_milliseconds"] for r in read("changes.json")["rows"]]),
+    "pins meet, gap": lambda: figure(pins_meet("smallest_gap")[0], 2),
+    "pins meet, status": lambda: " or ".join(pins_meet("status")),
     "processor of Codim-IPC's BLAS": lambda: read("codim_ipc.json")["runs"][0]["codim_ipc"]["blas_kernels"],
     "sphere.solves": lambda: str(solves("sphere")[0]),
     "previews.solves": lambda: str(solves("previews")[0]),
