@@ -10,6 +10,7 @@ from records import CONVERGED, RESULTS, WITHOUT_CONTACT, conditions, figure, med
 
 TFLOP = itemgetter("tflop")
 METHODS = ["pcs", "cascadic", "newton"]
+TWO_DRAPES = ["hanging", "draped"]  # the scenes of two_drapes.py
 MEASURED = ["cotton-broad", "wool-tropical", "polyester-tropical", "polyester-faille"]  # their drape coefficients
 FABRICS = [*MEASURED, *(f"{fabric} elastic" for fabric in MEASURED), "11oz-black-denim", "gray-interlock", "tango-red-jet-set", "cotton"]
 
@@ -227,16 +228,36 @@ def python():
 
 
 def codim_ipc():
+    """An energy that Codim-IPC has after its first time step may have been reached anywhere within that step."""
     two = lambda v: figure(v, 2)  # noqa: E731
     rows = []
     for (scene, vertices), starts in grouped(read("codim_ipc.json")["runs"], "scene", "vertices").items():
         row = [scene, str(vertices)]
         for key in ("seconds_per_iteration", "seconds_to_same_state"):
-            row += [seconds_text([r[program].get(key) for r in starts]) for program in ("drape", "codim_ipc")]
-            row.append(with_range([r["codim_ipc"][key] / r["drape"][key] for r in starts if key in r["drape"]], two))
+            bounded = key == "seconds_to_same_state" and any(r["codim_ipc"].get("seconds_a_step_before") == 0 for r in starts)
+            ours, theirs = (seconds_text([r[program].get(key) for r in starts]) for program in ("drape", "codim_ipc"))
+            ratio = with_range([r["codim_ipc"][key] / r["drape"][key] for r in starts if key in r["drape"]], two)
+            row += [ours] + [f"at most {text}" if bounded else text for text in (theirs, ratio)]
         rows.append(row + [with_range([r.get("rms_distance") for r in starts], two)])
-    return table(["scene", "vertices", "iteration [s]: drape", "iteration [s]: Codim-IPC", "iteration: ratio", "to the same state [s]: drape",
-                  "to the same state [s]: Codim-IPC", "to the same state: ratio", "RMS distance of the final states [diagonals]"], rows, "lrrrrrrrr")
+    return table(["scene", "vertices", "iteration [s]: drape", "iteration [s]: Codim-IPC", "iteration: ratio", "to the same energy [s]: drape",
+                  "to the same energy [s]: Codim-IPC", "to the same energy: ratio", "RMS distance of the final states [diagonals]"], rows, "lrrrrrrrr")
+
+
+def energy_over_codim_ipc(scene):
+    """How far drape's final energy is above Codim-IPC's, in % of the gravitational energy released, a thousandth of which is in
+    `same_state`."""
+    def percent(ours, theirs, target):
+        return 0.1 * (ours - theirs) / (target - max(ours, theirs))
+
+    found = [percent(r["drape"]["energy"], r["codim_ipc"]["energy"], r["same_state"])
+             for r in read("codim_ipc.json")["runs"] if r["scene"] == scene and "same_state" in r]
+    return lowest_to_highest(found)
+
+
+def first_iterations(program, scene):
+    """Number of Newton iterations where only the beginning was run."""
+    found = [r[program]["iterations"] for r in read("codim_ipc.json")["runs"] if r["scene"] == scene and "same_state" not in r]
+    return str(found[0]) if len(set(found)) == 1 else f"{min(found)} to {max(found)}"
 
 
 def beside(program, title):
@@ -412,6 +433,9 @@ VALUES = {
     "milliseconds of a load": lambda: lowest_to_highest([r["load_milliseconds"] for r in read("changes.json")["rows"]]),
     "pins meet, gap": lambda: figure(pins_meet("smallest_gap")[0], 2),
     "pins meet, status": lambda: " or ".join(pins_meet("status")),
+    **{f"drape's energy over Codim-IPC's, {scene} [%]": lambda scene=scene: energy_over_codim_ipc(scene) for scene in TWO_DRAPES},
+    **{f"first iterations of {title}, {scene}": lambda program=program, scene=scene: first_iterations(program, scene)
+       for program, title in (("drape", "drape"), ("codim_ipc", "Codim-IPC")) for scene in TWO_DRAPES},
     "processor of Codim-IPC's BLAS": lambda: read("codim_ipc.json")["runs"][0]["codim_ipc"]["blas_kernels"],
     "sphere.solves": lambda: str(solves("sphere")[0]),
     "previews.solves": lambda: str(solves("previews")[0]),
