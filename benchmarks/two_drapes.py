@@ -3,6 +3,7 @@
 import json
 import pathlib
 import signal
+import subprocess
 import sys
 import tempfile
 import time
@@ -81,6 +82,12 @@ def drape_end(scene, vertices, seed):
     return levels[0], levels.start(0), {**end, "iterations": len(seconds)}
 
 
+def commit_of(folder):
+    """The commit of another program's sources, None where they are not in a Git tree."""
+    return subprocess.run(["git", "-C", folder, "rev-parse", "--short", "HEAD"], stdout=subprocess.PIPE, stderr=subprocess.DEVNULL,
+                          text=True).stdout.strip() or None
+
+
 def cases(*vertices):
     """Each scene with each number of vertices, start by start."""
     return [{"scene": scene, "vertices": n, "seed": seed} for seed in SEEDS for n in vertices for scene in SCENES]
@@ -95,5 +102,7 @@ def measure_all(out, about, cases, measure):
             continue
         with tempfile.TemporaryDirectory(prefix="drape_") as folder:
             done.append(case | measure(**case, folder=pathlib.Path(folder)))
-        out.write_text(json.dumps({**about, "version": drape.__version__, "commit": drape.__commit__, "runs": done}, indent=1) + "\n")
+        part = out.with_suffix(".part")
+        part.write_text(json.dumps({**about, "version": drape.__version__, "commit": drape.__commit__, "runs": done}, indent=1) + "\n")
+        part.replace(out)
         print(*case.values(), file=sys.stderr, flush=True)
