@@ -275,6 +275,15 @@ def beside(program, title):
                  rows, "llrrrrr")
 
 
+def starks_linear_solvers():
+    """How STARK solved its linear systems; records without a name are of conjugate gradients alone."""
+    found = [r["stark"] for r in read("stark.json")["runs"]]
+    if "linear_solver" not in found[0]:
+        return "conjugate gradients alone, without its factorisations"
+    counts = [f"{name} in {len(runs_of)} of {len(found)} runs" for name, runs_of in grouped(found, "linear_solver").items()]
+    return f"the faster of conjugate gradients and factorisations: {', '.join(counts)}"
+
+
 def scale():
     record = read("scale.json")
     rows = [[str(r["vertices"]), figure(r["iterations"]), figure(r["seconds"], 2), figure(r["total_seconds"], 3), figure(r["peak_bytes"] / 1e9, 2)]
@@ -437,6 +446,9 @@ VALUES = {
     **{f"first iterations of {title}, {scene}": lambda program=program, scene=scene: first_iterations(program, scene)
        for program, title in (("drape", "drape"), ("codim_ipc", "Codim-IPC")) for scene in TWO_DRAPES},
     "processor of Codim-IPC's BLAS": lambda: read("codim_ipc.json")["runs"][0]["codim_ipc"]["blas_kernels"],
+    "iterations of STARK over drape's": lambda: lowest_to_highest(
+        [r["stark"]["iterations"] / r["drape"]["iterations"] for r in read("stark.json")["runs"]]),
+    "linear solvers of STARK": starks_linear_solvers,
     "sphere.solves": lambda: str(solves("sphere")[0]),
     "previews.solves": lambda: str(solves("previews")[0]),
     "dragon.pcs": lambda: seconds_text([of(runs("dragon_decrements", "pcs"), "seconds")]),

@@ -3,10 +3,11 @@
 //     simulate SCENE OUT CODE    CODE: folder for the code that STARK generates and compiles
 //
 // SCENE has numbers: cloth's vertices, triangles, pins and the ball's vertices, triangles (0 without a ball);
-// density [kg/m²], thickness [m], Young's modulus [Pa], Poisson's ratio, hinge stiffness [J], d̂ [m]; largest
-// step of a vertex [m], force residual at which to stop, CPU seconds after which to give up; then rest
-// positions, start positions, triangles and pins of the cloth, positions and triangles of the ball. OUT gets
-// Newton iterations, CPU seconds, force residual and the cloth's positions, of the last state.
+// 1 to factorise matrices, 0 for conjugate gradients; density [kg/m²], thickness [m], Young's modulus [Pa],
+// Poisson's ratio, hinge stiffness [J], d̂ [m]; largest step of a vertex [m], force residual at which to stop,
+// CPU seconds after which to give up; then rest positions, start positions, triangles and pins of the cloth,
+// positions and triangles of the ball. OUT gets Newton iterations, iterations of conjugate gradients, CPU
+// seconds, force residual and the cloth's positions, of the last state.
 
 #include <ctime>
 #include <fstream>
@@ -36,8 +37,8 @@ double cpu_seconds() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC
 
 int main(int, char** words) {
   std::ifstream in(words[1]);
-  int vertices, triangle_count, pin_count, ball_vertices, ball_triangle_count;
-  in >> vertices >> triangle_count >> pin_count >> ball_vertices >> ball_triangle_count;
+  int vertices, triangle_count, pin_count, ball_vertices, ball_triangle_count, factorises;
+  in >> vertices >> triangle_count >> pin_count >> ball_vertices >> ball_triangle_count >> factorises;
   double density, thickness, modulus, poisson_ratio, hinge, dhat, step_cap, tolerance, limit;
   in >> density >> thickness >> modulus >> poisson_ratio >> hinge >> dhat >> step_cap >> tolerance >> limit;
   const Points rest = read_points(in, vertices), start = read_points(in, vertices);
@@ -59,6 +60,7 @@ int main(int, char** words) {
   settings.simulation.max_time_step_size = 1;
   settings.newton.projection_mode = symx::ProjectionToPD::ProjectedNewton;
   settings.newton.project_to_pd_use_mirroring = true;
+  settings.newton.linear_solver = factorises ? symx::LinearSolver::DirectLLT : symx::LinearSolver::BDPCG;
   settings.newton.step_cap = step_cap;
   settings.newton.step_tolerance = 0;
   settings.newton.residual_tolerance_abs = 0;  // the residual's function below ends the run
@@ -101,10 +103,12 @@ int main(int, char** words) {
   for (const int pin : pins) weight[pin] = 0;
   double begin = 0, residual = 0;
   int evaluations = 0;
+  simulation.get_logger().add("cg_iterations", 0);  // STARK adds to it
   const auto write_state = [&] {
     std::ofstream out(words[2]);
     out.precision(17);
-    out << evaluations - 1 << ' ' << cpu_seconds() - begin << ' ' << residual << '\n';
+    out << evaluations - 1 << ' ' << simulation.get_logger().get_int("cg_iterations") << ' '
+        << cpu_seconds() - begin << ' ' << residual << '\n';
     for (int i = 0; i < vertices; ++i)
       out << parts.point_sets->get_x1(cloth.get_global_index(i), simulation.get_time_step_size()).transpose()
           << '\n';
