@@ -3,7 +3,9 @@
 A function of a record that is not stored raises FileNotFoundError; fill_figures then says so in its place."""
 
 import csv
+import math
 import re
+import statistics
 from operator import itemgetter
 
 from records import CONVERGED, RESULTS, WITHOUT_CONTACT, conditions, figure, median, read, seconds_text, stamps, usual_conditions, with_range
@@ -284,17 +286,26 @@ def starks_linear_solvers():
     return f"the faster of conjugate gradients and factorisations: {', '.join(counts)}"
 
 
+def exponent(records, value):
+    """Of the number of vertices, by least squares of logarithms."""
+    points = [(math.log(r["vertices"]), math.log(value(r))) for r in records if value(r)]
+    return figure(statistics.linear_regression(*zip(*points)).slope) if len(points) > 1 else "–"
+
+
 def scale():
-    record = read("scale.json")
-    rows = [[str(r["vertices"]), figure(r["iterations"]), figure(r["seconds"], 2), figure(r["total_seconds"], 3), figure(r["peak_bytes"] / 1e9, 2)]
-            for r in record["rows"]]
-    exponents = record["exponents"]
-    rows.append(["exponent", "", figure(exponents["seconds"], 3), "", figure(exponents["peak_bytes"], 3)])
-    lines = table(["vertices", "iterations", "seconds per iteration", "seconds of all levels", "peak memory [GB]"], rows, "rrrrr")
-    largest = record["rows"][-1]
+    """Exponents are those of the levels with multigrid; only a factorisation analyses a pattern."""
+    records = read("scale.json")["rows"]
+    multigrid = [r for r in records if r["vertices"] >= 20000]
+    factorised = lambda r: "all" if r not in multigrid else "some" if "analyse" in r["by_phase"] else "none"  # noqa: E731
+    rows = [[str(r["vertices"]), figure(r["iterations"]), factorised(r), figure(r["seconds"], 2), figure(r["total_seconds"], 3),
+             figure(r["peak_bytes"] / 1e9, 2)] for r in records]
+    rows.append(["exponent", "", "", exponent(multigrid, itemgetter("seconds")), "", exponent(multigrid, itemgetter("peak_bytes"))])
+    lines = table(["vertices", "iterations", "of these factorised", "seconds per iteration", "seconds of all levels", "peak memory [GB]"],
+                  rows, "rrlrrr")
+    largest = records[-1]
     phases = sorted(largest["by_phase"].items(), key=lambda p: -p[1])
-    rows = [[phase, figure(100 * s / largest["seconds"], 2), figure(exponents[phase], 3)] for phase, s in phases
-            if s > 0.005 * largest["seconds"]]
+    rows = [[phase, figure(100 * s / largest["seconds"], 2), exponent(multigrid, lambda r, phase=phase: r["by_phase"].get(phase))]
+            for phase, s in phases if s > 0.005 * largest["seconds"]]
     return lines + [""] + table([f"phase, at {largest['vertices']} vertices", "% of an iteration", "exponent"], rows, "lrr")
 
 
@@ -452,6 +463,7 @@ VALUES = {
     "sphere.solves": lambda: str(solves("sphere")[0]),
     "previews.solves": lambda: str(solves("previews")[0]),
     "dragon.pcs": lambda: seconds_text([of(runs("dragon_decrements", "pcs"), "seconds")]),
+    "scale.vertices": lambda: f"{read('scale.json')['rows'][-1]['vertices'] / 1000:.0f}K",
     "scale.minutes": lambda: figure(read("scale.json")["rows"][-1]["total_seconds"] / 60, 2),
     "scale.memory": lambda: figure(read("scale.json")["rows"][-1]["peak_bytes"] / 1e9, 2),
     "crossings": lambda: str(solves("sphere", "previews")[1]),
