@@ -16,8 +16,8 @@ MODULE = {"python/drape": "the Python module: run `make python`"}
 RUN_COLUMNS = "run,status,vertices,steps,seconds,energy_released,smallest_gap,largest_stretch,intersections,d_H_fit,message"
 
 
-def sweep(name):
-    return ["{drape}", "sweep", f"configs/sweeps/{name}.yaml", "-o", "{out}", "-j", "{workers}", "--threads", "{threads}", "-q"]
+def sweep(name, folder="configs/sweeps", out="{out}"):
+    return ["{drape}", "sweep", f"{folder}/{name}.yaml", "-o", out, "-j", "{workers}", "--threads", "{threads}", "-q"]
 
 
 def previews(name, what, minutes, starts=3, timed=False, meshes=()):
@@ -69,7 +69,7 @@ STUDIES = {
     "ablations": previews("ablations", "one choice changed at a time", 20),
     "hard": {
         "what": "the hard cases", "minutes": 30, "timed": False, "starts": 1, "failures": True,
-        "run": [["{drape}", "sweep", f"configs/hard/sweeps/{name}.yaml", "-o", "{out}/" + name, "-q"] for name in HARD],
+        "run": [sweep(name, "configs/hard/sweeps", "{out}/" + name) for name in HARD],
         "gather": [["configs/hard/write_tables", "{drape}", "{out}", "{results}"]],
         "records": ["hard.json", "hard.md", "hard_remedies.json", "hard_remedies.md"]},
     "cusick": {
