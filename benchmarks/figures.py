@@ -185,6 +185,7 @@ def decrements():
 
 
 def ratios():
+    """Without phases that took no time."""
     rows = [[r["what"], r["against"], figure(r["ratio"], 2)] for r in read("ratios.json")["rows"] if r["seconds"] > 0]
     return table(["what", "over", "ratio"], rows, "llr")
 
@@ -293,7 +294,7 @@ def exponent(records, value):
 
 
 def scale():
-    """Exponents are those of the levels with multigrid; only a factorisation analyses a pattern."""
+    """Exponents are those of the levels with multigrid, from 20,000 vertices on. Only a factorisation analyses a pattern."""
     records = read("scale.json")["rows"]
     multigrid = [r for r in records if r["vertices"] >= 20000]
     factorised = lambda r: "all" if r not in multigrid else "some" if "analyse" in r["by_phase"] else "none"  # noqa: E731
