@@ -12,13 +12,16 @@ LINTED := $(if $(LINT),/unity_$(notdir $(LINT:/=))_cxx\.,(core|plugins)/)
 BUILD := $(if $(filter release ci,$(PRESET)),build,build-$(PRESET))
 SOURCES = $(shell find core plugins examples tests benchmarks -name '*.cpp' -o -name '*.h')
 
-.PHONY: all setup configure build build-tests benchmarks python deb wheel notebooks demo test fuzz extremes data results figures pictures \
-        api format fix-format lint clean
+.PHONY: all setup setup-to-develop configure build build-tests benchmarks python deb wheel notebooks demo test fuzz extremes data results figures \
+        pictures api format fix-format lint clean
 all: build
 
-# Installs what third_party/packages-to-run.txt and packages-to-test.txt list.
+# Installs what third_party/packages-to-run.txt and packages-to-test.txt list; setup-to-develop also packages-to-develop.txt.
 setup:
-	@third_party/setup run test
+	@third_party/setup run test $(if $(filter clang asan tsan,$(PRESET)),develop)
+
+setup-to-develop:
+	@third_party/setup run test develop
 
 CONFIGURE = cmake --preset $(PRESET) --log-level=WARNING
 
@@ -70,7 +73,7 @@ test: build-tests  # runs every test
 
 # Fuzzes the readers of configs, --set, meshes and checkpoints for FUZZ_SECONDS each (20), or FUZZ_RUNS inputs each;
 # FUZZ_TARGETS="mesh config" chooses some; what ends one is kept in build-fuzz/artifacts.
-fuzz: build setup
+fuzz: build setup-to-develop
 	@cmake --preset fuzz --log-level=WARNING -DDRAPE_BUILD=$(abspath $(BUILD)) >/dev/null
 	@cmake --build build-fuzz -j $(JOBS)
 	@FUZZ_SECONDS=$(FUZZ_SECONDS) FUZZ_RUNS=$(FUZZ_RUNS) JOBS=$(JOBS) tests/fuzz/run build-fuzz $(FUZZ_TARGETS)
@@ -100,23 +103,23 @@ figures:  # fills the pages' figures in from the stored records; runs nothing
 FROM ?= $(patsubst %sphere,%,$(shell ls -td results/studies/*/sphere 2>/dev/null | head -1))
 # The start whose PCS preview has the median distance from its final state.
 SPHERE = $(FROM)sphere/runs/base/seed_1
-pictures: benchmarks data
+pictures: benchmarks data setup-to-develop
 	@[ -e $(SPHERE)/results.json ] || { echo "pictures: no run of the study sphere; make results STUDIES=sphere" >&2; exit 1; }
 	@tests/browser/install $(BUILD)/tests/browser
 	DRAPE_BIN=$(abspath $(BUILD))/bin DRAPE_NODE_MODULES=$(abspath $(BUILD))/tests/browser node docs/pictures/make.mjs $(SPHERE) results/pictures
 
-api: setup  # pages of the headers that plugins include, by Doxygen
+api: setup-to-develop  # pages of the headers that plugins include, by Doxygen
 	@doxygen docs/Doxyfile
 	@echo "build/api/html/index.html"
 
-format: setup  # checks the layout of the sources
+format: setup-to-develop  # checks the layout of the sources
 	@clang-format --dry-run -Werror $(SOURCES)
 
-fix-format: setup
+fix-format: setup-to-develop
 	@clang-format -i $(SOURCES)
 
 # Static analysis of core and plugins, or of one folder (LINT=core/app/sweep), each source checked by itself.
-lint: setup
+lint: setup-to-develop
 	@cmake --preset single-files --log-level=ERROR >/dev/null
 	@cmake --build build-single-files -j $(JOBS) --target drape_cli drape_plugins
 	@cmake --preset lint --log-level=ERROR >/dev/null
