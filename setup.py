@@ -1,7 +1,7 @@
 """Packs what CMake builds: `make wheel`, or `pip install --no-build-isolation .`, which downloads nothing.
 
 The package has the command, the libraries, the plugins and the libraries of the system that they need in it: drape/_core…so,
-drape/bin, drape/lib. DRAPE_BUILD names a folder that is built already; else the preset `package` is built.
+drape/bin, drape/lib; pip puts a script before the command on the PATH. DRAPE_BUILD names a folder that is built already; else the preset `package` is built.
 """
 
 import os
@@ -55,5 +55,6 @@ setuptools.setup(
     version=re.search(r"project\(drape VERSION ([0-9.]+)", (SOURCE / "CMakeLists.txt").read_text()).group(1),
     # A pybind11 from before 2.12, as Debian 12's, reads the arrays of numpy 1 alone; the numpy of this Python is one that it reads.
     install_requires=["numpy<2" if numpy.__version__.startswith("1.") else "numpy", "scipy", "pandas"],
-    packages=["drape"], package_dir={"drape": "core/app/python/drape"}, distclass=Compiled, cmdclass={"build_py": Build},
+    packages=["drape"], package_dir={"drape": "core/app/python/drape"}, scripts=["core/app/python/bin/drape"],
+    distclass=Compiled, cmdclass={"build_py": Build},
     options={"build": {"build_base": str(BUILD / "wheel")}, "egg_info": {"egg_base": str(BUILD)}})
