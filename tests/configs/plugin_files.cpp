@@ -142,8 +142,10 @@ TEST_CASE("A library is no source of a plugin, and a source may have any name") 
 
 TEST_CASE("A plugin's source without a compiler, or that is no plugin, is refused") {
   const PluginFolder folder;
-  CHECK_THAT(folder.refused("list energy --plugin rubber.cpp", "CXX=/nowhere/c++"),
-             Contains("--plugin: there is no compiler /nowhere/c++; install it, or name one"));
+  CHECK_THAT(
+      folder.refused("list energy --plugin rubber.cpp", "CXX=/nowhere/c++"),
+      Contains(
+          "--plugin: there is no compiler /nowhere/c++; install it (Debian's package g++), or name one"));
   CHECK_THAT(folder.refused("list energy --plugin none.cpp"),
              Contains("none.cpp") && Contains("No such file"));
   folder.write("empty.cpp", "int main() {}\n");

@@ -104,12 +104,15 @@ fs::path compiled(const fs::path& source) {
   std::cerr << ": " << three_digits(clock.seconds()) << " s\n" << printable_lines(said.err);
   if (said.exit.code == 127)
     throw std::runtime_error("--plugin: there is no compiler " + words[0] +
-                             "; install it, or name one of its kind in the variable CXX");
+                             "; install it (Debian's package g++), or name one of its kind in the "
+                             "variable CXX");
   if (said.exit.code != 0) {
     std::error_code ignored;
     fs::remove_all(folder, ignored);
-    throw std::runtime_error("--plugin " + source.string() + ": does not compile; " + words[0] +
-                             " says why above");
+    const bool eigen = fs::exists(fs::path(DRAPE_EIGEN) / "Eigen/Core");
+    throw std::runtime_error(
+        "--plugin " + source.string() + ": does not compile; " + words[0] + " says why above" +
+        (eigen ? "" : "; Eigen is not in " DRAPE_EIGEN " (Debian's package libeigen3-dev)"));
   }
   rename_file(made, library);
   return folder;
