@@ -1,3 +1,8 @@
+# Kernels at -O0 take many times as long: a project that chooses no build type is a Release.
+if(NOT CMAKE_BUILD_TYPE)
+  set(CMAKE_BUILD_TYPE Release)
+endif()
+
 # Builds a plugin library that drape finds by its folder (DRAPE_PLUGIN_PATH, or lib/drape beside bin).
 #
 #   drape_add_plugin(<name> SOURCES <file>...)
