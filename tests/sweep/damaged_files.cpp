@@ -34,6 +34,8 @@ TEST_CASE("a value of the wrong kind in a sweep's files is named with its file a
 
   const std::string sweep = "out/sweep.json", another = "; name another folder with --out\n";
   CHECK(said(sweep, "/sweep", "1") == "\"sweep\" must be a text, not 1" + another);
+  CHECK(said(sweep, "/time_limit", "\"long\"") == "\"time_limit\" must be a number, not \"long\"" + another);
+  CHECK(said(sweep, "/time_limit", "") == "\"time_limit\" is missing" + another);
   CHECK(said(sweep, "/runs", "\"none\"") == "\"runs\" must be a list" + another);
   CHECK(said(sweep, "/runs/0", "null") == "\"name\" is missing" + another);
   CHECK(said(sweep, "/runs/0/folder", "") == "\"folder\" is missing" + another);

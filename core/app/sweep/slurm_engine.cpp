@@ -186,7 +186,7 @@ int run_task(const SweepFolder& folder, int index, const SweepOptions& options) 
     write_status(files, before);
     return before.exit_code;
   }
-  RunProcess run(files, options, sweep.value("time_limit", 0.0));
+  RunProcess run(files, options, sweep["time_limit"]);
   for (bool stopped = false; !run.ended();) {
     if (options.stop() && !stopped) stopped = true, run.stop();
     std::this_thread::sleep_for(std::chrono::milliseconds(10));

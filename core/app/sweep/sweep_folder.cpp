@@ -41,6 +41,7 @@ Json SweepFolder::read() const {
   if (!json.is_object() || !json.contains("sweep") || !json.contains("runs"))
     sweep.refuse("is not a sweep's");
   sweep.at<std::string>(json, "sweep");
+  sweep.at<double>(json, "time_limit");
   if (!json["runs"].is_array()) sweep.refuse("\"runs\" must be a list");
   for (const Json& run : json["runs"]) {
     sweep.at<std::string>(run, "name");

@@ -34,7 +34,8 @@ class SweepFolder {
   nlohmann::ordered_json refresh() const;
   /// As `refresh`, when no run is active: also resolves runs that are still marked as running.
   nlohmann::ordered_json finalize() const;
-  /// sweep.json; null if there is none. Throws std::runtime_error if a run has no name.
+  /// sweep.json; null if there is none. Throws std::runtime_error, with file, key and remedy, if it has
+  /// another form.
   nlohmann::ordered_json read() const;
 
  private:
