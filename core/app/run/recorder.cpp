@@ -135,7 +135,7 @@ void Recorder::save() const { write_file(folder_.file("results.json"), json_text
 
 void Recorder::method_started(const std::string& method) {
   s_.method = method;
-  s_.method_intersection_free = true;
+  s_.intersection_free = true;
   s_.spent = Cost();
   s_.overhead = 0;
   reset_peak_memory();
@@ -165,7 +165,7 @@ std::optional<int> Recorder::intersections(int level, const Positions& x) {
       log("intersection", {{"method", s_.method}, {"level", level}, {"pair", to_string(found[k])}});
     count += static_cast<int>(found.size());
   }
-  if (count > 0) s_.intersection_free = s_.method_intersection_free = false;
+  if (count > 0) s_.intersection_free = false;
   return count;
 }
 

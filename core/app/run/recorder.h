@@ -35,13 +35,12 @@ class Recorder : public Observer {
   struct State {
     std::string results;  ///< contents of results.json
     std::string method;
-    bool intersection_free = true;         ///< of all methods so far
-    bool method_intersection_free = true;  ///< of the current method
-    std::vector<RecordedState> states;     ///< all levels so far, in order
-    SnapshotRecorder snapshots;            ///< of this level
-    Cost spent, last;                      ///< of the method's levels before this one; of this level so far
-    double overhead = 0;                   ///< time of the method that recording took [s]
-    double overhead_before = 0;            ///< the same before this level
+    bool intersection_free = true;      ///< of the current method
+    std::vector<RecordedState> states;  ///< all levels so far, in order
+    SnapshotRecorder snapshots;         ///< of this level
+    Cost spent, last;                   ///< of the method's levels before this one; of this level so far
+    double overhead = 0;                ///< time of the method that recording took [s]
+    double overhead_before = 0;         ///< the same before this level
     std::uint64_t iterations_bytes = 0, log_bytes = 0;  ///< sizes of its files
     /// The furthest that a level has come to, that of the obstacles' files; without values at the start.
     LoadSteppingState last_load;
@@ -76,7 +75,7 @@ class Recorder : public Observer {
   void increment_finished(const IncrementRow& row, const Positions& x) override;
   void level_finished(const LevelResult& result) override;
 
-  /// Whether no checked state had an intersection.
+  /// Whether no checked state of the current method had an intersection.
   bool intersection_free() const { return s_.intersection_free; }
   /// The metrics that have thrown, with the first cause of each.
   const std::map<std::string, std::string>& not_measured() const { return not_measured_; }

@@ -103,7 +103,7 @@ void Recorder::method_finished(const std::vector<LevelResult>& results,
                                                 {s_.method, results[f].level, results[f].x}));
       entry["consistency"].back()["of_start"] = of_start[f];
     }
-  if (!s_.method_intersection_free) worst = Outcome::infeasible;
+  if (!s_.intersection_free) worst = Outcome::infeasible;
   entry["status"] = failure ? failed : to_string(worst);
   if (failure) {
     const Level& level = scene_.hierarchy.levels[failure->level];
