@@ -57,7 +57,7 @@ inline drape::Checkpoint full_checkpoint() {
   c.first_level = 1;
   c.start = Positions::Random(4, 3);
   c.recorder.results = "{}";
-  c.recorder.states = {{"pcs", 1, Positions::Random(9, 3), {}, {{{1, 2, 3}}, {4}, {5}, true, 7}}};
+  c.recorder.states = {{"pcs", 1, Positions::Random(9, 3), {}, {{{{1, 2, 3}, 4, 5}}, true, 7}}};
   c.recorder.snapshots = {2, 5, {{{1, 2, 3}, Positions::Random(9, 3)}}};
   c.recorder.iterations_bytes = 12345;
   c.recorder.last_load = {2, {0.5, 0.75}};

@@ -166,10 +166,7 @@ class Check {
       const bool has_contact = !scene_.models[state.level]->contacts().empty();
       require(state.contact_pressure.size() == (has_contact ? state.x.rows() : 0),
               "a level's contact forces");
-      const LevelSnapshots& own = state.snapshots;
-      require(own.cost.size() == own.iterations.size() && own.cost.size() == own.energies.size() &&
-                  own.cost.empty() == (experiment_.parameters.snapshots == 0),
-              "the snapshots");
+      require(state.snapshots.all.empty() == (experiment_.parameters.snapshots == 0), "the snapshots");
     }
     require(s.snapshots.spacing > 0 && s.snapshots.seen >= 0, "the snapshots");
     if (is_level(c_.state.level))

@@ -60,11 +60,16 @@ StateError state_error(const std::vector<ErrorMeasure>& measures, const Experime
                        const Scene& scene, const Positions& x, double energy, const ErrorTarget& target,
                        const std::function<void(const std::string&)>& fault);
 
-/// The snapshots of one level, whose positions are in a file; nothing if none are recorded.
+/// A snapshot whose positions are in its level's file.
+struct SavedSnapshot {
+  Cost cost;           ///< with what it builds on
+  int iterations = 0;  ///< of the level
+  double energy = 0;   ///< on the finest level [J]
+};
+
+/// The snapshots of one level; nothing if none are recorded.
 struct LevelSnapshots {
-  std::vector<Cost> cost;        ///< of each snapshot, with what it builds on
-  std::vector<int> iterations;   ///< of the level
-  std::vector<double> energies;  ///< on the finest level [J]
+  std::vector<SavedSnapshot> all;
   bool converged = false;
   std::uint32_t checksum = 0;  ///< of the file
 };

@@ -100,11 +100,10 @@ Recorder::Json Recorder::add_snapshots(const LevelResult& r, const Cost& cost, R
   std::string bytes;
   for (const Snapshot& snapshot : s_.snapshots.end_level(cost, r.x)) {
     bytes += SnapshotFile::bytes_of(snapshot.x);
-    own.cost.push_back(before + snapshot.cost);
-    own.iterations.push_back(snapshot.cost.iterations);
-    own.energies.push_back(energy_on_finest(r.level, snapshot.x));
-    entry["iterations"].push_back(snapshot.cost.iterations);
-    entry["seconds"].push_back(own.cost.back().seconds);
+    own.all.push_back(
+        {before + snapshot.cost, snapshot.cost.iterations, energy_on_finest(r.level, snapshot.x)});
+    entry["iterations"].push_back(own.all.back().iterations);
+    entry["seconds"].push_back(own.all.back().cost.seconds);
   }
   make_folder(folder_.file("snapshots"));
   own.converged = has_converged(r.outcome);
@@ -130,16 +129,17 @@ void Recorder::write_errors(const Positions* reference, const std::function<bool
   std::optional<ErrorTarget> standard;
   if (reference) standard = target_at(*reference, scene_.finest_model().value(*reference));
   for (const RecordedState& level : s_.states) {
-    const auto& [costs, iterations, energies, converged, checksum] = level.snapshots;
     std::optional<ErrorTarget> own;
     for (const RecordedState* end : finest_states())
       if (end->method == level.method && end->snapshots.converged)
-        own = target_at(end->x, end->snapshots.energies.back());
+        own = target_at(end->x, end->snapshots.all.back().energy);
     const bool same = own && standard && own->x == standard->x;
     const int vertices = scene_.hierarchy.levels[level.level].vertex_count();
+    const std::vector<SavedSnapshot>& snapshots = level.snapshots.all;
     SnapshotFile states;
     try {
-      states = SnapshotFile(folder_.file(snapshots_file(level)), costs.size(), vertices, checksum);
+      states = SnapshotFile(folder_.file(snapshots_file(level)), snapshots.size(), vertices,
+                            level.snapshots.checksum);
     } catch (const std::exception& error) {
       fault(error.what());  // the snapshots have no copy to restore them from
       continue;
@@ -147,15 +147,15 @@ void Recorder::write_errors(const Positions* reference, const std::function<bool
     for (std::size_t k = 0; k < states.count() && !stop(); ++k) {
       const Positions state = k + 1 < states.count() ? states.positions(k) : level.x;
       const Positions x = prolonged(level.method, state, level.level, finest);
-      const double energy = energies[k];
+      const SavedSnapshot& snapshot = snapshots[k];
       const auto against = [&](const std::optional<ErrorTarget>& target) {
-        return target ? state_error(measures, experiment_, scene_, x, energy, *target, fault)
+        return target ? state_error(measures, experiment_, scene_, x, snapshot.energy, *target, fault)
                       : StateError(measures.size());
       };
       const StateError to_own = against(own), to_standard = same ? to_own : against(standard);
-      const Cost& cost = costs[k];
-      text += level.method + "," + std::to_string(level.level) + "," + std::to_string(iterations[k]) + "," +
-              number_cell(cost.seconds, 9) + "," + std::to_string(cost.iterations) + "," +
+      const Cost& cost = snapshot.cost;
+      text += level.method + "," + std::to_string(level.level) + "," + std::to_string(snapshot.iterations) +
+              "," + number_cell(cost.seconds, 9) + "," + std::to_string(cost.iterations) + "," +
               number_cell(cost.flops, 9) + "," + std::to_string(vertices);
       for (const StateError* errors : {&to_own, &to_standard})
         for (const std::optional<double>& error : *errors) text += "," + number_cell(error, 9);
