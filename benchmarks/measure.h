@@ -40,7 +40,7 @@ struct Loaded {
   explicit Loaded(const std::string& file, const drape::Overrides& overrides = {}) {
     drape::ConfigErrors errors;
     experiment = read_experiment(DRAPE_BENCHMARKS_DIR "/" + file, overrides, all_plugins(), errors);
-    scene = experiment ? build_scene(*experiment, errors) : nullptr;
+    scene = experiment ? build_scene(*experiment, errors, drape::LargeMemory::allowed) : nullptr;
     for (const drape::ConfigError& error : errors) std::cerr << "error: " << error.text() << "\n";
     if (!scene) throw std::runtime_error(file + " cannot be measured");
   }

@@ -38,7 +38,7 @@ inline drape::Experiment experiment_from(const std::string& text, const drape::O
 
 inline std::unique_ptr<drape::Scene> scene_of(const drape::Experiment& experiment) {
   drape::ConfigErrors errors;
-  auto scene = drape::build_scene(experiment, errors);
+  auto scene = drape::build_scene(experiment, errors, drape::LargeMemory::allowed);
   throw_errors(errors);
   return scene;
 }

@@ -66,8 +66,7 @@ void check_run(const SweepRun& run, const Location& where, LargeMemory large, co
                ConfigErrors& errors) {
   ConfigErrors faults;
   const auto experiment = read_experiment(parse_yaml(run.config, run.folder, faults), registry, faults);
-  if (faults.empty()) refuse_too_large(*experiment, large, faults);
-  const auto scene = faults.empty() ? build_scene(*experiment, faults) : nullptr;
+  const auto scene = experiment ? build_scene(*experiment, faults, large) : nullptr;
   if (scene) refuse_infinite_energies(*experiment, *scene, faults);
   for (const ConfigError& fault : faults)
     errors.push_back({where, "variation \"" + run.name + "\": " + fault.message});

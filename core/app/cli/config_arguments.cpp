@@ -104,15 +104,15 @@ Overrides ConfigArguments::overrides() const {
 LoadedExperiment::LoadedExperiment(const ConfigArguments& arguments, const Registry& registry) {
   ConfigErrors errors;
   auto read = read_experiment(arguments.config, arguments.overrides(), registry, errors);
-  if (read) refuse_too_large(*read, arguments.large_memory(), errors);
   require_none(errors);
   experiment = std::move(*read);
   const bool repair = arguments.allow_start_repair;
-  scene = build_scene(experiment, errors, repair ? IntersectingStart::allowed : IntersectingStart::refused);
+  scene = build_scene(experiment, errors, arguments.large_memory(),
+                      repair ? IntersectingStart::allowed : IntersectingStart::refused);
   require_none(errors);
   const Eigen::Vector3d moved =
       repair ? repair_start(experiment, *scene, errors) : Eigen::Vector3d(Eigen::Vector3d::Zero());
-  if (!moved.isZero(0)) scene = build_scene(experiment, errors);
+  if (!moved.isZero(0)) scene = build_scene(experiment, errors, arguments.large_memory());
   require_none(errors);
   if (!moved.isZero(0))
     std::fprintf(stderr, "start moved by (%.4g, %.4g, %.4g) m; it touches nothing now\n", moved.x(),

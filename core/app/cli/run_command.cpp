@@ -105,8 +105,8 @@ int warm_start(RunRequest& r, const Registry& registry) {
   require_none(errors);
   const auto experiment = read_experiment(config, r.overrides(), registry, errors);
   if (experiment) refuse_other_cloth(*before, *experiment, state.level, errors);
-  if (errors.empty()) refuse_too_large(*experiment, r.large_memory(), errors);
-  const auto scene = errors.empty() ? build_scene(*experiment, errors, IntersectingStart::allowed) : nullptr;
+  require_none(errors);
+  const auto scene = build_scene(*experiment, errors, r.large_memory(), IntersectingStart::allowed);
   if (scene) warm_start_scene(*experiment, *scene, state.level, state.x, errors);
   require_none(errors);
   r.methods = {state.method};

@@ -52,10 +52,7 @@ SceneHandle ExperimentHandle::scene(bool allow_memory) const {
   const LargeMemory large = allow_memory ? LargeMemory::allowed : LargeMemory::refused;
   ConfigErrors errors;
   std::shared_ptr<const Scene> scene;
-  without_gil([&] {
-    refuse_too_large(*experiment, large, errors);
-    if (errors.empty()) scene = build_scene(*experiment, errors);
-  });
+  without_gil([&] { scene = build_scene(*experiment, errors, large); });
   throw_errors(errors);
   return {experiment, scene};
 }

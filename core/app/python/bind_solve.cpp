@@ -138,7 +138,8 @@ class Solve {
   /// The experiment's scene, which begins at x on that level.
   static SceneHandle warm_started(const std::shared_ptr<const Experiment>& experiment, int level,
                                   const Positions& x, ConfigErrors& errors) {
-    std::shared_ptr<Scene> scene = build_scene(*experiment, errors, IntersectingStart::allowed);
+    std::shared_ptr<Scene> scene =
+        build_scene(*experiment, errors, LargeMemory::allowed, IntersectingStart::allowed);
     if (scene) warm_start_scene(*experiment, *scene, level, x, errors);
     return {experiment, scene};
   }

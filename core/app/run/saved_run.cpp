@@ -92,8 +92,7 @@ bool read_scene(const fs::path& folder, const Registry& registry, LargeMemory la
   std::optional<Experiment> experiment = read_experiment(folder / "config.yaml", {}, registry, errors);
   if (!experiment) return false;
   run.experiment = std::move(*experiment);
-  refuse_too_large(run.experiment, large, errors);
-  if (errors.empty()) run.scene = build_scene(run.experiment, errors, IntersectingStart::allowed);
+  run.scene = build_scene(run.experiment, errors, large, IntersectingStart::allowed);
   return run.scene != nullptr;
 }
 

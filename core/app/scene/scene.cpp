@@ -140,9 +140,11 @@ std::vector<std::string> remarks_of(const Experiment& e, const Scene& scene) {
   return all;
 }
 
-std::unique_ptr<Scene> build_scene(const Experiment& e, ConfigErrors& errors,
+std::unique_ptr<Scene> build_scene(const Experiment& e, ConfigErrors& errors, LargeMemory large,
                                    IntersectingStart intersecting) {
   const ExperimentParameters& p = e.parameters;
+  if (errors.empty()) refuse_too_large(e, large, errors);
+  if (!errors.empty()) return nullptr;
   std::optional<TriangleMesh> cloth = checked_cloth(e, errors);
   if (!cloth && !p.start.file.empty()) start_mesh(e, errors);
   if (!errors.empty()) return nullptr;

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "core/app/experiment/cloth.h"
 #include "core/app/experiment/experiment.h"
 #include "core/numerics/hierarchy/hierarchy.h"
 
@@ -41,9 +42,10 @@ struct Scene : Problem {
 /// Whether a start that intersects something is refused.
 enum class IntersectingStart { refused, allowed };
 
-/// Builds the scene; null, with every fault of the mesh, of pins and of the start appended, if that
-/// is not possible. An intersecting start is `allowed` for repair_start and warm starts alone.
-std::unique_ptr<Scene> build_scene(const Experiment& experiment, ConfigErrors& errors,
+/// Builds the scene of an experiment that is not too large; null if there are errors already, and, with every
+/// fault of the mesh, of pins and of the start appended, if that is not possible. An intersecting start is
+/// `allowed` for repair_start and warm starts alone.
+std::unique_ptr<Scene> build_scene(const Experiment& experiment, ConfigErrors& errors, LargeMemory large,
                                    IntersectingStart intersecting = IntersectingStart::refused);
 
 /// How the contact models treat their input and the scene, a line each: repaired obstacles, pairs of the
