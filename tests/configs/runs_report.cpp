@@ -96,7 +96,8 @@ TEST_CASE("a final state is not compared with itself where it was the reference"
 TEST_CASE("a direct method's cost is that of the level it ends with") {
   const RunCollection collection = read_runs({sweep() / "runs/matrix=galerkin/seed_1"});
   for (const MethodRecord& m : collection.runs[0].data->methods) {
-    const double coarse = m.levels[0].values.at("flops"), fine = m.levels[1].values.at("flops");
+    const double coarse = m.levels[0].values.of("flops").value(),
+                 fine = m.levels[1].values.of("flops").value();
     CHECK(m.cost("flops").value() == (m.name == "newton" ? fine : coarse + fine));
   }
 }
@@ -120,7 +121,8 @@ TEST_CASE("the table counts steps of the levels that the last state builds on") 
     const MethodRecord& method = run.methods[k];
     const bool direct = method.name == "newton";
     INFO(method.name);
-    const double coarse = method.levels[0].values.at("steps"), fine = method.levels[1].values.at("steps");
+    const double coarse = method.levels[0].values.of("steps").value(),
+                 fine = method.levels[1].values.of("steps").value();
     CHECK(table.rows[k]["steps"] == (direct ? fine : coarse + fine));
     CHECK(table.rows[k]["shortened_steps"] == table.rows[k]["iterations"]);
   }

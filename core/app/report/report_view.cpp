@@ -99,8 +99,8 @@ Json states_json(const RunData& run, const LevelRecord& level, const State& last
     const std::size_t f = k * count / shown;
     const Positions x = snapshots.positions(f);
     Json state = document.state(name + "f" + std::to_string(f), x, document.fields(level.level, x));
-    state["iteration"] = level.snapshots["iterations"][f];
-    state["seconds"] = level.snapshots["seconds"][f];
+    state["iteration"] = level.snapshots()["iterations"][f];
+    state["seconds"] = level.snapshots()["seconds"][f];
     states.push_back(std::move(state));
   }
   Json state = document.state(name, last.x, last.fields);

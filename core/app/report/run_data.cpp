@@ -31,18 +31,14 @@ std::vector<std::string> texts(const Json& json) {
   return all;
 }
 
-/// Members of objects have their path as name: energy_parts.hinge.
-void add_values(const Json& json, const std::string& path, Values& values) {
-  for (const auto& [name, value] : json.items()) {
-    if (value.is_object()) add_values(value, path + name + ".", values);
-    if (value.is_number() && std::isfinite(value.get<double>())) values[path + name] = value.get<double>();
-  }
-}
-
-Values values_of(const Json& json) {
-  Values values;
-  add_values(json, "", values);
-  return values;
+/// The name may lead into an object at each of its dots: a member's own name may have some.
+OptionalNumber number_in(const Json& object, const std::string& name) {
+  const Json& own = member_of(object, name);
+  if (own.is_number() && std::isfinite(own.get<double>())) return own.get<double>();
+  for (std::size_t dot = name.find('.'); dot != name.npos; dot = name.find('.', dot + 1))
+    if (const OptionalNumber number = number_in(member_of(object, name.substr(0, dot)), name.substr(dot + 1)))
+      return number;
+  return {};
 }
 
 LevelRecord level_of(const Json& json, std::size_t position, const JsonFile& file) {
@@ -52,8 +48,7 @@ LevelRecord level_of(const Json& json, std::size_t position, const JsonFile& fil
   r.message = text_member(json, "message");
   r.mesh = text_member(json, "mesh");
   r.from_initial_state = member_of(json, "from_initial_state") == true;
-  r.values = values_of(json);
-  r.snapshots = member_of(json, "snapshots");
+  r.values.json = json;
   return r;
 }
 
@@ -68,7 +63,7 @@ MethodRecord method_of(const std::string& name, const Json& json, const JsonFile
     const int coarse = file.find<int>(pair, "coarse").value_or(-1),
               fine = file.find<int>(pair, "fine").value_or(-1);
     if (coarse >= 0 && fine > coarse)
-      method.consistency.push_back({coarse, fine, values_of(pair), text_member(pair, "fields")});
+      method.consistency.push_back({coarse, fine, {pair}, text_member(pair, "fields")});
   }
   std::stable_sort(method.levels.begin(), method.levels.end(),
                    [](const LevelRecord& a, const LevelRecord& b) { return a.level < b.level; });
@@ -76,6 +71,10 @@ MethodRecord method_of(const std::string& name, const Json& json, const JsonFile
 }
 
 }  // namespace
+
+OptionalNumber Values::of(const std::string& name) const { return number_in(json, name); }
+
+const Json& LevelRecord::snapshots() const { return member_of(values.json, "snapshots"); }
 
 int MethodRecord::first_level() const {
   int first = levels.empty() ? 0 : levels.front().level;
@@ -108,7 +107,7 @@ bool RunData::converged() const {
 bool RunData::has_contact() const {
   for (const MethodRecord& m : methods)
     for (const LevelRecord& r : m.levels)
-      if (r.values.contains("intersections") || r.values.contains("smallest_gap")) return true;
+      if (r.values.of("intersections") || r.values.of("smallest_gap")) return true;
   return false;
 }
 
@@ -122,11 +121,11 @@ int RunData::finest_level() const {
 TriangleMesh RunData::mesh(const std::string& name) const { return read_mesh(folder / name); }
 
 SnapshotFile RunData::snapshots(const LevelRecord& level, Eigen::Index n) const {
-  const std::string name = text_member(level.snapshots, "file");
+  const std::string name = text_member(level.snapshots(), "file");
   if (name.empty()) return {};
-  const Json &iterations = list(member_of(level.snapshots, "iterations")),
-             &seconds = list(member_of(level.snapshots, "seconds")),
-             &checksum = member_of(level.snapshots, "checksum");
+  const Json &iterations = list(member_of(level.snapshots(), "iterations")),
+             &seconds = list(member_of(level.snapshots(), "seconds")),
+             &checksum = member_of(level.snapshots(), "checksum");
   if (iterations.size() != seconds.size())
     throw std::runtime_error((folder / name).string() +
                              ": results.json has other numbers of iterations and seconds");

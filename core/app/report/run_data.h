@@ -1,7 +1,6 @@
 #pragma once
 
 #include <filesystem>
-#include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
@@ -14,22 +13,24 @@
 
 namespace drape {
 
-/// Finite numbers by their names in results.json (SI units).
-struct Values : std::map<std::string, double> {
-  OptionalNumber of(const std::string& name) const {
-    const auto found = find(name);
-    return found == end() ? OptionalNumber() : found->second;
-  }
+/// An object of results.json, whose numbers are in SI units.
+struct Values {
+  nlohmann::ordered_json json;
+
+  /// The finite number of a name; energy_parts.hinge is the member hinge of energy_parts.
+  OptionalNumber of(const std::string& name) const;
 };
 
 /// One level of one method.
 struct LevelRecord {
   int level = 0;
   std::string status, message;
-  std::string mesh;                  ///< relative to the run's folder; may be empty
-  bool from_initial_state = false;   ///< earlier levels do not contribute
-  Values values;                     ///< costs, quantities and state metrics
-  nlohmann::ordered_json snapshots;  ///< states on the way; the last one is the final state
+  std::string mesh;                 ///< relative to the run's folder; may be empty
+  bool from_initial_state = false;  ///< earlier levels do not contribute
+  Values values;                    ///< costs, quantities and state metrics
+
+  /// States on the way, the last of which is the final state; null without any.
+  const nlohmann::ordered_json& snapshots() const;
 };
 
 /// Pair metrics of a coarse state, prolonged, against a finer one.

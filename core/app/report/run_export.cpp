@@ -83,7 +83,7 @@ std::string fault_of_snapshots(const MethodRecord& method, const LevelRecord& le
     return "the run has only the last state of " + name + "; run the experiment with snapshots: 8";
   std::vector<std::string> others;
   for (const LevelRecord& other : method.levels)
-    if (member_of(other.snapshots, "iterations").size() >= least)
+    if (member_of(other.snapshots(), "iterations").size() >= least)
       others.push_back("--level " + std::to_string(other.level));
   return name + " of " + method.name +
          " took no more than one iteration, so it has no state before its last; " +

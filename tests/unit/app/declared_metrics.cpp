@@ -139,7 +139,7 @@ TEST_CASE("a summary has the worst of a method's levels") {
   const MetricColumn lower{.name = "m"}, higher{.name = "m", .better = Better::higher},
       neither{.name = "m", .better = Better::neither};
   CHECK_FALSE(worst_over_levels(lower, method));
-  for (const double value : {2.0, 5.0, 3.0}) method.levels.emplace_back().values["m"] = value;
+  for (const double value : {2.0, 5.0, 3.0}) method.levels.emplace_back().values.json["m"] = value;
   CHECK(worst_over_levels(lower, method) == 5);
   CHECK(worst_over_levels(higher, method) == 2);
   CHECK(worst_over_levels(neither, method) == 5);
