@@ -26,8 +26,8 @@ struct SweepRequest : SweepOptions {
 };
 
 /// Lists the runs; returns the exit code, which says whether every run ended as expected.
-int list_runs(const SweepFolder& folder, const nlohmann::ordered_json& runs) {
-  std::cout << printable_lines(list_of_runs(runs));
+int list_runs(const SweepFolder& folder) {
+  std::cout << printable_lines(list_of_runs(folder));
   return table_of(read_runs({folder.path()})).all_pass() ? exit_done : exit_not_converged;
 }
 
@@ -79,9 +79,9 @@ int run_local(const Sweep& sweep, const SweepFolder& folder, SweepRequest r) {
   const std::vector<std::size_t> missing = folder.prepare(sweep, r.threads, r.retry_failed);
   return begun(folder, [&] {
     run_locally(sweep, folder, missing, r);
-    const auto json = folder.refresh();
-    if (!stop_signal()) return list_runs(folder, json);
-    std::cout << printable_lines(list_of_runs(json));
+    folder.refresh();
+    if (!stop_signal()) return list_runs(folder);
+    std::cout << printable_lines(list_of_runs(folder));
     std::cerr << "stopped on request; the same command runs what is missing\n";
     return exit_by_signal + stop_signal();
   });
@@ -90,7 +90,8 @@ int run_local(const Sweep& sweep, const SweepFolder& folder, SweepRequest r) {
 int run_on_slurm(const Sweep& sweep, const SweepFolder& folder, const SweepRequest& r) {
   if (r.cancel) {
     cancel_jobs(folder, r);
-    std::cout << printable_lines(list_of_runs(folder.refresh()));
+    folder.refresh();
+    std::cout << printable_lines(list_of_runs(folder));
     return exit_done;
   }
   std::optional<SlurmJobs> jobs;
@@ -114,7 +115,8 @@ int run_on_slurm(const Sweep& sweep, const SweepFolder& folder, const SweepReque
       std::cerr << "no longer waiting; the jobs go on\n";
       return exit_by_signal + stop_signal();
     }
-    return list_runs(folder, folder.finalize());
+    folder.finalize();
+    return list_runs(folder);
   });
 }
 

@@ -104,7 +104,7 @@ class LocalEngine {
   }
 
   void tell(const SweepRun& run, const RunStatus& status) {
-    const bool expected = refused_as_expected(run, status),
+    const bool expected = refused_as_expected(run.expect, status),
                failed = status.state == RunState::failed && !expected;
     ++ended_;
     failed_ += failed;

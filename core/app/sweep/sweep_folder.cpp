@@ -1,8 +1,8 @@
 #include "core/app/sweep/sweep_folder.h"
 
 #include <algorithm>
+#include <boost/algorithm/string/replace.hpp>
 #include <set>
-#include <sstream>
 
 #include "core/app/experiment/cloth.h"
 #include "core/app/files/json_file.h"
@@ -22,13 +22,8 @@ std::string title(const std::string& name, int seed) {
   return "run \"" + name + "\", seed " + std::to_string(seed);
 }
 
-/// As refused_as_expected, of an entry of sweep.json's runs.
-bool is_refused_as_expected(const Json& run) {
-  const Json expect = run.value("expect", Json::object());
-  return run["status"] == to_string(RunState::failed) && run["exit_code"] == exit_bad_input &&
-         expect.value("status", "") == "refused" &&
-         run.value("error", "").find(expect.value("message", "")) != std::string::npos;
-}
+/// Of an entry of sweep.json's runs.
+Expectation expectation_of(const Json& run) { return {run["expect"]["status"], run["expect"]["message"]}; }
 
 }  // namespace
 
@@ -47,7 +42,7 @@ Json SweepFolder::read() const {
     sweep.at<std::string>(run, "name");
     sweep.at<std::string>(run, "folder");
     sweep.at<int>(run, "seed");
-    if (run.contains("expect")) sweep.at<std::string>(run["expect"], "status");
+    for (const char* key : {"status", "message"}) sweep.at<std::string>(member_of(run, "expect"), key);
   }
   return json;
 }
@@ -110,12 +105,12 @@ std::vector<std::size_t> SweepFolder::prepare(const Sweep& sweep, int threads, b
                {"threads", threads},
                {"time_limit", sweep.parameters.time_limit.value_or(0)},
                {"runs", Json::array()}};
-  for (const SweepRun& run : sweep.runs) {
-    json["runs"].push_back(
-        {{"name", run.name}, {"settings", run.settings}, {"seed", run.seed}, {"folder", run.folder}});
-    if (run.expect.status != "converged" || !run.expect.message.empty())
-      json["runs"].back()["expect"] = {{"status", run.expect.status}, {"message", run.expect.message}};
-  }
+  for (const SweepRun& run : sweep.runs)
+    json["runs"].push_back({{"name", run.name},
+                            {"settings", run.settings},
+                            {"seed", run.seed},
+                            {"folder", run.folder},
+                            {"expect", {{"status", run.expect.status}, {"message", run.expect.message}}}});
   write(json);  // first: without it what follows would be a folder of runs and no sweep
   for (std::size_t k = 0; k < sweep.runs.size(); ++k) {
     const SweepRun& run = sweep.runs[k];
@@ -127,7 +122,7 @@ std::vector<std::size_t> SweepFolder::prepare(const Sweep& sweep, int threads, b
       status.state = RunState::pending;
     if (status.state != read_status(files).state) write_status(files, status);
     if (is_other) write_file(files.config(), run.config);
-    const bool stays = status.has_results() || refused_as_expected(run, status) ||
+    const bool stays = status.has_results() || refused_as_expected(run.expect, status) ||
                        (status.state == RunState::failed && !retry_failed);
     if (!stays) missing.push_back(k);
   }
@@ -135,28 +130,27 @@ std::vector<std::size_t> SweepFolder::prepare(const Sweep& sweep, int threads, b
   return missing;
 }
 
-Json SweepFolder::refresh() const { return write(read()); }
+void SweepFolder::refresh() const { write(read()); }
 
-Json SweepFolder::write(Json json) const {
+void SweepFolder::write(Json json) const {
   bool complete = true;
   for (Json& run : json["runs"]) {
     const RunStatus status = read_status(files(run["folder"]));
     run.update(status.json());
-    complete = complete && (status.has_results() || is_refused_as_expected(run));
+    complete = complete && (status.has_results() || refused_as_expected(expectation_of(run), status));
   }
   json["complete"] = complete;
   write_file(path_ / "sweep.json", json_text(json, 1) + "\n");
-  return json;
 }
 
-Json SweepFolder::finalize() const {
+void SweepFolder::finalize() const {
   const Json json = read();
   for (const Json& run : json["runs"]) {
     const RunFiles files = this->files(run["folder"]);
     const RunStatus before = read_status(files), status = resolve_status(files, before);
     if (status.state != before.state) write_status(files, status);
   }
-  return refresh();
+  refresh();
 }
 
 std::unique_ptr<FileLock> SweepFolder::lock() const {
@@ -210,29 +204,19 @@ std::string duration_text(double seconds) {
   return seconds < 5400 ? fixed_text(seconds / 60, 0) + " min" : fixed_text(seconds / 3600, 1) + " h";
 }
 
-std::string list_of_runs(const nlohmann::ordered_json& sweep) {
-  const auto status_of = [](const auto& run) -> std::string {
-    return is_refused_as_expected(run) ? "refused, as expected" : run["status"];
-  };
-  std::size_t widest = 9, widest_status = 13;
-  for (const auto& run : sweep["runs"]) {
-    widest = std::max(widest, display_width(run["name"]));
-    widest_status = std::max(widest_status, display_width(status_of(run)));
+std::string list_of_runs(const SweepFolder& folder) {
+  std::vector<std::vector<std::string>> rows = {{"variation", "seed", "status", "time"}};
+  const Json sweep = folder.read();
+  for (const Json& run : sweep["runs"]) {
+    const RunStatus status = read_status(folder.files(run["folder"]));
+    const bool expected = refused_as_expected(expectation_of(run), status);
+    std::string end = status.seconds > 0 ? duration_text(status.seconds) : "";
+    if (status.state == RunState::failed && !expected)
+      end += "\n    " + boost::replace_all_copy(status.error, "\n", "\n    ");
+    rows.push_back({run["name"].get<std::string>(), json_text(run["seed"]),
+                    expected ? "refused, as expected" : to_string(status.state), end});
   }
-  const auto line = [&](const std::string& name, const std::string& seed, const std::string& status,
-                        const std::string& seconds) {
-    return padded(name, widest + 2) + padded(seed, 7) + " " + padded(status, widest_status + 2) + seconds +
-           "\n";
-  };
-  std::string text = line("variation", "seed", "status", "time");
-  for (const auto& run : sweep["runs"]) {
-    const std::string status = status_of(run);
-    const double seconds = run["seconds"];
-    text += line(run["name"], json_text(run["seed"]), status, seconds > 0 ? duration_text(seconds) : "");
-    std::istringstream error(run["error"].get<std::string>());
-    for (std::string said; status == "failed" && std::getline(error, said);) text += "    " + said + "\n";
-  }
-  return text;
+  return text_table(rows);
 }
 
 }  // namespace drape

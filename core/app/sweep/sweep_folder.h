@@ -30,10 +30,10 @@ class SweepFolder {
   /// expected refusals never. Throws std::runtime_error for a folder with other contents, with runs of a
   /// different experiment or number of threads. Only under its lock.
   std::vector<std::size_t> prepare(const Sweep& sweep, int threads, bool retry_failed) const;
-  /// Writes sweep.json again, and returns it.
-  nlohmann::ordered_json refresh() const;
+  /// Writes sweep.json again.
+  void refresh() const;
   /// As `refresh`, when no run is active: also resolves runs that are still marked as running.
-  nlohmann::ordered_json finalize() const;
+  void finalize() const;
   /// sweep.json; null if there is none. Throws std::runtime_error, with file, key and remedy, if it has
   /// another form.
   nlohmann::ordered_json read() const;
@@ -41,15 +41,15 @@ class SweepFolder {
  private:
   /// The runs' statuses by their results. Throws for other contents, as prepare does.
   std::vector<RunStatus> checked_statuses(const Sweep& sweep, int threads) const;
-  /// Writes this sweep.json with every run's status, and returns it.
-  nlohmann::ordered_json write(nlohmann::ordered_json json) const;
+  /// Writes this sweep.json with every run's status.
+  void write(nlohmann::ordered_json json) const;
   std::filesystem::path path_;
 };
 
 /// Whether a run was refused before any computation, for the reason that its sweep expects.
-inline bool refused_as_expected(const SweepRun& run, const RunStatus& status) {
-  return status.refused() && run.expect.status == "refused" &&
-         status.error.find(run.expect.message) != std::string::npos;
+inline bool refused_as_expected(const Expectation& expect, const RunStatus& status) {
+  return status.refused() && expect.status == "refused" &&
+         status.error.find(expect.message) != std::string::npos;
 }
 
 /// Estimates the peak memory of runs: that of the largest finished run with as many vertices and levels, or
@@ -76,8 +76,8 @@ void run_locally(const Sweep& sweep, const SweepFolder& folder, const std::vecto
 /// "3.2 s", "4 min", "1.5 h"
 std::string duration_text(double seconds);
 
-/// The runs of sweep.json for the terminal: variation, seed, status, seconds, and the messages of failed
-/// ones.
-std::string list_of_runs(const nlohmann::ordered_json& sweep);
+/// The runs of a folder's sweep for the terminal: variation, seed, status, seconds, and the messages of
+/// failed ones.
+std::string list_of_runs(const SweepFolder& folder);
 
 }  // namespace drape
