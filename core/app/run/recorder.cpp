@@ -85,7 +85,6 @@ Recorder::Recorder(const RunFolder& folder, const Experiment& experiment, const 
   truncate_file(folder.file("iterations.csv"), state.iterations_bytes);
   truncate_file(folder.file("log.jsonl"), state.log_bytes);
   s_ = state;
-  increments_.reset();
   results_ = parse_json(std::exchange(s_.results, ""));
   const Json now = program_and_machine(),
              before = results_.contains("resumed") ? results_["resumed"].back() : results_;
@@ -150,7 +149,7 @@ void Recorder::level_started(int level) {
   s_.snapshots = {};
   s_.last = Cost();
   s_.overhead_before = s_.overhead;
-  increments_ = 0;
+  s_.increments = 0;
   log("level_started", {{"method", s_.method}, {"level", level}});
 }
 
@@ -225,24 +224,19 @@ Recorder::Json Recorder::state_entry(const LevelResult& r, const Cost& cost) {
 void Recorder::increment_finished(const IncrementRow& r, const Positions& x) {
   const Stopwatch watch;
   const LevelModel& model = *scene_.model(r.level);
-  Json& increments = method_entry()["increments"];
-  if (!increments_) {
-    increments_ = 0;
-    for (const Json& before : increments)
-      if (before["level"] == r.level) *increments_ += before["seconds"].get<double>();
-  }
-  const double seconds = std::max(s_.last.seconds - *increments_, 0.0);  // without what recording took
-  *increments_ += seconds;
-  increments.push_back({{"level", r.level},
-                        {"increment", r.increment},
-                        {"time", r.time},
-                        {"steps", r.steps},
-                        {"iterations", r.iterations},
-                        {"seconds", seconds},
-                        {"energy", r.energy},
-                        {"energy_released", model.value(scene_.placed[r.level]) - model.value(x)},
-                        {"force_residual", r.force_residual},
-                        {"max_constraint_violation", r.max_constraint_violation}});
+  const double seconds = std::max(s_.last.seconds - s_.increments, 0.0);  // without what recording took
+  s_.increments += seconds;
+  method_entry()["increments"].push_back(
+      {{"level", r.level},
+       {"increment", r.increment},
+       {"time", r.time},
+       {"steps", r.steps},
+       {"iterations", r.iterations},
+       {"seconds", seconds},
+       {"energy", r.energy},
+       {"energy_released", model.value(scene_.placed[r.level]) - model.value(x)},
+       {"force_residual", r.force_residual},
+       {"max_constraint_violation", r.max_constraint_violation}});
   exclude(watch.seconds());
 }
 

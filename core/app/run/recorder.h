@@ -41,6 +41,7 @@ class Recorder : public Observer {
     Cost spent, last;                   ///< of the method's levels before this one; of this level so far
     double overhead = 0;                ///< time of the method that recording took [s]
     double overhead_before = 0;         ///< the same before this level
+    double increments = 0;              ///< time of this level's increments so far [s]
     std::uint64_t iterations_bytes = 0, log_bytes = 0;  ///< sizes of its files
     /// The furthest that a level has come to, that of the obstacles' files; without values at the start.
     LoadSteppingState last_load;
@@ -140,8 +141,6 @@ class Recorder : public Observer {
   std::map<std::string, std::string> not_measured_;
   std::vector<std::string> written_, restored_;  // names of files that were missing or different
   State s_;                                      // without results
-  /// The sum over the level's recorded increments [s]; empty after a resume, when results_ has them.
-  std::optional<double> increments_ = 0.0;
   std::optional<LevelResult> solved_reference_;
 };
 
