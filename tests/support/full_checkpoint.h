@@ -15,7 +15,6 @@ inline drape::Checkpoint full_checkpoint() {
   c.files = {{"/a.obj", 17, 99}};
   c.methods = {"pcs", "newton"};
   c.method = 1;
-  c.all_converged = false;
   LevelResult coarse;
   coarse.outcome = Outcome::stalled;
   coarse.message = "no descent";

@@ -143,9 +143,7 @@ void resume(const fs::path& folder, const py::object& on_iteration, const py::ob
   for (const std::string& warning : warnings) warn(warning);
   throw_errors(errors);
   if (!saved->interrupted) return;
-  RunOptions options = options_of(folder, progress, report);
-  options.methods = saved->interrupted->checkpoint.methods;
-  observed(callbacks, options, [&](const RunOptions& all) {
+  observed(callbacks, options_of(folder, progress, report), [&](const RunOptions& all) {
     resume_experiment(saved->experiment, *saved->scene, all, std::move(*saved->interrupted));
   });
 }

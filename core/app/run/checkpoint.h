@@ -27,7 +27,6 @@ struct Checkpoint {
   std::vector<FileFingerprint> files;  ///< files that the config names
   std::vector<std::string> methods;    ///< in the run's order
   int method = 0;                      ///< index of the current method
-  bool all_converged = true;           ///< all methods before it, without intersections
   MethodState state;
   int first_level = 0;  ///< first level of every method
   Positions start;      ///< of a warm start, on that level; empty without one

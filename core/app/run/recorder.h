@@ -76,8 +76,8 @@ class Recorder : public Observer {
   void increment_finished(const IncrementRow& row, const Positions& x) override;
   void level_finished(const LevelResult& result) override;
 
-  /// Whether no checked state of the current method had an intersection.
-  bool intersection_free() const { return s_.intersection_free; }
+  /// Whether every method so far has converged, without an intersection in a checked state.
+  bool all_converged() const;
   /// The metrics that have thrown, with the first cause of each.
   const std::map<std::string, std::string>& not_measured() const { return not_measured_; }
 

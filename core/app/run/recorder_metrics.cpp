@@ -118,6 +118,13 @@ void Recorder::method_finished(const std::vector<LevelResult>& results,
   log("method_finished", {{"method", s_.method}, {"status", entry["status"]}});
 }
 
+bool Recorder::all_converged() const {
+  const Json& methods = results_.at("methods");
+  return std::all_of(methods.begin(), methods.end(), [](const Json& method) {
+    return has_converged(method.at("status").get<std::string>());
+  });
+}
+
 void Recorder::restore_fields() {
   const std::string current = s_.method;
   for (const RecordedState* fine : finest_states())

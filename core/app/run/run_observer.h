@@ -55,7 +55,6 @@ class RunObserver : public Observer {
     }
     level_ = now_.state.level;
   }
-  void method_finished(bool converged) { now_.all_converged = now_.all_converged && converged; }
 
   void level_started(int level) override {
     require_level(scene_, level);

@@ -137,12 +137,7 @@ bool run(const Experiment& experiment, const Scene& scene, const RunOptions& opt
     }
     const std::vector<LevelResult>& results = observer.now().state.finished;
     recorder.method_finished(results, failure);
-    bool converged = !failure && recorder.intersection_free();
-    for (const LevelResult& r : results) {
-      converged = converged && has_converged(r.outcome);
-      cancelled = cancelled || r.outcome == Outcome::cancelled;
-    }
-    observer.method_finished(converged);
+    for (const LevelResult& r : results) cancelled = cancelled || r.outcome == Outcome::cancelled;
   }
   UnrecordedObserver unrecorded(progress, observer);
   const bool measured = recorder.measure_errors(unrecorded, cancelled);
@@ -151,7 +146,7 @@ bool run(const Experiment& experiment, const Scene& scene, const RunOptions& opt
   recorder.run_finished(complete);
   if (complete) remove_checkpoints(folder.path());
   if (options.report) report_on(folder, [&] { return observer.stop_requested(); });
-  const bool good = observer.now().all_converged;
+  const bool good = recorder.all_converged();
   if (options.view)
     options.view->run_finished((!complete ? "stopped on request"
                                 : good    ? "everything converged"

@@ -91,7 +91,7 @@ TEST_CASE("A value that its type does not have is refused") {
   const Checkpoint whole = full_checkpoint();
   std::string bytes = encode_body(whole);
   Checkpoint other = whole;
-  other.all_converged = !whole.all_converged;
+  other.recorder.intersection_free = !whole.recorder.intersection_free;
   const std::size_t flag = difference(bytes, encode_body(other));
   other = whole;
   other.state.finished[0].outcome = Outcome::infeasible;
