@@ -64,8 +64,8 @@ PictureScene::PictureScene(const RunData& run, std::vector<std::string>& notes, 
   Eigen::AlignedBox3d box;
   for (const Positions* x : all) box.extend(bounding_box(*x));
   std::list<Positions> near;
-  for (const std::string& name : run.obstacles)
-    if (auto mesh = mesh_or_note(run, name, notes)) {
+  for (const ObstacleRecord& obstacle : run.obstacles)
+    if (auto mesh = mesh_or_note(run, obstacle.mesh, notes)) {
       all.push_back(&near.emplace_back(near_cloth(mesh->vertices, box)));
       obstacles_.push_back(std::move(*mesh));
     }

@@ -114,7 +114,7 @@ ReportView view_of(const RunData& run) {
   std::vector<Level> levels;
   for (int l = 0; l <= run.finest_level(); ++l) levels.push_back(Level::of(l, run.mesh(rest_file(l))));
   std::vector<TriangleMesh> obstacles;
-  for (const std::string& name : run.obstacles) obstacles.push_back(run.mesh(name));
+  for (const ObstacleRecord& obstacle : run.obstacles) obstacles.push_back(run.mesh(obstacle.mesh));
   ViewDocument document(
       levels, obstacles, run.has_contact(),
       [&](const std::string& name, const std::string& bytes) { view.blocks += block_element(name, bytes); },

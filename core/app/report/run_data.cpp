@@ -24,13 +24,6 @@ const Json& list(const Json& json) {
   return json.is_array() ? json : none;
 }
 
-std::vector<std::string> texts(const Json& json) {
-  std::vector<std::string> all;
-  for (const Json& text : list(json))
-    all.push_back(text.is_string() ? text.get<std::string>() : std::string());
-  return all;
-}
-
 /// The name may lead into an object at each of its dots: a member's own name may have some.
 OptionalNumber number_in(const Json& object, const std::string& name) {
   const Json& own = member_of(object, name);
@@ -165,9 +158,8 @@ RunData read_run(const std::filesystem::path& folder) {
 
   run.experiment = text_member(json, "experiment");
   run.complete = member_of(json, "complete") == true;
-  run.obstacles = texts(member_of(json, "obstacles"));
-  run.obstacle_names = texts(member_of(json, "obstacle_names"));
-  run.obstacle_names.resize(run.obstacles.size());
+  for (const Json& obstacle : list(member_of(json, "obstacles")))
+    run.obstacles.push_back({text_member(obstacle, "mesh"), text_member(obstacle, "name")});
   run.reference = text_member(member_of(json, "reference"), "method");
   run.metrics = declared_metrics(member_of(json, "metrics"));
   if (const std::filesystem::path config = folder / "config.yaml"; std::filesystem::is_regular_file(config)) {

@@ -56,6 +56,11 @@ struct MethodRecord {
   std::vector<const LevelRecord*> recorded_levels() const;
 };
 
+struct ObstacleRecord {
+  std::string mesh;  ///< relative to the run's folder
+  std::string name;  ///< may be empty
+};
+
 /// Everything a finished or interrupted run has written, except meshes.
 struct RunData {
   std::filesystem::path folder;
@@ -64,8 +69,7 @@ struct RunData {
   std::string configuration;  ///< config.yaml, also parsed; empty without one
   ConfigNode config;
   bool complete = false;
-  std::vector<std::string> obstacles;       ///< meshes, relative to the folder
-  std::vector<std::string> obstacle_names;  ///< of each of them; empty for an obstacle without a name
+  std::vector<ObstacleRecord> obstacles;
   std::vector<DeclaredMetric> metrics;
   std::vector<MethodRecord> methods;
   Csv iterations, errors;  ///< iterations.csv and errors.csv; empty without them

@@ -120,9 +120,9 @@ std::string gltf_of(const RunData& run, const MethodRecord& method,
   std::vector<GltfSurface> surfaces;
   std::vector<int> obstacles;
   for (std::size_t k = 0; k < run.obstacles.size(); ++k) {
-    const TriangleMesh mesh = run.mesh(run.obstacles[k]);
+    const TriangleMesh mesh = run.mesh(run.obstacles[k].mesh);
     if (mesh.triangles.rows() == 0) continue;
-    const std::string& given = run.obstacle_names[k];
+    const std::string& given = run.obstacles[k].name;
     const std::string name = given.empty() ? "obstacle " + std::to_string(k) : given;
     obstacles.push_back(static_cast<int>(surfaces.size()));
     surfaces.push_back(gltf_surface(name, GltfMaterial::obstacle, mesh, split_at_seams(mesh)));

@@ -95,15 +95,17 @@ void Recorder::write_scene() {
 }
 
 void Recorder::write_obstacles() {
-  results_["obstacles"] = Json::array();
-  results_["obstacle_names"] = experiment_.obstacle_names();
-  for (const TriangleMesh& obstacle : obstacles_of(scene_.finest_model().contacts())) {
-    const std::string name = "obstacles/" + std::to_string(results_["obstacles"].size()) + ".ply";
-    results_["obstacles"].push_back(name);
+  Json& entries = results_["obstacles"] = Json::array();
+  std::vector<std::string> names = experiment_.obstacle_names();
+  const std::vector<TriangleMesh> obstacles = obstacles_of(scene_.finest_model().contacts());
+  names.resize(obstacles.size());
+  for (std::size_t k = 0; k < obstacles.size(); ++k) {
+    const std::string file = "obstacles/" + std::to_string(k) + ".ply";
+    entries.push_back({{"mesh", file}, {"name", names[k]}});
     // A run that was killed after its last checkpoint may have moved them since: that is no damage.
-    const bool may_differ = scene_.load_stepping && std::filesystem::exists(folder_.file(name));
-    write(name, ply_bytes(obstacle));
-    if (may_differ) std::erase(written_, name);
+    const bool may_differ = scene_.load_stepping && std::filesystem::exists(folder_.file(file));
+    write(file, ply_bytes(obstacles[k]));
+    if (may_differ) std::erase(written_, file);
   }
 }
 
