@@ -40,12 +40,12 @@ void truncate_file(const std::filesystem::path& file, std::uint64_t bytes) {
   if (error) throw WriteError("cannot write " + file.string() + ": " + error.message());
 }
 
-std::vector<std::string> write_rest(const RunFolder& folder, const Scene& scene) {
+std::vector<std::string> write_rest(const std::filesystem::path& folder, const Scene& scene) {
   std::vector<std::string> written;
-  make_folder(folder.file("rest"));
+  make_folder(folder / "rest");
   for (const Level& level : scene.hierarchy.levels) {
     const std::string name = rest_file(level.index);
-    if (write_where_other(folder.file(name), ply_bytes(level.rest))) written.push_back(name);
+    if (write_where_other(folder / name, ply_bytes(level.rest))) written.push_back(name);
   }
   return written;
 }
@@ -88,7 +88,7 @@ void Recorder::write(const std::string& name, const std::string& bytes) {
 }
 
 void Recorder::write_scene() {
-  written_ = write_rest(folder_, scene_);
+  written_ = write_rest(folder_.path(), scene_);
   if (scene_.reference)
     write("reference.ply", ply_bytes({*scene_.reference, scene_.hierarchy.levels.back().rest.triangles}));
   write_obstacles();

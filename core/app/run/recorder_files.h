@@ -10,8 +10,6 @@
 
 namespace drape {
 
-// Operations on a run's files. All throw WriteError if a file cannot be written.
-
 /// A cell of a CSV file, to so many significant digits; empty for a number that is absent or not finite.
 std::string number_cell(const std::optional<double>& value, int digits);
 
@@ -28,8 +26,8 @@ double wall_clock();
 std::uint64_t size_of_file(const std::filesystem::path& file);  ///< [bytes]
 void truncate_file(const std::filesystem::path& file, std::uint64_t bytes);
 
-/// Writes the rest shapes that differ from their files, and returns their names.
-std::vector<std::string> write_rest(const RunFolder& folder, const Scene& scene);
+/// Writes the rest shapes that differ from their files in a run's folder, and returns their names.
+std::vector<std::string> write_rest(const std::filesystem::path& folder, const Scene& scene);
 /// The warning that names files of a run that were written again.
 std::string written_again_text(const std::vector<std::string>& files);
 

@@ -86,16 +86,6 @@ const RecordedState* saved_in(const std::optional<Checkpoint>& checkpoint, const
   return nullptr;
 }
 
-/// Reads the experiment and the scene of a run. Returns false, with errors appended, if that is not possible.
-bool read_scene(const fs::path& folder, const Registry& registry, LargeMemory large, SavedRun& run,
-                ConfigErrors& errors) {
-  std::optional<Experiment> experiment = read_experiment(folder / "config.yaml", {}, registry, errors);
-  if (!experiment) return false;
-  run.experiment = std::move(*experiment);
-  run.scene = build_scene(run.experiment, errors, large, IntersectingStart::allowed);
-  return run.scene != nullptr;
-}
-
 }  // namespace
 
 ConfigNode saved_config(const Experiment& experiment) {
@@ -181,19 +171,25 @@ InterruptedRun interrupted_run(RunFolder run, std::vector<std::string>& warnings
 std::optional<SavedRun> read_saved_run(const fs::path& folder, const Registry& registry, LargeMemory large,
                                        std::vector<std::string>& warnings, ConfigErrors& errors) {
   RunFolder locked = RunFolder::of_run(folder);
+  const bool complete = is_complete(folder);
   SavedRun run;
-  if (is_complete(folder)) {
+  if (complete)
     refuse_damaged_results(folder);
-    if (!read_scene(folder, registry, LargeMemory::allowed, run, errors)) return {};
+  else
+    run.interrupted = interrupted_run(std::move(locked), warnings);
+  std::optional<Experiment> experiment = read_experiment(folder / "config.yaml", {}, registry, errors);
+  if (!experiment) return {};
+  run.experiment = std::move(*experiment);
+  run.scene = build_scene(run.experiment, errors, complete ? LargeMemory::allowed : large,
+                          IntersectingStart::allowed);
+  if (!run.scene) return {};
+  if (complete) {
     if (run.experiment.parameters.cloth.shape == "file") refuse_other_rest(folder, *run.scene);
-    const std::vector<std::string> again = write_rest(locked, *run.scene);
+    const std::vector<std::string> again = write_rest(folder, *run.scene);
     if (!again.empty()) warnings.push_back(written_again_text(again));
-    return run;
-  }
-  run.interrupted = interrupted_run(std::move(locked), warnings);
-  if (!read_scene(folder, registry, large, run, errors)) return {};
-  if (const Checkpoint& checkpoint = run.interrupted->checkpoint; checkpoint.start.rows() > 0)
+  } else if (const Checkpoint& checkpoint = run.interrupted->checkpoint; checkpoint.start.rows() > 0) {
     warm_start_scene(run.experiment, *run.scene, checkpoint.first_level, checkpoint.start, errors);
+  }
   if (!errors.empty()) return {};
   return run;
 }
