@@ -196,11 +196,10 @@ void check_contact(const SceneSummary& s, Warnings& warnings) {
                                 length_text(s.median_edge) +
                                 "); a tenth to a half of an edge is usual; lower \"dhat\", or take fewer "
                                 "vertices or levels");
-  for (std::size_t i = 0; i < s.obstacles.size(); ++i)
-    if (const double size = s.obstacle_sizes[i].norm();
-        size > largest_obstacle && size > largest_ratio * s.size.norm())
-      warnings.add("obstacles", "the obstacle " + s.obstacles[i].obstacle + " is " +
-                                    size_text(s.obstacle_sizes[i]) + " and the cloth " + size_text(s.size) +
+  for (const auto& [gap, size] : s.obstacles)
+    if (size.norm() > largest_obstacle && size.norm() > largest_ratio * s.size.norm())
+      warnings.add("obstacles", "the obstacle " + gap.obstacle + " is " + size_text(size) +
+                                    " and the cloth " + size_text(s.size) +
                                     "; lengths are in metres: if its file is in millimetres or centimetres, "
                                     "add \"unit: mm\" or \"unit: cm\"");
 }

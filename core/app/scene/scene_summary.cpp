@@ -60,9 +60,8 @@ void add_contacts(const LevelModel& model, const Positions& start, SceneSummary&
     if (gaps.empty()) continue;
     const std::vector<TriangleMesh> meshes = contact->obstacles();
     for (std::size_t k = 0; k < gaps.size(); ++k) {
-      summary.obstacle_sizes.push_back(extents(meshes[k].vertices));
       if (is_inside(points, meshes[k])) summary.enclosing = gaps[k].obstacle;
-      summary.obstacles.push_back(std::move(gaps[k]));
+      summary.obstacles.push_back({std::move(gaps[k]), extents(meshes[k].vertices)});
     }
   }
 }
@@ -111,17 +110,16 @@ std::string text_of(const SceneSummary& s) {
                      (s.level > 0 ? " on level " + std::to_string(s.level) : "") + ", " + mass_text(s.mass);
   if (s.bending_length) text += ", bending length " + edges_text(*s.bending_length, s);
   if (s.dhat > 0) text += ", d̂ " + edges_text(s.dhat, s);
-  const auto nearest =
-      std::min_element(s.obstacles.begin(), s.obstacles.end(),
-                       [](const ObstacleGap& a, const ObstacleGap& b) { return a.gap < b.gap; });
+  const auto nearest = std::ranges::min_element(
+      s.obstacles, {}, [](const ObstacleSummary& obstacle) { return obstacle.gap.gap; });
   if (nearest == s.obstacles.end()) return text;
   constexpr double steep = 0.5;  // the sine of 30°
-  const double up = nearest->direction.z();
-  return text + ", starts " + length_text(nearest->gap) +
+  const double up = nearest->gap.direction.z();
+  return text + ", starts " + length_text(nearest->gap.gap) +
          (up > steep    ? " above "
           : up < -steep ? " below "
                         : " beside ") +
-         nearest->obstacle;
+         nearest->gap.obstacle;
 }
 
 std::string size_text(const Eigen::Vector3d& size) {

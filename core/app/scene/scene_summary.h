@@ -9,6 +9,12 @@
 
 namespace drape {
 
+/// An obstacle, and its gap at the coarsest level's start.
+struct ObstacleSummary {
+  ObstacleGap gap;
+  Eigen::Vector3d size;  ///< of its bounding box [m]
+};
+
 /// The quantities of a scene that a person can judge, and that a wrong unit or axis changes.
 struct SceneSummary {
   Eigen::Vector3d size;  ///< of the rest shape's bounding box on the coarsest level [m]
@@ -17,10 +23,9 @@ struct SceneSummary {
   double shortest_edge = 0, median_edge = 0, longest_edge = 0;
   double mass = 0;                       ///< [kg]
   std::optional<double> bending_length;  ///< (D/(ρ d g))^⅓ [m]; none without bending or uniform gravity
-  double start_stretch = 1;            ///< median of start over rest length of the coarsest level's edges [1]
-  double dhat = 0;                     ///< the largest d̂ of the contact models [m]; 0 without one
-  std::vector<ObstacleGap> obstacles;  ///< the gap of each obstacle at the coarsest level's start
-  std::vector<Eigen::Vector3d> obstacle_sizes;  ///< of their bounding boxes [m], in the same order
+  double start_stretch = 1;  ///< median of start over rest length of the coarsest level's edges [1]
+  double dhat = 0;           ///< the largest d̂ of the contact models [m]; 0 without one
+  std::vector<ObstacleSummary> obstacles;
   std::string enclosing;  ///< an obstacle inside which a part of the cloth starts; "" without one
 };
 
