@@ -8,6 +8,7 @@
 #include <stdexcept>
 #include <system_error>
 
+#include "core/app/experiment/experiment.h"
 #include "core/app/files/json_file.h"
 #include "core/app/report/compare.h"
 #include "core/app/report/pictures.h"
@@ -58,6 +59,15 @@ Json measures_json(const std::vector<ErrorMeasure>& measures) {
     all.push_back(
         {{"name", m.name}, {"label", m.label}, {"use", m.use == ErrorUse::ranking ? "ranking" : "other"}});
   return all;
+}
+
+/// A number of the `newton` of each method that has one.
+Json newton_numbers(const RunData& run, const char* key) {
+  Json numbers = Json::object();
+  for (const MethodRecord& method : run.methods)
+    if (const OptionalNumber number = newton_number(run.config, method.name, key))
+      numbers[method.name] = *number;
+  return numbers;
 }
 
 Json styles_json(const RunCollection& collection) {
@@ -153,18 +163,13 @@ std::vector<std::string> write_report(const fs::path& folder, const std::functio
   PictureSet set = draw_pictures(run, cancelled, picture_width);
   const ReportView view = report_view(run);
   for (const std::string& note : view.notes) add_new(set.notes, note);
-  Json step_sizes = Json::object(), tolerances = Json::object();
-  for (const MethodRecord& method : run.methods) {
-    if (method.step_size) step_sizes[method.name] = *method.step_size;
-    if (method.force_tolerance) tolerances[method.name] = *method.force_tolerance;
-  }
   const Json data = {{"kind", "run"},
                      {"results", run.results},
                      {"table", table_json(table_of(collection))},
                      {"measures", measures_json(error_measures(run.metrics))},
                      {"styles", styles_json(collection)},
-                     {"step_sizes", step_sizes},
-                     {"tolerances", tolerances},
+                     {"step_sizes", newton_numbers(run, "step_size")},
+                     {"tolerances", newton_numbers(run, "force_tolerance")},
                      {"errors", csv_json(run.errors)},
                      {"iterations", csv_json(run.iterations)},
                      {"config", run.configuration},

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "core/app/experiment/experiment.h"
 #include "core/app/files/json_file.h"
 #include "core/app/files/yaml_file.h"
 #include "core/kernel/files/file.h"
@@ -168,11 +167,8 @@ RunData read_run(const std::filesystem::path& folder) {
     run.config = parse_yaml(run.configuration, "config.yaml", unread);
   }
   const JsonFile file(folder / "results.json", "run the experiment again");
-  for (const auto& [name, value] : member_of(json, "methods").items()) {
+  for (const auto& [name, value] : member_of(json, "methods").items())
     run.methods.push_back(method_of(name, value, file));
-    run.methods.back().step_size = newton_number(run.config, name, "step_size");
-    run.methods.back().force_tolerance = newton_number(run.config, name, "force_tolerance");
-  }
   // The progressive method comes first; the others stay in file order.
   std::stable_partition(run.methods.begin(), run.methods.end(),
                         [](const MethodRecord& m) { return m.name == "pcs"; });

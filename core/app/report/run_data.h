@@ -43,8 +43,6 @@ struct ConsistencyRecord {
 struct MethodRecord {
   std::string name, status;
   std::string solver;               ///< its type: a method is named in the experiment
-  OptionalNumber step_size;         ///< h of the first implicit step, and of the decrement [s]
-  OptionalNumber force_tolerance;   ///< the force residual at which its levels end
   std::vector<LevelRecord> levels;  ///< coarse to fine
   std::vector<ConsistencyRecord> consistency;
 
