@@ -307,4 +307,9 @@ TEST_CASE("two tasks for one run, as after a daemon's death, run it once") {
   CHECK(runs[0]["status"] == "converged");
   CHECK(runs[0]["starts"] == 1);
   CHECK(refused_by("sweep-job out --task 1", folder.path) == "error: out: sweep.json has no run 1\n");
+  folder.write("out/sweep.json", replaced(text_of(folder / "out/sweep.json"), "\"time_limit\": 0.0",
+                                          "\"time_limit\": \"long\""));
+  CHECK(refused_by("sweep-job out --task 0", folder.path) ==
+        "error: out/sweep.json: \"time_limit\" must be a number, not \"long\"; name another folder with "
+        "--out\n");
 }
