@@ -45,11 +45,14 @@ TEST_CASE("a level that is no whole number is named with its file and its key") 
 
 TEST_CASE("values within objects have their path as name") {
   const Scratch folder;
-  folder.write("results.json",
-               R"({"methods": {"pcs": {"levels": [{"height": {"lowest": 0.25, "highest": null}}]}}})");
+  folder.write(
+      "results.json",
+      R"({"methods": {"pcs": {"levels": [{"height": {"lowest": 0.25, "highest": null, "at 0.5": 3}}]}}})");
   const RunData run = read_run(folder.path);
-  CHECK(run.methods[0].levels[0].values.of("height.lowest") == 0.25);
-  CHECK(!run.methods[0].levels[0].values.of("height.highest"));
+  const Values& values = run.methods[0].levels[0].values;
+  CHECK(values.of("height.lowest") == 0.25);
+  CHECK(values.of("height.at 0.5") == 3);
+  for (const char* none : {"height.highest", "height", "lowest", "height.lowest.0"}) CHECK(!values.of(none));
 }
 
 TEST_CASE("results nested a million deep end no process") {
