@@ -182,15 +182,9 @@ class Reader {
     nlohmann::ordered_json keys = nlohmann::ordered_json::object();
     for (const SweepRun& run : sweep_.runs) keys.update(run.settings);
     for (std::size_t k = 0; k < sweep_.runs.size(); ++k) {
-      SweepRun& run = sweep_.runs[k];
-      if (run.settings.size() == keys.size()) continue;
-      nlohmann::ordered_json all = nlohmann::ordered_json::object();
+      nlohmann::ordered_json& settings = sweep_.runs[k].settings;
       for (const auto& [key, value] : keys.items())
-        if (run.settings.contains(key))
-          all[key] = run.settings[key];
-        else if (key != "methods")
-          all[key] = setting_at(resolved_[k], key);
-      run.settings = all;
+        if (key != "methods" && !settings.contains(key)) settings[key] = setting_at(resolved_[k], key);
     }
   }
 
