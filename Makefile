@@ -1,4 +1,4 @@
-# Every target says what it does. Each installs what it needs of the packages that third_party lists (Debian 12, asks apt-get).
+# Each target installs what it needs of the packages that third_party lists (Debian 12, asks apt-get).
 #
 # PRESET=debug, ci, clang, asan or tsan chooses another of CMakePresets.json; under asan and tsan, the sanitizers,
 # `make test` leaves out the long studies (docs/contributing/testing.md).

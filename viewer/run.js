@@ -138,7 +138,7 @@ function convergence(run) {
     }
   // The decrement is that of the first step size; of a shorter one, ‖p‖ was scaled by the square of their ratio (docs/theory/method.md).
   const step = (line, row) => {
-    const first = run.step_sizes[line.method];
+    const first = run.step_sizes[line.method] ?? row.step_size;
     return first * row.decrement * Math.min(1, (known(row.step_size) ? row.step_size : first) / first) ** 2;
   };
   const iteration = {title: 'Newton iteration', name: 'row'}, time = {title: 'time [s]', name: 'seconds'}, residual = {title: 'force residual', name: 'force_residual', log: true};

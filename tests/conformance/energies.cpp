@@ -286,7 +286,8 @@ TEST_CASE("A rest shape with a triangle without area is refused", "[conformance]
   Level level = Level::of(0, grid({1, 1}, 3, 3, Diagonals::one_way));
   level.rest.vertices.row(4) = level.rest.vertices.row(0);
   for (const Candidate& candidate : all_energies()) {
-    if (!candidate.internal()) continue;
+    // A spring needs its edge alone.
+    if (!candidate.internal() || candidate.name == "springs") continue;
     INFO(candidate.name);
     CHECK_THROWS_WITH(candidate.energy->bind(level, material),
                       Catch::Contains(" of level 0 has no area at rest") ||

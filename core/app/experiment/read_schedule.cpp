@@ -193,7 +193,8 @@ class KeyReader {
 
 void ScheduleKey::declare(Declaration<ScheduleKey>& d) {
   d.add("parameter", &ScheduleKey::parameter,
-        "path of the parameter, as for --set, in material, energies, contact, obstacles, friction, pins or "
+        "path of the parameter, a number or a list of them but no integer, as for --set, in material, "
+        "energies, contact, obstacles, friction, pins or "
         "handles; an index or a name selects an item of a list, as in energies.gravity.acceleration")
       .required();
   d.add("times", &ScheduleKey::times, "pseudo-times, ascending; the scene begins at 0")

@@ -58,8 +58,8 @@ struct SweepOptions {
   bool report = false;  ///< write each run's report
   bool quiet = false;   ///< say nothing of runs that end well
   bool retry_failed = false;
-  std::vector<std::string> sbatch;  ///< further options, as "--partition=long"
-  std::function<bool()> stop;       ///< polled
+  std::vector<std::string> sbatch;                    ///< further options, as "--partition=long"
+  std::function<bool()> stop = [] { return false; };  ///< polled
 };
 
 /// Reads and validates a sweep with every experiment in it; empty, with every error appended, if it is not

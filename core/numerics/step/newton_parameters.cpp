@@ -11,8 +11,7 @@ void NewtonParameters::declare(Declaration<NewtonParameters>& d) {
       .source("PCS section 4; supplement, Figure 4");
   d.add("step_size", &NewtonParameters::step_size,
         "h of the first implicit step, and of the decrement; in the static form also the unit of the mass "
-        "that "
-        "damps a step without descent")
+        "that damps a step without descent")
       .unit("s")
       .between(bounds::smallest_time_step, bounds::largest_time_step)
       .source("PCS section 4");
