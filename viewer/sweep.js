@@ -102,8 +102,8 @@ function table(all) {
   const own = unique(all.runs.filter(run => run.rows.length).map(run => run.reference).filter(name => name)).map(name =>
     `${name} in ${all.runs.filter(run => run.reference === name).length} of ${all.runs.filter(run => run.rows.some(row => row.method === name)).length}`);
   return h('section', {id: 'summary'}, h('h2', {}, 'All runs'), explained('A row per method and variation: the median over the starts that converged, with the range; or a row per method and run. ' +
-    'Time counts the levels that the end builds on. The best value is bold among rows of the same physics (cloth, levels, material, pins, schedule, energies, refiner, contact, obstacles): ' +
-    'times and energies of different physics do not compare.', own.length ? ` Ends that were the reference themselves are not compared with it: ${own.join(', ')}.` : ''),
+    'Time counts the levels that the end builds on. The best value is bold among rows of the same physics: times and energies of different physics do not compare. Its keys in the ' +
+    `experiment are ${all.model_keys.join(', ')}; the start’s noise is not part of it.`, own.length ? ` Ends that were the reference themselves are not compared with it: ${own.join(', ')}.` : ''),
   all.seeds.length > 1 ? h('p', {class: 'controls'}, tick('medians over starts', true, on => { Object.assign(state, {medians: on, table: {}}); draw(); }, 'medians')) : null, frame);
 }
 
@@ -113,7 +113,7 @@ function failures(all) {
     known(run.seed) ? `, seed ${run.seed}` : '', `: ${run.status.replace(/_/g, ' ')}`, run.error ? h('pre', {tabindex: 0}, run.error) : '')))) : null;
 }
 
-/// {name, complete, table, measures, metrics, styles, runs}: a run has `count` rows of the table, in order.
+/// {name, complete, table, measures, metrics, model_keys, styles, runs}: a run has `count` rows of the table, in order.
 export function sweepPage(data) {
   const {columns, rows} = data.table, varied = columns.slice(2, columns.indexOf('seed'));
   let at = 0;

@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/app/experiment/experiment.h"
+#include "core/app/files/yaml_file.h"
 #include "core/app/report/compare.h"
 #include "core/app/report/run_table.h"
 #include "core/kernel/files/string_utils.h"
@@ -140,6 +141,8 @@ TEST_CASE("report of a sweep is one page with every row, state and failure") {
   CHECK(rows == 19);
   CHECK(data["runs"][0]["pictures"].size() == 3);
   CHECK(data["runs"][0]["physics"] == data["runs"][3]["physics"]);  // they differ in a solver's setting
+  CHECK(data["runs"][0]["physics"] == data["runs"][1]["physics"]);  // they differ in the noise at the start
+  CHECK(data["model_keys"] == OrderedJson(model_keys()));
   CHECK(data["runs"][0]["reference"] == "newton");
   CHECK(data["runs"][0]["errors"]["rows"].size() > 6);
   CHECK(data["runs"][0]["first_levels"]["newton"] == 1);
@@ -345,6 +348,16 @@ TEST_CASE("compare gives energies no verdict where the models differ, and names 
       other.out,
       matches("pcs, level 1 +energy_released .* other\n") &&
           Contains("Energies have no verdict, as their models differ: in material.bending_modulus.\n"));
+}
+
+TEST_CASE("energies compare among starts at one place, whatever their noise") {
+  const auto model = [](const std::string& start) {
+    ConfigErrors errors;
+    return parse_yaml("start: {translate: " + start + "}", "e.yaml", errors);
+  };
+  const ConfigNode low = model("[0, 0, 1]"), noisy = model("[0, 0, 1], perturbation: 1e-3, seed: 2");
+  CHECK(model_of(low) == model_of(noisy));
+  CHECK((differing_model_keys(low, model("[0, 0, 2]")) == std::vector<std::string>{"start.translate"}));
 }
 
 TEST_CASE("a bound is broken if a method no longer converges or exists") {

@@ -138,16 +138,18 @@ Names first_of(Names names, std::size_t most) {
 
 using Kind = ConfigNode::Kind;
 
-/// What an experiment says of whose energy is minimised, without the record of where a material's numbers are
-/// from.
+/// The part of an experiment under model_keys, without the start's noise and the record of where a material's
+/// numbers are from.
 ConfigNode model_part(const ConfigNode& config) {
   ConfigNode model;
   model.kind = Kind::map;
-  for (const char* key : {"cloth", "levels", "material", "pins", "handles", "schedule", "energies", "refiner",
-                          "contact", "obstacles", "friction"})
+  for (const std::string& key : model_keys())
     if (const ConfigNode* part = config.find(key)) model.add(key, *part);
-  for (auto& [key, part] : model.entries)
+  for (auto& [key, part] : model.entries) {
     if (key == "material") part.remove("from_fabric");
+    if (key == "start")
+      for (const char* noise : {"perturbation", "perturbation_wavelength", "seed"}) part.remove(noise);
+  }
   return model;
 }
 
@@ -174,6 +176,12 @@ void add_differences(const ConfigNode& a, const ConfigNode& b, const std::string
 }
 
 }  // namespace
+
+const Names& model_keys() {
+  static const Names keys = {"cloth",    "levels",   "start",   "material", "pins",      "handles",
+                             "schedule", "energies", "refiner", "contact",  "obstacles", "friction"};
+  return keys;
+}
 
 std::string model_of(const ConfigNode& config) { return model_part(config).one_line(); }
 

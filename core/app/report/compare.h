@@ -21,12 +21,15 @@ struct Comparison {
 Comparison compare(const RunCollection& before, const RunCollection& after,
                    const std::vector<std::string>& bounds);
 
-/// The paths of the keys in which two experiments differ, among those that say whose energy is minimised:
-/// cloth, levels, material, boundary conditions, schedule, energies, refiner, contact, obstacles and
-/// friction, and neither start nor methods. A key that one of them lacks is no difference.
+/// The keys of an experiment that say which energy is minimised, and from where its fall is measured: the
+/// start without its noise. The methods are not among them.
+const std::vector<std::string>& model_keys();
+
+/// The paths of the keys within model_keys in which two experiments differ. A key that one of them lacks is
+/// no difference.
 std::vector<std::string> differing_model_keys(const ConfigNode& a, const ConfigNode& b);
 
-/// The values of these keys as one text, which two experiments share if they minimise the same energy.
+/// The values of model_keys as one text, which two experiments share if their energies compare.
 std::string model_of(const ConfigNode& config);
 
 }  // namespace drape

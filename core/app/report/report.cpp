@@ -201,6 +201,7 @@ void write_runs_report(const std::vector<fs::path>& folders, const fs::path& fil
                          {"table", table_json(table)},
                          {"measures", measures_json(collection.error_measures())},
                          {"metrics", json_of(collection.metrics())},
+                         {"model_keys", model_keys()},
                          {"styles", styles_json(collection)},
                          {"runs", runs}}));
 }
