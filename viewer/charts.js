@@ -60,7 +60,7 @@ export function distancePlot(name, caption, height, {measures, rows, absent}, se
 }
 
 /// A plot that follows its width: draw({x, y, series}) shows other lines. An axis is {title, name, log, categories}; a series
-/// {label, colour, mark, dash, width, points: [{x, y, low, high, end, …}], band}. Points that an axis cannot show are left out.
+/// {label, colour, mark, dash, width, opacity, points: [{x, y, low, high, end, …}], band}. Points that an axis cannot show are left out.
 export class Chart {
   constructor(name, caption, height = 360) {
     Object.assign(this, {name, caption, height, hidden: new Set(), width: 0});
@@ -124,7 +124,7 @@ export class Chart {
     text([(left + right) / 2, bottom + 33 + tilted], x.title);
     text([0, 0], y.title, 'middle', {transform: `translate(13 ${(top + bottom) / 2}) rotate(-90)`});
     svg.append(grid);
-    shown.forEach((line, k) => svg.append(this.line(line, k, p => [r2(px(p.x)), r2(py(p.y))], v => r2(py(v)), x)));
+    shown.forEach((line, k) => svg.append(this.line(line, k, p => [r2(px(p.x)), r2(py(p.y))], v => r2(py(v)))));
     svg.append(legend.group(bottom + 55 + tilted));
     const hint = s('g', {class: 'hint', 'pointer-events': 'none'});
     svg.append(hint);
@@ -133,8 +133,8 @@ export class Chart {
     this.box.replaceChildren(svg);
   }
 
-  line({label, colour, mark, dash = '', width = 2, points, band}, k, at, py, x) {
-    const group = s('g', {class: `series series-${k}`, fill: 'none', stroke: colour, 'stroke-width': width});
+  line({label, colour, mark, dash = '', width = 2, opacity = 1, points, band}, k, at, py) {
+    const group = s('g', {class: `series series-${k}`, fill: 'none', stroke: colour, 'stroke-width': width, opacity});
     const path = list => list.map(p => at(p).join(' ')).join('L');
     group.append(s('title', {}, label));
     if (band && points.length > 1)
@@ -162,7 +162,7 @@ export class Chart {
     const group = top => s('g', {class: 'legend', fill: 'var(--ink)'}, ...items.map(({label, line, x: at, row: r}) => {
       const y = top + 18 * r, g = s('g', {role: 'button', tabindex: 0, 'aria-pressed': String(!this.hidden.has(label)), opacity: this.hidden.has(label) ? .4 : 1});
       g.append(s('rect', {x: at, y: y - 11, width: 38 + 7.6 * label.length, height: 17, fill: 'transparent'}),
-        s('path', {d: `M${at} ${y - 3}h28`, stroke: line.colour, 'stroke-width': 2, 'stroke-dasharray': line.dash || ''}));
+        s('path', {d: `M${at} ${y - 3}h28`, stroke: line.colour, 'stroke-width': line.width ?? 2, 'stroke-opacity': line.opacity ?? 1, 'stroke-dasharray': line.dash || ''}));
       if (line.mark) g.append(s('path', {d: markPath(line.mark, at + 14, y - 3, 3.5), fill: line.colour}));
       g.append(s('text', {x: at + 34, y: y + 1}, label));
       g.addEventListener('click', toggle(label));

@@ -148,11 +148,11 @@ function convergence(run) {
     gap: ['energy above the lowest with the same objective, over time', {...time, log: true}, {title: 'energy above the lowest [J]', name: 'gap', log: true},
       (line, row) => [row.seconds, objective(line, row) - lowest[`${line.level} ${proxy(line, row)}`]]],
     step: ['length of Newton steps over iterations', iteration, {title: 'Newton step, RMS [m]', name: 'step', log: true}, (line, row) => [row.row, step(line, row)]]};
-  const chart = new Chart('convergence', 'Thin and dotted lines are coarse levels, the thick one is the finest.');
-  const look = line => ({...methodLook(run.styles, line.method), mark: null, label: `${line.method}, level ${line.level}`,
-    dash: line.level === finest ? '' : ['1 3', '4 3', '8 3', '12 3 2 3'][line.level % 4], width: line.level === finest ? 2.6 : 1.5});
+  const chart = new Chart('convergence', 'The thinner and paler a line, the coarser its level.');
+  const look = line => ({...methodLook(run.styles, line.method), label: `${line.method}, level ${line.level}`, width: 1 + 1.6 * (line.level + 1) / (finest + 1),
+    opacity: .5 + .5 * (line.level + 1) / (finest + 1)});
   const draw = kind => {
-    const [, x, y, point] = plots[kind], lines = series.map(line => ({...look(line), points: line.rows.map(row => { const [a, b] = point(line, row); return {x: a, y: b}; })}));
+    const [, x, y, point] = plots[kind], lines = series.map(line => ({...look(line), mark: null, points: line.rows.map(row => { const [a, b] = point(line, row); return {x: a, y: b}; })}));
     const all = lines.flatMap(line => line.points.map(p => p.x)).filter(known);
     for (const tolerance of y === residual && all.length ? unique(run.order.map(run.tolerance)).filter(known) : [])
       lines.push({label: 'tolerance', colour: 'var(--soft)', dash: '5 4', width: 1, points: [Math.min(...all), Math.max(...all)].map(v => ({x: v, y: tolerance}))});
@@ -162,7 +162,7 @@ function convergence(run) {
   const increments = run.order.flatMap(method => (run.results.methods[method].increments || []).map(row => ({method, ...row})));
   const under = (id, y, title) => {
     const plot = new Chart(id, title + ' of each increment, over pseudo-time: where the lines of levels coincide, the coarse level had the fine one’s response.');
-    plot.draw({x: {title: 'pseudo-time', name: 'time'}, y: {title, name: y}, series: series.map(line => ({...look(line), mark: 'circle',
+    plot.draw({x: {title: 'pseudo-time', name: 'time'}, y: {title, name: y}, series: series.map(line => ({...look(line),
       points: increments.filter(row => row.method === line.method && (row.level ?? 0) === line.level).map(row => ({x: row.time, y: row[y]}))}))});
     return plot.element;
   };

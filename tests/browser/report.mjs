@@ -318,6 +318,19 @@ test('a method with a level that did not converge is neither good nor the best',
   assert.equal(await page.locator('#consistency tbody tr:has-text("newton") strong').count(), 0);
 });
 
+test('dashes tell methods of one solver apart, the width of a line its level', async () => {
+  const {page} = await edited('alike', methods => { methods.cascadic.solver = methods.newton.solver; });
+  await page.evaluate(() => document.querySelectorAll('details').forEach(part => { part.open = true; }));
+  const looks = () => page.locator('#convergence .series').evaluateAll(all => Object.fromEntries(all.map(g =>
+    [g.querySelector('title').textContent, [g.getAttribute('stroke'), g.querySelector('.line')?.getAttribute('stroke-dasharray'), g.getAttribute('stroke-width')]])));
+  const of = await until('the lines', async () => { const all = await looks(); return all['newton, level 1'] && all['cascadic, level 1'] && all; });
+  const [colour, dash, width] = of['newton, level 1'];
+  assert.deepEqual([of['newton, level 0'][0], of['newton, level 0'][1]], [colour, dash]);
+  assert.ok(Number(of['newton, level 0'][2]) < Number(width));
+  assert.deepEqual([of['cascadic, level 1'][0], of['cascadic, level 1'][2]], [colour, width]);
+  assert.notEqual(of['cascadic, level 1'][1], dash);
+});
+
 /// Writes four snapshots of pcs's level 0 into the run, as a recorded run has them: the sheet sinking to its last state.
 function addFrames() {
   const ply = fs.readFileSync(path.join(folder, 'out/levels/pcs_l0.ply')), marker = 'end_header\n';
