@@ -56,7 +56,7 @@ function against(all) {
   const draw = () => {
     const values = all.values(chosen.key), numeric = values.every(known), rest = all.keys.filter(key => key !== chosen.key);
     const lines = grouped(all.shownRows, row => [row.method, ...rest.map(key => keyText(key, row[key]))].join(', '));
-    const plain = lines.size <= all.methods.length, wide = numeric && Math.min(...values) > 0 && Math.max(...values) > 20 * Math.min(...values);
+    const plain = unique([...lines.values()].map(rows => rows[0].method)).length === lines.size, wide = numeric && Math.min(...values) > 0 && Math.max(...values) > 20 * Math.min(...values);
     chart.draw({x: {title: chosen.key, name: chosen.key, log: wide, categories: numeric ? null : values}, y: {title: describe(all.quantity, all.of).text, name: all.quantity},
       absent: 'No run has this value.', series: [...lines].map(([label, rows], k) => ({label, ...(plain ? methodLook(all.styles, rows[0].method) : otherLook(k)),
         points: values.flatMap(x => {

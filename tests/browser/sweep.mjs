@@ -103,6 +103,7 @@ test('the table sorts and filters, by medians or by run, and compares within one
   await page.locator('#filter').fill('levels>=2 seed!=3 method=pcs');
   assert.deepEqual(await shown(), [8, 8, '8 of 24 runs']);
   assert.match(await page.locator('#parameter svg').getAttribute('aria-label'), /: pcs, levels 2, step_growth 1.5, pcs, levels 2, step_growth 3$/);
+  assert.equal(new Set(await page.locator('#parameter .series').evaluateAll(all => all.map(line => line.getAttribute('stroke')))).size, 2);
   await page.locator('#filter').fill('^lo+p$ step_growth=3 levels=1');
   assert.deepEqual(await shown(), [3, 6, '3 of 24 runs']);
   await page.locator('#filter').fill('preview_seconds<100 levels=1');  // which have no preview
