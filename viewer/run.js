@@ -5,23 +5,28 @@ import {dataTable} from './tables.js';
 import {about, choice, converged, count, counted, explained, fold, formula, h, known, number, rowsOf, seconds, unique} from './text.js';
 import {View} from './view.js';
 
-/// "after 39 s" and the like of a method: the sentence that one wants to know, beside the cloth.
+const statusText = status => (status || 'unknown status').replace(/_/g, ' ');
+
+/// "after 39 s" and the like of a method: the sentence that one wants to know, beside the cloth. It is about the last level that has a state.
 function sentence(run, row) {
-  const method = run.results.methods[row.method], last = method.levels?.at(-1), good = converged(method.status || ''), tolerance = run.tolerance(row.method);
-  const rest = !last ? method.status || 'no level is complete' : !good ? `not at rest: ${method.status.replace(/_/g, ' ')}, force residual ${number(last.force_residual)}`
-    : method.status !== 'converged' || !tolerance ? 'at rest to rounding'
+  const method = run.results.methods[row.method], last = method.levels?.filter(level => level.mesh).at(-1), status = last?.status || '', tolerance = run.tolerance(row.method);
+  const finished = !['running', 'aborted', 'cancelled', 'failed'].includes(method.status);
+  const rest = !last ? null : !converged(status) ? `not at rest: ${statusText(status)}, force residual ${number(last.force_residual)}`
+    : status !== 'converged' || !tolerance ? 'at rest to rounding'
     : tolerance < 1 ? `at rest to ${Number(tolerance.toPrecision(3))}` : `ended at force residual ${number(last.force_residual)}`;  // 1: no balance is asked for
+  const way = !last ? method.status || 'no level is complete' : finished || status === method.status ? null : method.status === 'running' ? 'still running' : `then ${method.status}`;
   const crossing = known(row.intersections) ? counted(row.intersections, 'intersection') : null;
   const preview = known(row.preview_seconds) ? h('span', {}, 'preview after ', h('b', {class: 'preview-time'}, seconds(row.preview_seconds))) : null;
-  const end = last ? h('span', {}, 'end after ', h('b', {}, seconds(row.seconds))) : null;
-  const parts = [preview, end, last ? `${count(last.vertices)} vertices` : null, crossing, rest].filter(part => part !== null);
-  return h('li', {class: good && !(row.intersections > 0) ? 'good' : 'poor'}, h('b', {}, row.method), ': ', parts.flatMap((part, k) => k ? [', ', part] : [part]), '.');
+  const end = last ? h('span', {}, finished ? 'end after ' : `level ${last.level} so far, after `, h('b', {}, seconds(row.seconds))) : null;
+  const parts = [preview, end, last ? `${count(last.vertices)} vertices` : null, crossing, rest, way].filter(part => part !== null);
+  const good = converged(method.status || '') && !(row.intersections > 0);
+  return h('li', {class: good ? 'good' : 'poor'}, h('b', {}, row.method), ': ', parts.flatMap((part, k) => k ? [', ', part] : [part]), '.');
 }
 
 function troubles(run) {
   const items = run.order.flatMap(name => (run.results.methods[name].levels || []).filter(level => level.message || !converged(level.status || '')).map(level =>
-    h('li', {}, h('b', {}, name), `, level ${level.level}: `, converged(level.status) ? level.message
-      : `${level.status.replace(/_/g, ' ')} after ${counted(level.iterations ?? 0, 'iteration')} at force residual ${number(level.force_residual)}${level.message ? ': ' + level.message : ''}`)));
+    h('li', {}, h('b', {}, name), `, level ${level.level}: `, converged(level.status || '') ? level.message
+      : `${statusText(level.status)} after ${counted(level.iterations ?? 0, 'iteration')} at force residual ${number(level.force_residual)}${level.message ? ': ' + level.message : ''}`)));
   const remarks = [...(run.results.remarks || []), ...run.notes].map(text => h('li', {}, text));
   return items.length + remarks.length ? h('ul', {class: 'remarks', id: 'remarks'}, items, remarks) : null;
 }

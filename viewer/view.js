@@ -209,7 +209,7 @@ export class View {
     const text = !found ? 'not reached yet' : [`level ${found.level.level}` + (running ? ', running' : ''),
       ...(total !== null ? [`after ${digits(total, 2)} s`] : [iteration === null ? null : `${iteration} iterations`, seconds === null ? null : `${digits(seconds, 3)} s`])]
       .filter(part => part).join(', ');
-    box.replaceChildren(h('b', {}, method.name + (end ? ', end' : '')), h('span', {}, text));
+    box.replaceChildren(h('b', {}, method.name + (end ? ', last state' : '')), h('span', {}, text));
   }
 
   play(on) {

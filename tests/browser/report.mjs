@@ -297,6 +297,19 @@ test('the view begins with the first method that has a state', async () => {
   assert.ok(await drawnShare(page, '#viewer-canvas') > .05);
 });
 
+test('a method that did not finish is described by its last state', async () => {
+  const {page} = await edited('aborted', methods => {
+    Object.assign(methods.pcs, {status: 'aborted', levels: [methods.pcs.levels[0]], consistency: []});
+    methods.cascadic.status = 'failed';
+    methods.cascadic.levels[1] = {level: 1, vertices: 289, triangles: 512, status: 'failed', message: 'no memory'};
+    delete methods.newton.levels[1].status;
+  });
+  const said = await page.locator('.sentences li').allTextContents();
+  assert.match(said[0], /^pcs: level 0 so far, after [0-9.]+ s, 81 vertices, 0 intersections, at rest to 0.01, then aborted\.$/);
+  assert.match(said[1], /^cascadic: preview after [0-9.]+ s, level 0 so far, after [0-9.]+ s, 81 vertices, 0 intersections, at rest to 0.01, then failed\.$/);
+  assert.match(said[2], /^newton: .* 289 vertices, 0 intersections, not at rest: unknown status, force residual /);
+});
+
 test('a method has its own tolerance, and one that asks for no balance is not called at rest', async () => {
   await run(folder, 'run', contactConfig, '--out', 'own', '--quiet', '--no-report', '--threads', '1', '--method', 'all', '--set', 'snapshots=0',
     '--set', 'methods.newton.newton.force_tolerance=5e-2', '--set', 'methods.cascadic.newton.force_tolerance=1e9');
