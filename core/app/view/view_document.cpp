@@ -84,10 +84,11 @@ ViewDocument::Json ViewDocument::state(const std::string& name, const Positions&
                                        const SurfaceFields& fields, const Obstacles* moved) {
   keep_(name, encode_positions(x));
   Json entry = {{"x", name}, {"fields", Json::object()}};
-  for (const FieldKind& kind : kinds_) {
+  for (std::size_t k = 0; k < kinds_.size(); ++k) {
+    const FieldKind& kind = kinds_[k];
     const auto values = fields.find(kind.name);
     if (values == fields.end()) continue;
-    const std::string block = name + "-" + kind.name;
+    const std::string block = name + "-" + std::to_string(k);  // a field's name may hold anything
     keep_(block, encode_scalars(values->second, kind.low, kind.high));
     entry["fields"][kind.name] = block;
   }
