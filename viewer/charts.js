@@ -47,12 +47,14 @@ function scale(values, logarithmic, categories, most) {
 }
 
 /// Choices and a plot of errors over costs, as rows of errors.csv have them; series(cost, error) are the lines of two columns.
+/// `absent` says why there are no rows.
 export function distancePlot(name, caption, height, {measures, rows, absent}, series) {
   const chosen = {measure: ranking(measures), cost: 'seconds'}, chart = new Chart(name, caption, height);
   chosen.target = Object.keys(targets).find(t => rows.some(row => known(row[`${t}_${chosen.measure}`]))) || 'own';
   const draw = () => {
     const y = `${chosen.target}_${chosen.measure}`, {cost} = chosen;
-    chart.draw({x: {title: costs[cost], name: cost, log: true}, y: {title: measures.find(m => m.name === chosen.measure)?.label, name: y, log: true}, absent, series: series(cost, y)});
+    const why = !rows.length ? absent : rows.some(row => known(row[y])) ? 'No value is above zero, and the axes are logarithmic.' : `No state was compared with ${targets[chosen.target]}.`;
+    chart.draw({x: {title: costs[cost], name: cost, log: true}, y: {title: measures.find(m => m.name === chosen.measure)?.label, name: y, log: true}, absent: why, series: series(cost, y)});
   };
   const pick = (label, part, options) => choice(label, options, chosen[part], value => { chosen[part] = value; draw(); }, `${name}-${part}`);
   return {draw, elements: [h('p', {class: 'controls'}, pick('of', 'measure', Object.fromEntries(measures.map(m => [m.name, m.label]))), pick('from', 'target', targets),

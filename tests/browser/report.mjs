@@ -23,6 +23,7 @@ test('opens without a complaint or a request, on the preview beside its end', as
   assert.deepEqual(shown.panels.map(p => [p.method, p.end, p.level, p.vertices]), [['pcs', false, 0, 81], ['pcs', true, 1, 289]]);
   assert.ok(await drawnShare(page, '#viewer-canvas') > .05);
   assert.match(await page.locator('#viewer-rounding').textContent(), /^Positions are rounded to [0-9.]+ µm here/);
+  assert.equal(await page.locator('#distance .absent').textContent(), 'No states were recorded in this run (snapshots: 0).');
   await page.locator('#viewer-beside').uncheck();
   for (const k of [1, 2]) await page.locator('#viewer-methods input').nth(k).check();
   await until('three views', async () => (await state()).panels.map(p => p.method).join() === 'pcs,cascadic,newton');
@@ -182,6 +183,14 @@ test('plots have a line a method, are saved, and follow the choices', async () =
   await page.keyboard.press('Enter');
   assert.equal(await page.locator('#distance .series').count(), 2);
   assert.equal(await page.locator('#distance .legend > g').nth(1).getAttribute('aria-pressed'), 'false');
+
+  const absent = () => page.locator('#distance .absent').textContent();
+  await page.locator('#distance-target').selectOption('reference');
+  assert.equal(await absent(), 'No state was compared with the reference.');
+  fs.rmSync(path.join(folder, 'timed/errors.csv'));
+  await writeReport('timed');
+  await page.reload();
+  assert.equal(await absent(), 'errors.csv is missing or empty: a run writes it once all its methods have ended.');
 });
 
 test('a table begins with few columns, sorts by every one and is saved', async () => {
