@@ -22,6 +22,16 @@ function markPath(mark, x, y, r) {
   return `M${x - r} ${y}a${r} ${r} 0 1 0 ${2 * r} 0a${r} ${r} 0 1 0 ${-2 * r} 0`;
 }
 
+/// Round values from one to the other, at least `least` apart, as [value, text]. There is room for texts of some eight characters.
+function roundTicks(from, to, least) {
+  const unit = 10 ** Math.floor(Math.log10(least)), step = [1, 2, 5, 10].map(m => m * unit).find(u => u >= least), ticks = [];
+  for (let k = Math.ceil(from / step); k * step <= to; ++k) {
+    const t = Number((k * step).toPrecision(6)), plain = t === 0 || Math.abs(t) >= 1e-3 && Math.abs(t) < 1e6;
+    ticks.push([k * step, plain ? String(t) : t.toExponential().replace('+', '')]);
+  }
+  return ticks;
+}
+
 /// {place: value → 0 … 1, ticks: [value, text]}.
 function scale(values, logarithmic, categories, most) {
   if (categories) return {place: v => (categories.indexOf(v) + .5) / categories.length, ticks: categories.map(c => [c, String(c ?? '–')])};
@@ -36,14 +46,14 @@ function scale(values, logarithmic, categories, most) {
         const t = p + Math.log10(m);
         if (t >= low && t <= high && p % every === 0) ticks.push([m * 10 ** p, Math.abs(p) < 3 ? String(Number((m * 10 ** p).toPrecision(2))) : m + 'e' + p]);
       }
-    return {place: v => (Math.log10(v) - low) / (high - low), ticks};
+    const [from, to] = [10 ** low, 10 ** high];
+    return {place: v => (Math.log10(v) - low) / (high - low), ticks: ticks.length < 2 && high - low < 2 ? roundTicks(from, to, (to - from) / most) : ticks};
   }
   if (low > 0 && low < .5 * high) low = 0;
-  if (low === high) [low, high] = [low - .5, high + .5];
-  const raw = (high - low) / most, unit = 10 ** Math.floor(Math.log10(raw)), step = [1, 2, 5, 10].map(m => m * unit).find(u => u >= raw);
-  const margin = .03 * (high - low), from = low === 0 ? 0 : low - margin, to = high + margin, ticks = [];
-  for (let t = Math.ceil(from / step) * step; t <= to; t += step) ticks.push([t, String(Number(t.toPrecision(6)))]);
-  return {place: v => (v - from) / (to - from), ticks};
+  const size = Math.max(Math.abs(low), Math.abs(high));
+  if (high - low <= 1e-9 * size) [low, high] = [low - Math.max(.5, 1e-3 * size), high + Math.max(.5, 1e-3 * size)];
+  const margin = .03 * (high - low), from = low === 0 ? 0 : low - margin, to = high + margin;
+  return {place: v => (v - from) / (to - from), ticks: roundTicks(from, to, (high - low) / most)};
 }
 
 /// Choices and a plot of errors over costs, as rows of errors.csv have them; series(cost, error) are the lines of two columns.

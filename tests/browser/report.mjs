@@ -191,6 +191,12 @@ test('plots have a line a method, are saved, and follow the choices', async () =
   await writeReport('timed');
   await page.reload();
   assert.equal(await absent(), 'errors.csv is missing or empty: a run writes it once all its methods have ended.');
+
+  // Within less than a decade a logarithmic axis has the ticks of a linear one.
+  fs.writeFileSync(path.join(folder, 'timed/errors.csv'), 'method,level,seconds,iterations,flops,own_rms\npcs,0,1.1,1,1,1.1\npcs,1,1.9,2,2,1.9\n');
+  await writeReport('timed');
+  await page.reload();
+  assert.ok((await page.locator('#distance .grid text').allTextContents()).filter(text => text === '1.4').length === 2);
 });
 
 test('a table begins with few columns, sorts by every one and is saved', async () => {
@@ -338,6 +344,13 @@ test('a method with a level that did not converge is neither good nor the best',
   assert.deepEqual(await page.locator('#methods .status.poor').allTextContents(), ['converged, max steps reached']);
   assert.equal(await page.locator('#methods tr:has(.poor) strong').count(), 0);
   assert.equal(await page.locator('#consistency tbody tr:has-text("newton") strong').count(), 0);
+});
+
+test('large values have short ticks', async () => {
+  const {page} = await edited('large', methods => { methods.newton.increments = [0, 1].map(time => ({level: 1, time, energy_released: 3e7 * time, steps: 1})); });
+  await page.evaluate(() => document.querySelectorAll('details').forEach(part => { part.open = true; }));
+  const texts = await until('the plot', async () => { const all = await page.locator('#increment-energy .grid text').allTextContents(); return all.length && all; });
+  assert.ok(texts.includes('1e7') && texts.includes('2e7'), texts.join());
 });
 
 test('dashes tell methods of one solver apart, the width of a line its level', async () => {
