@@ -53,6 +53,7 @@ export class View {
 
   /// Takes a document, also while it grows; a view of the newest state follows. Resolves once it is shown.
   update(view) {
+    if (!this.scene) return null;  // without WebGL
     const following = this.stop === this.stops.length - 1 && this.live;
     this.data = view;
     const levels = view.methods.flatMap(method => method.levels);
@@ -64,7 +65,6 @@ export class View {
     if (this.live) this.forget();
     this.listFields();
     this.listMethods();
-    if (!this.stops.length) return null;
     // The preview at first, beside the end; without that the end.
     const begin = this.beside && this.stops.some(s => s.level > this.stops[0].level) ? this.stops.findIndex(s => s.last) : this.stops.length - 1;
     return this.show(this.stop < 0 || following ? begin : this.stop);
@@ -154,6 +154,7 @@ export class View {
 
   /// Shows a stop once its data are loaded; a later call supersedes it.
   async show(to) {
+    if (!this.stops.length) return;  // of a run that has just begun
     this.stop = Math.min(Math.max(to, 0), this.stops.length - 1);
     const stop = this.stops[this.stop], ticket = this.ticket = {};
     this.level.max = Math.max(...this.stops.map(each => each.level));
@@ -214,10 +215,10 @@ export class View {
 
   play(on) {
     clearTimeout(this.timer);
-    this.plays = on;
-    this.playing.textContent = on ? 'Pause' : 'Play';
-    this.playing.setAttribute('aria-pressed', String(on));
-    if (!on) return;
+    this.plays = on && this.stops.length > 0;
+    this.playing.textContent = this.plays ? 'Pause' : 'Play';
+    this.playing.setAttribute('aria-pressed', String(this.plays));
+    if (!this.plays) return;
     const step = async stop => {
       await this.show(stop);
       if (!this.plays) return;
@@ -227,11 +228,16 @@ export class View {
     step(this.stop + 1 < this.stops.length ? this.stop + 1 : 0);
   }
 
-  changeLevel(by) {
-    const level = (this.stops.length ? this.stops[this.stop].level : 0) + by;
-    if (this.stops.some(stop => stop.level === level)) this.showLevel(level);
+  /// The next level that has a state, up or down.
+  changeLevel(up) {
+    const levels = this.stops.map(stop => stop.level), at = levels[this.stop], next = up ? levels.find(level => level > at) : levels.findLast(level => level < at);
+    if (next !== undefined) this.showLevel(next);
   }
-  showLevel(level) { this.show(this.stops.findIndex(stop => stop.level === level && stop.last)); }
+  /// The last state of the nearest level that has one.
+  showLevel(level) {
+    const nearest = Math.min(...this.stops.map(stop => Math.abs(stop.level - level)));
+    this.show(this.stops.findLastIndex(stop => Math.abs(stop.level - level) === nearest));
+  }
   async savePicture() { save((this.data.title || 'cloth') + '.png', await this.scene.picture()); }
 
   /// Keys, wheel and pointers on the view.
@@ -246,8 +252,8 @@ export class View {
       else if (event.key === '+' || event.key === '=') scene.zoom(1 / 1.15);
       else if (event.key === '-') scene.zoom(1.15);
       else if (event.key === '0' || event.key === 'Home') scene.resetView();
-      else if (event.key === 'PageUp') this.changeLevel(1);
-      else if (event.key === 'PageDown') this.changeLevel(-1);
+      else if (event.key === 'PageUp') this.changeLevel(true);
+      else if (event.key === 'PageDown') this.changeLevel(false);
       else if (event.key === ' ') this.play(!this.plays);
       else return;
       event.preventDefault();

@@ -3,7 +3,7 @@ import assert from 'node:assert/strict';
 import fs from 'node:fs';
 import http from 'node:http';
 import path from 'node:path';
-import {contactConfig, drawnShare, newPage, openPage, run, scratch, start, test, until} from './support.mjs';
+import {contactConfig, drawnShare, listenTo, newPage, openPage, run, scratch, start, test, until} from './support.mjs';
 
 const folder = scratch();
 // Small steps for ever: at larger ones a level stalls before long, and a busy machine lets no page ask for the next one before.
@@ -75,6 +75,33 @@ test('levels appear and move; "refine now" goes on to the next; "stop" ends the 
   assert.deepEqual(levels.map(level => level.status), ['refined_early_on_request', 'cancelled']);
   assert.match(levels[0].message, /^refined on request; force residual /);
   assert.equal(results('stopped').methods.cascadic, undefined);
+});
+
+test('controls do nothing before there is a state', async () => {
+  const running = await startViewed(contactConfig, 'begun', ...endless), page = await newPage(), heard = listenTo(page);
+  const news = {version: 1, outcome: '', method: 'pcs', level: 0, finest: 1, first_row: 0, rows: [], levels: [], obstacles: [], fields: [],
+    methods: [{name: 'pcs', style: 0, tolerance: .01, levels: []}]};
+  await page.route('**/news*', route => route.fulfill({status: 200, contentType: 'application/json', body: JSON.stringify(news)}));
+  await page.goto(running.url);
+  await until('the view', () => page.evaluate(() => !!window.drapeViewer));
+  await page.locator('#viewer-obstacles').uncheck();
+  await page.locator('#viewer-play').click();
+  assert.equal(await page.locator('#viewer-play').textContent(), 'Play');
+  await page.locator('#viewer-canvas').focus();
+  await page.keyboard.press('PageUp');
+  assert.deepEqual(heard.errors, []);
+  running.kill('SIGTERM');
+});
+
+test('without WebGL the page goes on, and asks for no state', async () => {
+  const running = await startViewed(contactConfig, 'flat', ...endless), page = await newPage(), heard = listenTo(page);
+  await page.addInitScript(() => { HTMLCanvasElement.prototype.getContext = () => null; });
+  await page.goto(running.url);
+  await until('news', () => heard.requests.filter(url => url.includes('/news')).length > 8);
+  assert.equal(await page.locator('#live-status').textContent(), 'Running: pcs, level 0 of 1.');
+  assert.ok(!heard.requests.some(url => url.includes('/block/')));
+  assert.deepEqual(heard.errors, []);
+  running.kill('SIGTERM');
 });
 
 test('an obstacle that the schedule moves is shown where it is', async () => {

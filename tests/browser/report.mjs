@@ -70,6 +70,20 @@ test('the level slider changes the mesh, the colours and the legend follow the c
   const picture = await downloaded(page, '#viewer-png');
   assert.equal(picture.name, 'contact.png');
   assert.equal(picture.bytes.subarray(1, 4).toString(), 'PNG');
+
+  // The nearest level is taken for one without a state, and the next one by keys.
+  await page.evaluate(() => {
+    const {data} = window.drapeViewer, spread = levels => levels.map(entry => ({...entry, level: 2 * entry.level}));
+    return window.drapeViewer.update({...data, levels: [data.levels[0], data.levels[0], data.levels[1]], methods: data.methods.map(method => ({...method, levels: spread(method.levels)}))});
+  });
+  const level = n => until('level ' + n, async () => (await state()).panels.every(p => p.level === n));
+  await page.locator('#viewer-level').fill('1');
+  await level(2);
+  await page.locator('#viewer-canvas').focus();
+  await page.keyboard.press('PageDown');
+  await level(0);
+  await page.keyboard.press('PageUp');
+  await level(2);
 });
 
 test('a schedule has plots of its own', async () => {
