@@ -142,7 +142,9 @@ export class Chart {
     svg.append(hint);
     svg.addEventListener('pointermove', event => this.hint(hint, event, shown, p => [px(p.x), py(p.y)], W));
     svg.addEventListener('pointerleave', () => hint.replaceChildren());
+    const focused = this.box.contains(document.activeElement) ? document.activeElement.textContent : null;  // a line's name in the legend
     this.box.replaceChildren(svg);
+    if (focused !== null) [...svg.querySelectorAll('.legend > g')].find(item => item.textContent === focused)?.focus({preventScroll: true});
   }
 
   line({label, colour, mark, dash = '', width = 2, opacity = 1, points, band}, k, at, py) {
@@ -182,7 +184,6 @@ export class Chart {
         if (event.key !== 'Enter' && event.key !== ' ') return;
         event.preventDefault();
         toggle(label)();
-        [...this.box.querySelectorAll('.legend > g')].find(other => other.lastChild.textContent === label).focus();
       });
       return g;
     }));

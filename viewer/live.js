@@ -1,6 +1,6 @@
 /// The page of a run that goes on: polls for news four times a second, and sends button presses.
 import {Chart, methodLook} from './charts.js';
-import {h, unique} from './text.js';
+import {h, say, unique} from './text.js';
 import {View} from './view.js';
 
 export function livePage({title}) {
@@ -38,8 +38,8 @@ export function livePage({title}) {
       ...[...lines].map(([label, points]) => ({label, ...methodLook(styles, label), mark: null, points})),
       ...unique(ends.length ? news.methods.map(method => method.tolerance) : []).map(y =>
         ({label: 'tolerance', colour: 'var(--soft)', dash: '5 4', width: 1, points: [0, Math.max(...ends)].map(x => ({x, y}))}))]});
-    status.textContent = news.outcome ? `The run has ended: ${news.outcome}.`
-      : news.method ? `Running: ${news.method}, level ${news.level} of ${news.finest}.` : 'Waiting for the run.';
+    say(status, news.outcome ? `The run has ended: ${news.outcome}.`
+      : news.method ? `Running: ${news.method}, level ${news.level} of ${news.finest}.` : 'Waiting for the run.');
     stop.disabled = !news.method || !!news.outcome;
     refine.disabled = stop.disabled || news.level === news.finest;
     // Before the next request: the server soon drops replaced states.

@@ -12,6 +12,9 @@ export function filled(element, attributes, children) {
 }
 export const h = (tag, attributes = {}, ...children) => filled(document.createElement(tag), attributes, children);
 
+/// Writes a text that is read aloud when it changes: only then.
+export const say = (element, text) => { if (element.textContent !== text) element.textContent = text; };
+
 /// Nodes of a text with subscripts and superscripts: of "d_H^fit", H stands below and fit above the line.
 export function formula(text) {
   return text.split(/(?<=[A-Za-z0-9])([_^][A-Za-z0-9]+)/).map((part, k) =>

@@ -1,7 +1,7 @@
 /// The 3D view and its controls: which states are shown, in which colours, in which panels.
 import {embedded, gradient, paint, positions, scalars, triangles} from './blocks.js';
 import {Scene} from './scene.js';
-import {choice, count, fold, h, save, tick} from './text.js';
+import {choice, count, fold, h, save, say, tick} from './text.js';
 
 /// So many digits, or a whole number where these do not suffice: no exponent.
 const digits = (value, n) => value < 10 ** n - .5 ? value.toPrecision(n) : count(value);
@@ -161,7 +161,7 @@ export class View {
     this.level.value = stop.level;
     this.scrubber.max = this.stops.length - 1;
     this.scrubber.value = this.stop;
-    this.levelText.textContent = `${stop.level}, ${count(this.data.levels[stop.level].vertices)} vertices`;
+    say(this.levelText, `${stop.level}, ${count(this.data.levels[stop.level].vertices)} vertices`);
     let panels;
     try {
       panels = await Promise.all(this.shown.map(panel => this.panel(panel, stop, this.field())));

@@ -51,6 +51,14 @@ test('levels appear and move; "refine now" goes on to the next; "stop" ends the 
   assert.match(await page.locator('#viewer-labels').textContent(), /level 0, running, [0-9]+ iterations/);
   assert.ok(await drawnAtRest(running, page, '#viewer-canvas') > .05);
   assert.ok(await drawnAtRest(running, page, '#live-residual') > .002);
+  await page.evaluate(() => {
+    document.querySelector('#live-residual svg').drawnBefore = true;
+    document.querySelector('#live-residual .legend > g').focus();
+    new MutationObserver(() => { window.saidAgain = true; }).observe(document.querySelector('#live-status'), {childList: true, characterData: true});
+  });
+  await until('a newer plot', () => page.evaluate(() => !document.querySelector('#live-residual svg').drawnBefore));
+  assert.equal(await page.evaluate(() => document.activeElement.textContent), 'pcs');
+  assert.equal(await page.evaluate(() => window.saidAgain), undefined);
   await page.locator('#viewer-field').selectOption('stretch');
   await until('colours', async () => (await state()).panels[0].tints > 0);
 

@@ -197,6 +197,7 @@ test('plots have a line a method, are saved, and follow the choices', async () =
   await page.keyboard.press('Enter');
   assert.equal(await page.locator('#distance .series').count(), 2);
   assert.equal(await page.locator('#distance .legend > g').nth(1).getAttribute('aria-pressed'), 'false');
+  assert.equal(await page.evaluate(() => document.activeElement.textContent), 'cascadic');
 
   const absent = () => page.locator('#distance .absent').textContent();
   await page.locator('#distance-target').selectOption('reference');
