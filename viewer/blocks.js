@@ -12,7 +12,7 @@ export async function embedded(name) {
   return new Response(stream).arrayBuffer();
 }
 
-/// `rounding` is the most by which a coordinate differs from the state's.
+/// `rounding` is the most by which a coordinate differs from the state's: half a step, and far from the origin what float32 leaves out.
 export function positions(buffer, count) {
   const box = new Float32Array(buffer, 0, 6), steps = new Uint16Array(buffer, 24, 3 * count);
   const x = new Float32Array(3 * count);
@@ -23,7 +23,8 @@ export function positions(buffer, count) {
       x[3 * i + k] = lower + q * scale;
     }
   }
-  x.rounding = Math.max(...box.slice(3)) / 65535 / 2;
+  const largest = Math.max(...[0, 1, 2].flatMap(k => [Math.abs(box[k]), Math.abs(box[k] + box[3 + k])]));
+  x.rounding = Math.max(...box.slice(3)) / 65535 / 2 + largest / 2 ** 23;
   return x;
 }
 

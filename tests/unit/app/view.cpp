@@ -1,6 +1,7 @@
 // What the viewer is given: blocks, colours' values, and the report's share of it.
 
 #include <catch2/catch.hpp>
+#include <cmath>
 #include <cstring>
 #include <limits>
 
@@ -41,13 +42,17 @@ Positions decoded(const std::string& bytes, Eigen::Index n) {
 TEST_CASE("positions come back within the rounding that is stated") {
   Positions x = square(7).rest.vertices * 3.7;
   x.col(2) = (5 * x.col(0)).array().sin() * x.col(1).array();
-  x.rowwise() += Eigen::RowVector3d(10, -4, 0.3);
-  const std::string bytes = encode_positions(x);
-  REQUIRE(bytes.size() == 24 + 6 * 64);
-  const double error = (decoded(bytes, 64) - x).cwiseAbs().maxCoeff();
-  CHECK(error > 0);
   const Eigen::RowVector3d size = x.colwise().maxCoeff() - x.colwise().minCoeff();
-  CHECK(error <= size.maxCoeff() / 65535 / 2 + 2e-6);  // and the box's float32
+  for (const double far : {1.0, 1e5}) {
+    INFO(far);
+    x.rowwise() += far * Eigen::RowVector3d(10, -4, 0.3);
+    const std::string bytes = encode_positions(x);
+    REQUIRE(bytes.size() == 24 + 6 * 64);
+    const Positions rounded = decoded(bytes, 64).cast<float>().cast<double>();
+    const double error = (rounded - x).cwiseAbs().maxCoeff(), largest = x.cwiseAbs().maxCoeff();
+    CHECK(error > 0);
+    CHECK(error <= size.maxCoeff() / 65535 / 2 + std::ldexp(largest, -23));
+  }
 
   x(3, 1) = none;
   CHECK(decoded(encode_positions(x), 64).allFinite());
