@@ -73,19 +73,28 @@ void LiveView::show(LevelView& view, int level, const Positions& x, const Eigen:
   const Stopwatch watch;
   if (scene_.load_stepping && scene_.load_stepping->state().values != load_) {
     load_ = scene_.load_stepping->state().values;
-    obstacles_ = obstacles_of(scene_.finest_model().contacts());
+    obstacles_ =
+        std::make_shared<const std::vector<TriangleMesh>>(obstacles_of(scene_.finest_model().contacts()));
   }
-  if (view.name != view.sent) forget_blocks(view.name);
-  view.name = "m" + std::to_string(method_) + "l" + std::to_string(level) + "v" + std::to_string(++encoded_);
-  SurfaceFields fields = document_.fields(level, x, &obstacles_);
-  add_contact_pressure(fields, pressure);
-  document_.set_ranges({&fields});
-  view.state = document_.state(view.name, x, fields, &obstacles_);
-  view.state["iteration"] = view.iteration;
-  view.state["seconds"] = view.seconds;
+  view.x = x;
+  view.obstacles = obstacles_;
+  view.fields = document_.fields(level, x, obstacles_.get());
+  add_contact_pressure(view.fields, pressure);
+  // Levels that ended within narrower ranges are encoded again: their colours were cut off.
+  const bool wider = document_.widen_ranges({&view.fields});
+  for (auto& [key, other] : levels_)
+    if (&other == &view || (wider && !other.state.is_null())) encode(other);
   ++version_;
   last_shown_ = clock_.seconds();
   seconds_to_show_ = watch.seconds();
+}
+
+void LiveView::encode(LevelView& view) {
+  if (view.name != view.sent) forget_blocks(view.name);
+  view.name = "m" + std::to_string(++encoded_);
+  view.state = document_.state(view.name, view.x, view.fields, view.obstacles.get());
+  view.state["iteration"] = view.iteration;
+  view.state["seconds"] = view.seconds;
 }
 
 void LiveView::level_finished(const LevelResult& result) {

@@ -3,6 +3,7 @@
 #include <atomic>
 #include <condition_variable>
 #include <map>
+#include <memory>
 #include <mutex>
 
 #include "core/app/scene/scene.h"
@@ -45,12 +46,16 @@ class LiveView : public Observer {
     std::string status = "running";
     int iteration = 0;
     double seconds = 0;
-    Json state;                     // as ViewDocument makes it; null at first
-    std::string name;               // of its blocks
+    Positions x;  // of the state that is shown, without rows at first
+    SurfaceFields fields;
+    std::shared_ptr<const std::vector<TriangleMesh>> obstacles;  // null for where they were first
+    Json state;                                                  // as ViewDocument makes it; null at first
+    std::string name;                                            // of its blocks
     std::string sent, sent_before;  // of those that pages know, and may still request
   };
 
   void show(LevelView& view, int level, const Positions& x, const Eigen::VectorXd& pressure = {});
+  void encode(LevelView& view);
   std::string news(long version, std::size_t rows);
   std::string refine();
   std::shared_ptr<const std::string> block(const std::string& name);
@@ -74,8 +79,8 @@ class LiveView : public Observer {
   std::map<std::string, std::shared_ptr<const std::string>> blocks_;
   Stopwatch clock_;
   const std::vector<TriangleMesh> first_obstacles_;
-  std::vector<TriangleMesh> obstacles_ = first_obstacles_;  // under the values of the schedule's keys
-  std::vector<double> load_;                                // these values
+  std::shared_ptr<const std::vector<TriangleMesh>> obstacles_;  // under the values of the schedule's keys
+  std::vector<double> load_;                                    // these values
   ViewDocument document_;
 
   std::unique_ptr<LiveServer> server_;  // last: its threads use the rest

@@ -7,7 +7,6 @@
 #include <cmath>
 #include <cstdint>
 #include <stdexcept>
-#include <tuple>
 
 #include "core/kernel/files/file.h"
 #include "core/numerics/elements/green_strain.h"
@@ -70,14 +69,20 @@ SurfaceFields ViewDocument::fields(int level, const Positions& x, const Obstacle
   return all;
 }
 
-void ViewDocument::set_ranges(const std::vector<const SurfaceFields*>& states) {
+bool ViewDocument::widen_ranges(const std::vector<const SurfaceFields*>& states) {
+  bool wider = false;
   for (FieldKind& kind : kinds_) {
     std::vector<const Eigen::VectorXd*> values;
     for (const SurfaceFields* state : states)
       if (const auto field = state->find(kind.name); field != state->end() && !field->second.isZero(0))
         values.push_back(&field->second);  // the finest level's difference from itself is zero
-    if (!values.empty()) std::tie(kind.low, kind.high) = field_range(kind, values, gap_range_);
+    if (values.empty()) continue;
+    auto [low, high] = field_range(kind, values, gap_range_);
+    if (kind.high > kind.low) low = std::min(low, kind.low), high = std::max(high, kind.high);
+    wider = wider || low != kind.low || high != kind.high;
+    kind.low = low, kind.high = high;
   }
+  return wider;
 }
 
 ViewDocument::Json ViewDocument::state(const std::string& name, const Positions& x,

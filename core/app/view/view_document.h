@@ -29,8 +29,9 @@ class ViewDocument {
 
   /// The fields that depend on positions only.
   SurfaceFields fields(int level, const Positions& x, const Obstacles* moved = nullptr) const;
-  /// Sets the colour ranges from typical states, usually the last of each level.
-  void set_ranges(const std::vector<const SurfaceFields*>& states);
+  /// Widens the colour ranges, which are empty at first, to those of typical states, usually the last of each
+  /// level. Returns whether one has changed: states that were encoded before are cut off at its old ends.
+  bool widen_ranges(const std::vector<const SurfaceFields*>& states);
   /// Encodes a state; its blocks are named after `name`.
   Json state(const std::string& name, const Positions& x, const SurfaceFields& fields,
              const Obstacles* moved = nullptr);
@@ -48,7 +49,7 @@ class ViewDocument {
   Json level_entries_ = Json::array(), obstacle_entries_ = Json::array();
 };
 
-// The viewer's blocks of bytes, little endian; docs/guide/viewer.md says what each holds.
+// The viewer's blocks of bytes, little endian; docs/contributing/working.md says what each holds.
 
 /// Six float32, lower corner and size of the box, then x, y and z plane by plane as uint16 within it, each
 /// the difference from the vertex before modulo 2^16. What is not finite becomes the lower corner.
