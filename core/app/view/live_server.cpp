@@ -108,7 +108,9 @@ LiveServer::LiveServer(int port, const LiveAnswers& answers, double patience)
     if (ours && request.path.starts_with(impl_->base)) return httplib::Server::HandlerResponse::Unhandled;
     refuse(response, ours ? 404 : 403,
            ours ? "There is nothing here."
-                : "Refused: the request comes from elsewhere than the live view's own page.");
+                : "Refused: the request comes from elsewhere than the live view's own page. A port that is "
+                  "forwarded to it must be " +
+                      std::to_string(impl_->port) + " too.");
     return httplib::Server::HandlerResponse::Handled;
   });
 

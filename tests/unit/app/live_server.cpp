@@ -75,6 +75,16 @@ TEST_CASE("a peer that reads none of its answer does not delay the shutdown") {
   served.server.reset();
 }
 
+TEST_CASE("a request through another port is told which one must be forwarded") {
+  const Served served(for_ever);
+  LiveAddress forwarded = served.address;
+  forwarded.host = "localhost:1";
+  const std::string refusal = served.answer(forwarded.request("GET", forwarded.path));
+  CHECK(refusal.starts_with("HTTP/1.1 403"));
+  CHECK(refusal.ends_with("A port that is forwarded to it must be " + std::to_string(served.address.port) +
+                          " too.\n"));
+}
+
 TEST_CASE("a request that does not arrive in time is given up") {
   const Stopwatch watch;
   const Served served(0.5);
