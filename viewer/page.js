@@ -7,7 +7,7 @@ import {View} from './view.js';
 
 function statesPage({view}) {
   const shown = window.drapeViewer = new View(view);
-  return [h('section', {}, shown.element, shown.controls)];
+  return [h('header', {}, h('h1', {}, view.title || 'States')), h('section', {}, shown.element, shown.controls)];
 }
 
 const data = JSON.parse(document.getElementById('data').textContent);
@@ -17,5 +17,6 @@ document.getElementById('page').replaceChildren(...{run: runPage, runs: sweepPag
 addEventListener('beforeprint', () => {
   document.documentElement.dataset.theme = 'light';
   document.querySelectorAll('details').forEach(part => { part.open = true; });
+  window.drapeViewer?.copyForPaper();
 });
 addEventListener('afterprint', () => { delete document.documentElement.dataset.theme; });

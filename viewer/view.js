@@ -10,7 +10,7 @@ export class View {
   /// `load(name)` is a promise of a block's bytes. Of the methods `first` is shown, or all; with `beside` the panel of a state
   /// has that of the method's end beside it.
   constructor(view, {load = embedded, live = false, first = null, beside = false, picture = null} = {}) {
-    Object.assign(this, {load, live, beside, blocks: new Map(), stops: [], stop: -1, panels: [], obstacles: true,
+    Object.assign(this, {load, live, beside, picture, blocks: new Map(), stops: [], stop: -1, panels: [], obstacles: true,
       hidden: new Set(first === null ? [] : view.methods.map(m => m.name).filter(name => name !== first)), fieldName: ''});
     const button = (id, text, click) => h('button', {type: 'button', id, click}, text);
     const range = (id, label, input) => h('input', {type: 'range', id, 'aria-label': label, min: 0, max: 0, step: 1, value: 0, input: event => input(Number(event.target.value))});
@@ -237,6 +237,15 @@ export class View {
   showLevel(level) {
     const nearest = Math.min(...this.stops.map(stop => Math.abs(stop.level - level)));
     this.show(this.stops.findLastIndex(stop => Math.abs(stop.level - level) === nearest));
+  }
+  /// A canvas of WebGL cannot be printed: a copy of it stands in, unless the page has a picture.
+  copyForPaper() {
+    if (this.picture || !this.scene?.panel) return;
+    this.scene.render(2);
+    const copy = h('canvas', {class: 'fallback', role: 'img', 'aria-label': 'The cloth', width: this.canvas.width, height: this.canvas.height});
+    copy.getContext('2d').drawImage(this.canvas, 0, 0);
+    this.copy?.remove();
+    this.element.append(this.copy = copy);
   }
   async savePicture() { save((this.data.title || 'cloth') + '.png', await this.scene.picture()); }
 

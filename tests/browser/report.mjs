@@ -295,6 +295,15 @@ test('printed, and without WebGL', async () => {
   await page.emulateMedia({media: 'print'});
   assert.ok(!(await page.locator('#viewer-canvas').isVisible()));
   assert.ok(await page.locator('img.fallback').isVisible());
+  // A page without a picture prints a copy of the view.
+  await page.emulateMedia({media: 'screen'});
+  await page.evaluate(() => {
+    window.drapeViewer.picture.remove();
+    window.drapeViewer.picture = null;
+    dispatchEvent(new Event('beforeprint'));
+  });
+  await page.emulateMedia({media: 'print'});
+  assert.ok(await drawnShare(page, 'canvas.fallback') > .05);
   await page.context().close();
 
   const bare = await newPage();
