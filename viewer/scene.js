@@ -40,6 +40,7 @@ export class Scene {
     this.lookAt([0, 0, 0], 1);
     new ResizeObserver(() => this.layOut()).observe(canvas.parentElement);
     canvas.addEventListener('webglcontextrestored', () => this.draw());
+    this.listen();
   }
 
   /// Light comes from above the viewer's left shoulder: both sides of the cloth are lit from every direction.
@@ -160,6 +161,28 @@ export class Scene {
     const across = [-Math.sin(a), Math.cos(a), 0], upward = [-Math.cos(a) * Math.sin(e), -Math.sin(a) * Math.sin(e), Math.cos(e)];
     for (let k = 0; k < 3; ++k) this.view.target[k] -= size * (right * across[k] + up * upward[k]);
     this.draw();
+  }
+
+  /// One pointer turns, or pans with Shift or another button; two pan and zoom.
+  listen() {
+    const {canvas} = this, down = new Map();
+    const middle = () => [...down.values()].reduce((m, p) => [m[0] + p[0] / down.size, m[1] + p[1] / down.size], [0, 0]);
+    const apart = () => { const [a, b] = [...down.values()]; return Math.hypot(a[0] - b[0], a[1] - b[1]); };
+    canvas.addEventListener('contextmenu', event => event.preventDefault());
+    canvas.addEventListener('pointerdown', event => {
+      canvas.setPointerCapture(event.pointerId);
+      down.set(event.pointerId, [event.clientX, event.clientY]);
+    });
+    for (const end of ['pointerup', 'pointercancel']) canvas.addEventListener(end, event => down.delete(event.pointerId));
+    canvas.addEventListener('pointermove', event => {
+      if (!down.has(event.pointerId)) return;
+      const before = middle(), distance = down.size === 2 && apart();
+      down.set(event.pointerId, [event.clientX, event.clientY]);
+      const after = middle(), right = after[0] - before[0], up = before[1] - after[1], height = this.panel.height;
+      if (down.size > 1 || event.shiftKey || event.buttons > 1) this.move(right / height, up / height);
+      else this.turn(right * 3 / height, -up * 3 / height);
+      if (distance) this.zoom(distance / Math.max(apart(), 1));
+    });
   }
 
   layOut() {

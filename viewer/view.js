@@ -249,7 +249,7 @@ export class View {
   }
   async savePicture() { save((this.data.title || 'cloth') + '.png', await this.scene.picture()); }
 
-  /// Keys, wheel and pointers on the view.
+  /// Keys and the wheel on the view; its pointers are the scene's.
   listen() {
     const {canvas, scene} = this;
     matchMedia('(prefers-color-scheme: dark)').addEventListener('change', () => scene.draw());
@@ -272,26 +272,6 @@ export class View {
       event.preventDefault();
       scene.zoom(Math.exp(event.deltaY * (event.deltaMode ? .05 : .0015)));
     }, {passive: false});
-
-    // One pointer turns, or pans with Shift or another button; two pan and zoom.
-    const down = new Map();
-    const middle = () => [...down.values()].reduce((m, p) => [m[0] + p[0] / down.size, m[1] + p[1] / down.size], [0, 0]);
-    const apart = () => { const [a, b] = [...down.values()]; return Math.hypot(a[0] - b[0], a[1] - b[1]); };
-    canvas.addEventListener('contextmenu', event => event.preventDefault());
-    canvas.addEventListener('pointerdown', event => {
-      canvas.setPointerCapture(event.pointerId);
-      down.set(event.pointerId, [event.clientX, event.clientY]);
-    });
-    for (const end of ['pointerup', 'pointercancel']) canvas.addEventListener(end, event => down.delete(event.pointerId));
-    canvas.addEventListener('pointermove', event => {
-      if (!down.has(event.pointerId)) return;
-      const before = middle(), distance = down.size === 2 && apart();
-      down.set(event.pointerId, [event.clientX, event.clientY]);
-      const after = middle(), right = after[0] - before[0], up = before[1] - after[1], height = scene.panel.height;
-      if (down.size > 1 || event.shiftKey || event.buttons > 1) scene.move(right / height, up / height);
-      else scene.turn(right * 3 / height, -up * 3 / height);
-      if (distance) scene.zoom(distance / Math.max(apart(), 1));
-    });
   }
 
   /// What is shown, for tests and scripts.
