@@ -12,13 +12,12 @@
 namespace fs = std::filesystem;
 using Catch::Contains;
 using Catch::StartsWith;
-using Json = nlohmann::json;
 
 namespace {
 
 const std::string with_failing = "DRAPE_PLUGIN_PATH=" + (folders::test_plugins() / "failing").string();
 
-Json results_in(const Scratch& folder) { return json_in(folder / "out/results.json"); }
+nlohmann::json results_in(const Scratch& folder) { return json_in(folder / "out/results.json"); }
 
 /// The small experiment with one more method before its own, and energies of its own.
 void write_experiment(const Scratch& folder, const std::string& method, const std::string& energy = "") {
@@ -29,7 +28,7 @@ void write_experiment(const Scratch& folder, const std::string& method, const st
 }
 
 /// Runs the experiment, by all of its methods or those that the options name; some must fail. Its results.
-Json failed_run(const Scratch& folder, const std::string& options = "--method all") {
+nlohmann::json failed_run(const Scratch& folder, const std::string& options = "--method all") {
   const Ended ended = drape_with("run e.yaml --out out --no-report " + options, folder.path, with_failing);
   INFO(ended.err);
   REQUIRE(ended.exit_code == drape::exit_not_converged);
@@ -37,11 +36,11 @@ Json failed_run(const Scratch& folder, const std::string& options = "--method al
 }
 
 /// The events of that name in log.jsonl.
-std::vector<Json> events(const Scratch& folder, const std::string& name) {
-  std::vector<Json> found;
+std::vector<nlohmann::json> events(const Scratch& folder, const std::string& name) {
+  std::vector<nlohmann::json> found;
   std::istringstream lines(text_of(folder / "out/log.jsonl"));
   for (std::string line; std::getline(lines, line);)
-    if (Json event = Json::parse(line); event["event"] == name) found.push_back(event);
+    if (nlohmann::json event = nlohmann::json::parse(line); event["event"] == name) found.push_back(event);
   return found;
 }
 
@@ -61,9 +60,9 @@ TEST_CASE("A method that throws has failed, with level and cause, and the others
     CHECK(ended.exit_code == drape::exit_not_converged);
     CHECK_THAT(ended.err, Contains("odd       level 1/1 failed       " + cause + "\n"));
 
-    const Json all = results_in(folder);
+    const nlohmann::json all = results_in(folder);
     CHECK(all["complete"] == true);
-    const Json& odd = all["methods"]["odd"];
+    const nlohmann::json& odd = all["methods"]["odd"];
     CHECK(odd["status"] == "failed");
     REQUIRE(odd["levels"].size() == 2);
     CHECK(odd["levels"][0]["status"] == "converged");
@@ -76,7 +75,7 @@ TEST_CASE("A method that throws has failed, with level and cause, and the others
     CHECK(events(folder, "method_failed")[0]["message"] == cause);
 
     drape_ends("report out --width 90", folder);
-    const Json page = page_data(text_of(folder / "out/report.html"));
+    const nlohmann::json page = page_data(text_of(folder / "out/report.html"));
     CHECK(page["results"]["methods"]["odd"]["levels"][1]["status"] == "failed");
     CHECK_THAT(drape_ends("table out --columns method,status,message", folder, drape::exit_not_converged).out,
                Contains("converged, failed") && Contains("level 1: " + cause));
@@ -97,14 +96,14 @@ TEST_CASE("A method's result does not rest on its word") {
     INFO(reports);
     const Scratch folder;
     write_experiment(folder, "{type: failing, level: 1, reports: " + reports + "}");
-    const Json odd = failed_run(folder, "--method odd")["methods"]["odd"];
+    const nlohmann::json odd = failed_run(folder, "--method odd")["methods"]["odd"];
     CHECK(odd["status"] == "failed");
     CHECK(odd["levels"].back()["message"] == cause);
   }
   const Scratch folder;
   const std::string lowest = "--method odd --set reference=lowest --overwrite";
   write_experiment(folder, "{type: failing, level: 9}");
-  const Json all = failed_run(folder, lowest), levels = all["methods"]["odd"]["levels"];
+  const nlohmann::json all = failed_run(folder, lowest), levels = all["methods"]["odd"]["levels"];
   CHECK(levels[0]["status"] == "converged");  // by its own objective, which the run does not know
   CHECK(levels[1]["status"] == "stalled");
   CHECK_THAT(levels[1]["message"].get<std::string>(),
@@ -125,10 +124,10 @@ TEST_CASE("An energy that throws fails every method that evaluates it, where it 
   const Scratch folder;
   SECTION("while a level is solved") {
     write_experiment(folder, "", "{type: failing, level: 1, gradients: 5}");
-    const Json all = failed_run(folder);
+    const nlohmann::json all = failed_run(folder);
     CHECK(all["complete"] == true);
     // The finest level's energies are made once: the first method to evaluate them is the one that fails.
-    const Json& pcs = all["methods"]["pcs"];
+    const nlohmann::json& pcs = all["methods"]["pcs"];
     CHECK(pcs["status"] == "failed");
     REQUIRE(pcs["levels"].size() == 1);
     CHECK(pcs["levels"][0]["level"] == 0);
@@ -138,7 +137,7 @@ TEST_CASE("An energy that throws fails every method that evaluates it, where it 
   }
   SECTION("while a level's result is recorded") {
     write_experiment(folder, "{type: failing, level: 9}", "{type: failing, level: 0, values: 0}");
-    const Json methods = failed_run(folder, "--method odd,newton")["methods"];
+    const nlohmann::json methods = failed_run(folder, "--method odd,newton")["methods"];
     CHECK(methods["odd"]["status"] == "failed");
     REQUIRE(methods["odd"]["levels"].size() == 1);
     CHECK(methods["odd"]["levels"][0]["message"] == "the test's value fails");
@@ -161,7 +160,7 @@ TEST_CASE("A folder that is deleted during a run aborts it with its own code, an
       CHECK_FALSE(fs::exists(folder / "out"));
       continue;
     }
-    const Json all = results_in(folder);
+    const nlohmann::json all = results_in(folder);
     CHECK(all["complete"] == false);
     CHECK_THAT(all["aborted"].get<std::string>(), StartsWith("cannot write out/levels/odd_l1.ply"));
     CHECK(all["methods"]["odd"]["status"] == "aborted");
@@ -209,7 +208,7 @@ TEST_CASE("A full disk aborts the run with its own code; once there is room it c
   CHECK(ended.exit_code == drape::exit_aborted);
   CHECK_THAT(ended.err, StartsWith("error: cannot write out/") && Contains("File too large") &&
                             Contains("resume it with drape run --resume out"));
-  const Json all = results_in(folder);
+  const nlohmann::json all = results_in(folder);
   CHECK(all["complete"] == false);
   CHECK_THAT(all["aborted"].get<std::string>(), Contains("File too large"));
   CHECK(all["methods"]["pcs"]["status"] == "aborted");

@@ -19,7 +19,6 @@
 using namespace drape;
 namespace fs = std::filesystem;
 using Catch::Contains;
-using Json = nlohmann::json;
 
 namespace {
 
@@ -37,13 +36,13 @@ Overrides some_steps(const Overrides& more) {
 }
 
 /// Without what a clock or the machine says.
-Json timeless(Json json) {
+nlohmann::json timeless(nlohmann::json json) {
   if (json.is_object()) {
     for (const char* key : {"seconds", "seconds_by_phase", "peak_memory_bytes"}) json.erase(key);
     for (auto& item : json.items()) item.value() = timeless(item.value());
   }
   if (json.is_array())
-    for (Json& item : json) item = timeless(item);
+    for (nlohmann::json& item : json) item = timeless(item);
   return json;
 }
 
@@ -186,7 +185,7 @@ TEST_CASE(
 TEST_CASE("So does one whose contact stiffness is raised") {
   const Scratch folder(drum("7", "2", "5", "pcs"));
   CHECK(check_in_parts(folder, {}) > 20);
-  const Json levels = json_in(folder / "whole/results.json")["methods"]["pcs"]["levels"];
+  const nlohmann::json levels = json_in(folder / "whole/results.json")["methods"]["pcs"]["levels"];
   const auto stiffness = [&](int level) {
     return levels[level]["contact_stiffness"].get<std::vector<double>>();
   };
@@ -327,7 +326,7 @@ schedule: {steps: 3, keys: [{parameter: energies.gravity.acceleration, times: [0
                            {"snapshots", "2"},
                            {"newton.max_steps", "60"}};
   CHECK(check_in_parts(folder, stuck) > 15);
-  const Json levels = json_in(folder / "parts/results.json")["methods"]["cascadic"]["levels"];
+  const nlohmann::json levels = json_in(folder / "parts/results.json")["methods"]["cascadic"]["levels"];
   REQUIRE(levels.size() == 2);
   CHECK_THAT(levels[1]["message"].get<std::string>(),
              Contains("the level starts from the scene's start instead"));
@@ -537,7 +536,7 @@ TEST_CASE("results.json tells on how many threads a run was resumed") {
   const Scratch folder;
   interrupt_sheets(folder);
   drape_ends(replaced(go_on, "--threads 1", "--threads 2"), folder, 1);
-  const Json all = json_in(folder / "out/results.json");
+  const nlohmann::json all = json_in(folder / "out/results.json");
   CHECK(all["machine"]["threads"] == 1);
   REQUIRE(all["resumed"].size() == 1);
   CHECK(all["resumed"][0]["machine"]["threads"] == 2);
@@ -683,7 +682,7 @@ TEST_CASE("A run warm-starts from a saved state under changed parameters, in ano
 
   drape_ends(flow + "--out last", folder, 1);
   CHECK(rows("last").starts_with("pcs,1,0,0,"));  // the level under way after 12 steps of 8 a level
-  const Json last = json_in(folder / "last/results.json");
+  const nlohmann::json last = json_in(folder / "last/results.json");
   CHECK(last["warm_started_from"] == "out, method pcs, level 1");
   REQUIRE(last["methods"].size() == 1);
   REQUIRE(last["methods"]["pcs"]["levels"].size() == 2);

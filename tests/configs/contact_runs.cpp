@@ -12,7 +12,6 @@
 
 namespace fs = std::filesystem;
 using Catch::Contains;
-using Json = nlohmann::json;
 
 namespace {
 
@@ -84,7 +83,7 @@ TEST_CASE("a run with contact has contacts, gaps and intersections in its result
       "--set newton.step_size=0.02" +
           quiet,
       folder);
-  const Json all = json_in(folder / "out/results.json");
+  const nlohmann::json all = json_in(folder / "out/results.json");
   REQUIRE(all["obstacles"].size() == 1);
   CHECK(all["obstacles"][0]["mesh"] == "obstacles/0.ply");
   CHECK(drape::read_mesh(folder / "out/obstacles/0.ply").vertices.rowwise().norm().maxCoeff() ==
@@ -93,7 +92,7 @@ TEST_CASE("a run with contact has contacts, gaps and intersections in its result
     INFO(name);
     CHECK(method["status"] == "converged");
     REQUIRE(method["levels"].size() == 2);
-    for (const Json& level : method["levels"]) {
+    for (const nlohmann::json& level : method["levels"]) {
       CHECK(level["intersections"] == 0);
       CHECK(level["smallest_gap"].get<double>() > 0);
       CHECK(level["smallest_gap"].get<double>() < 1e-3);
@@ -202,13 +201,13 @@ TEST_CASE("a result with intersections is infeasible, and the run did not succee
                  "DRAPE_PLUGIN_PATH=" + (folders::test_plugins() / "blind").string());
   CHECK(ended.exit_code == 1);
   CHECK(ended.err == "");
-  const Json all = json_in(folder / "out/results.json");
+  const nlohmann::json all = json_in(folder / "out/results.json");
   CHECK(all["complete"] == true);
   REQUIRE(all["methods"].size() == 3);
   for (const auto& [name, method] : all["methods"].items()) {
     INFO(name);
     CHECK(method["status"] == "infeasible");
-    for (const Json& level : method["levels"]) {
+    for (const nlohmann::json& level : method["levels"]) {
       CHECK(level["intersections"] == 1);
       CHECK(level["status"] == "infeasible");
       CHECK(level["message"] == "the state has intersections; log.jsonl names them");

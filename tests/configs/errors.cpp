@@ -13,7 +13,6 @@
 
 using namespace drape;
 namespace fs = std::filesystem;
-using Json = nlohmann::json;
 
 namespace {
 
@@ -59,7 +58,7 @@ TEST_CASE("a run writes snapshots and errors, against its own end and a tighter 
   const Scratch folder(small_experiment());
   const std::string reference = " --set reference.force_tolerance=1e-7";
   drape_ends("run e.yaml --out out --method all --threads 1 --quiet --no-report" + reference, folder);
-  const Json all = json_in(folder / "out/results.json");
+  const nlohmann::json all = json_in(folder / "out/results.json");
   CHECK(all["reference"]["status"] == "converged");
   CHECK(all["reference"]["force_residual"].get<double>() <= 1e-7);
   const Csv rows(folder / "out/errors.csv");
@@ -68,9 +67,9 @@ TEST_CASE("a run writes snapshots and errors, against its own end and a tighter 
     double flops = 0, cost = 0;
     int iterations = 0;
     for (int l = 0; l < 2; ++l) {
-      const Json& level = all["methods"][method]["levels"][l];
+      const nlohmann::json& level = all["methods"][method]["levels"][l];
       INFO(method << " level " << l);
-      const Json& snapshots = level["snapshots"];
+      const nlohmann::json& snapshots = level["snapshots"];
       const int vertices = level["vertices"];
       const std::size_t count = snapshots["iterations"].size();
       const SnapshotFile states(folder / ("out/" + snapshots["file"].get<std::string>()), count, vertices,
@@ -140,7 +139,7 @@ TEST_CASE("every method's own interpolation prolongs its states") {
   std::string command = "run e.yaml --out out --method all --threads 1 --quiet --no-report";
   for (const Override& o : changed) command += " --set '" + o.key + "=" + o.value + "'";
   drape_ends(command, folder);
-  const Json all = json_in(folder / "out/results.json")["methods"];
+  const nlohmann::json all = json_in(folder / "out/results.json")["methods"];
   const Csv rows(folder / "out/errors.csv");
   const auto value_of = [&](const Positions& x, const Positions& target, const std::string& name) {
     for (const auto& [metric_name, metric] : small.experiment.metrics)
@@ -162,10 +161,10 @@ TEST_CASE("every method's own interpolation prolongs its states") {
     const Positions prolonged = hierarchy.prolong(state(0), 0, 2, weights), end = state(2);
     const Positions by_the_other = hierarchy.prolong(state(0), 0, 2, others);
     REQUIRE((prolonged - by_the_other).norm() > 1e-3);
-    const Json& level = all[method]["levels"][0];
+    const nlohmann::json& level = all[method]["levels"][0];
     CHECK(level["energy_on_finest"].get<double>() ==
           Approx(small.scene->models[2]->value(prolonged)).epsilon(1e-9));
-    for (const Json& pair : all[method]["consistency"]) {
+    for (const nlohmann::json& pair : all[method]["consistency"]) {
       if (pair["coarse"] != 0 || pair["fine"] != 2) continue;
       for (const char* name :
            {"d_H_fit", "d_K_ddg", "distance_rms", "silhouette_overlap", "energy_above_end"}) {
@@ -194,7 +193,7 @@ TEST_CASE("the lowest of the states that have converged may be the reference, wh
     REQUIRE(ended.exit_code <= 1);
     return json_in(folder / "out/results.json");
   };
-  const Json all = run("--set reference.force_tolerance=1e-6");
+  const nlohmann::json all = run("--set reference.force_tolerance=1e-6");
   std::string lowest;
   double energy = 1e300;
   for (const auto& [name, method] : all["methods"].items())
@@ -210,7 +209,7 @@ TEST_CASE("the lowest of the states that have converged may be the reference, wh
   CHECK(page_data(text_of(folder / "out/report.html"))["results"]["reference"]["method"] == lowest);
 
   // One that has not converged is none, however low it lies; without any there is none.
-  const Json broken = run("--set methods." + lowest + ".newton.max_steps=2");
+  const nlohmann::json broken = run("--set methods." + lowest + ".newton.max_steps=2");
   REQUIRE(broken["methods"][lowest]["status"] != "converged");
   CHECK(broken["reference"]["method"] != lowest);
   CHECK_FALSE(run("--set newton.max_steps=1").contains("reference"));
@@ -221,7 +220,7 @@ TEST_CASE("without snapshots there are no errors and no files of them") {
   drape_ends("run e.yaml --out out --quiet --no-report --set snapshots=0", folder);
   CHECK(!fs::exists(folder / "out/snapshots"));
   CHECK(!fs::exists(folder / "out/errors.csv"));
-  const Json all = json_in(folder / "out/results.json");
+  const nlohmann::json all = json_in(folder / "out/results.json");
   CHECK(!all["methods"]["pcs"]["levels"][0].contains("snapshots"));
 }
 

@@ -16,7 +16,6 @@ namespace fs = std::filesystem;
 using Catch::Contains;
 using Catch::EndsWith;
 using Catch::StartsWith;
-using Json = nlohmann::json;
 
 namespace {
 
@@ -119,7 +118,7 @@ TEST_CASE("a .glb has every level of a method as a scene, with the obstacle, and
 }
 
 TEST_CASE("with --frames a .glb has the recorded snapshots of one level as an animation") {
-  const Json results = json_in(finished_run() / "results.json");
+  const nlohmann::json results = json_in(finished_run() / "results.json");
   for (const std::string options : {"--frames", "--frames --level 0"}) {
     INFO(options);
     const int level = options == "--frames" ? 1 : 0;
@@ -141,15 +140,15 @@ TEST_CASE("with --frames a .glb has the recorded snapshots of one level as an an
 TEST_CASE("an animation of a level of one step is refused with the levels that have more") {
   const Scratch folder;
   fs::copy(finished_run(), folder / "run", fs::copy_options::recursive);
-  Json results = json_in(folder / "run/results.json");
-  Json& level = results["methods"]["pcs"]["levels"][1];
+  nlohmann::json results = json_in(folder / "run/results.json");
+  nlohmann::json& level = results["methods"]["pcs"]["levels"][1];
   level["iterations"] = 1;
-  const Json all = level["snapshots"];
+  const nlohmann::json all = level["snapshots"];
   const auto refusal = [&] {
     folder.write("run/results.json", results.dump());
     return refused_by("export run --to a.glb --frames", folder.path);
   };
-  for (const char* list : {"iterations", "seconds"}) level["snapshots"][list] = Json::array({0});
+  for (const char* list : {"iterations", "seconds"}) level["snapshots"][list] = nlohmann::json::array({0});
   level["snapshots"].erase("checksum");
   const std::string states = text_of(folder / "run" / all["file"].get<std::string>());
   folder.write("run/" + all["file"].get<std::string>(),
@@ -262,9 +261,9 @@ TEST_CASE("a .png is the report's picture of a state, at any width") {
 }
 
 TEST_CASE("with --frames a .png is a series of every level's snapshots, coarse to fine") {
-  const Json levels = json_in(finished_run() / "results.json")["methods"]["pcs"]["levels"];
+  const nlohmann::json levels = json_in(finished_run() / "results.json")["methods"]["pcs"]["levels"];
   std::vector<std::size_t> recorded;
-  for (const Json& level : levels) recorded.push_back(level["snapshots"]["iterations"].size());
+  for (const nlohmann::json& level : levels) recorded.push_back(level["snapshots"]["iterations"].size());
   REQUIRE(recorded.size() == 2);
   const auto frames = [](const std::string& options) {
     const Scratch folder;

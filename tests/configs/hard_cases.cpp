@@ -11,7 +11,6 @@
 
 using namespace drape;
 namespace fs = std::filesystem;
-using Json = nlohmann::json;
 
 namespace {
 
@@ -40,7 +39,7 @@ Positions shape_of(const fs::path& run, const std::string& method, double scale,
 }
 
 /// The levels of a run on the mesh of huge and tiny triangles.
-Json huge_beside_tiny(const std::string& method, const std::string& options) {
+nlohmann::json huge_beside_tiny(const std::string& method, const std::string& options) {
   const Scratch folder;
   copy_suite(folder);
   drape_with(
@@ -59,7 +58,8 @@ TEST_CASE("hard cases end as they should") {
   int rows = 0;
   for (const std::string theme : {"friction", "contact", "steps", "closing", "folded", "sleeve", "pins"}) {
     drape_with("sweep hard/sweeps/" + theme + ".yaml --out " + theme, folder.path);
-    for (const Json& row : Json::parse(drape_with("table " + theme + " --format json", folder.path).out)) {
+    for (const nlohmann::json& row :
+         nlohmann::json::parse(drape_with("table " + theme + " --format json", folder.path).out)) {
       INFO(theme << ": " << row.dump());
       CHECK(row["pass"] == true);
       ++rows;
@@ -69,10 +69,11 @@ TEST_CASE("hard cases end as they should") {
 }
 
 TEST_CASE("a huge triangle beside tiny ones is refined into its strain limit") {
-  const Json levels = huge_beside_tiny("pcs",
-                                       " --set methods.pcs.relaxation=none"
-                                       " --set 'methods.pcs.interpolation={membrane: refiner, bending: "
-                                       "refiner, external: refiner, state: refiner}'");
+  const nlohmann::json levels =
+      huge_beside_tiny("pcs",
+                       " --set methods.pcs.relaxation=none"
+                       " --set 'methods.pcs.interpolation={membrane: refiner, bending: "
+                       "refiner, external: refiner, state: refiner}'");
   REQUIRE(levels.size() == 2);
   CHECK(levels[1]["status"] == "converged");
   CHECK(levels[1]["message"] == "");
@@ -84,7 +85,7 @@ TEST_CASE(
     "message") {
   // From the proxy's state: from the relaxed one the refinement gives up only after half a minute.
   // Membranes that buckle leave a state that can be refined.
-  const Json levels =
+  const nlohmann::json levels =
       huge_beside_tiny("pcs", " --set methods.pcs.relaxation=none --set methods.pcs.membranes=plain");
   REQUIRE(levels.size() == 2);
   CHECK(levels[1]["status"] == "converged");
@@ -93,7 +94,8 @@ TEST_CASE(
 }
 
 TEST_CASE("a triangle close to its strain limit moves away from it instead of along it") {
-  const Json levels = huge_beside_tiny("cascadic", " --set refiner=midpoint --set newton.max_steps=1000");
+  const nlohmann::json levels =
+      huge_beside_tiny("cascadic", " --set refiner=midpoint --set newton.max_steps=1000");
   REQUIRE(levels.size() == 2);
   CHECK(levels[1]["status"] == "converged");
 }

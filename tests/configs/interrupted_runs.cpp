@@ -8,7 +8,6 @@
 #include "tests/support/command.h"
 
 namespace fs = std::filesystem;
-using Json = nlohmann::json;
 
 namespace {
 
@@ -29,10 +28,10 @@ TEST_CASE("SIGINT ends a run after the step, with all results so far and the rep
   CHECK(ended.exit_code == 130);
   CHECK(ended.out == "report: out/report.html\n");
   CHECK_THAT(ended.err, Catch::EndsWith("stopped on request; everything up to then is in out\n"));
-  const Json all = json_in(folder / "out/results.json");
+  const nlohmann::json all = json_in(folder / "out/results.json");
   CHECK(all["complete"] == false);
   REQUIRE(all["methods"].size() == 1);  // the next method is not begun
-  const Json& pcs = all["methods"]["pcs"];
+  const nlohmann::json& pcs = all["methods"]["pcs"];
   CHECK(pcs["status"] == "cancelled");
   REQUIRE(pcs["levels"].size() == 1);
   CHECK(pcs["levels"][0]["status"] == "cancelled");
@@ -111,13 +110,13 @@ TEST_CASE("SIGKILL at any moment leaves complete files, sufficient for a report"
     wait_for_lines(command, folder / "out/log.jsonl", level_lines);
     REQUIRE(command.ended_by(SIGKILL).exit_code == 128 + SIGKILL);
 
-    const Json all = json_in(folder / "out/results.json");
+    const nlohmann::json all = json_in(folder / "out/results.json");
     CHECK(all["complete"] == false);
     if (!all["methods"].empty() && all["methods"].back()["status"] == "running")
       CHECK_THAT(drape_ends("table out --columns status,message", folder, drape::exit_not_converged).out,
                  Catch::Contains("running") && Catch::Contains("drape run --resume out goes on with it"));
     for (const auto& [name, method] : all["methods"].items())
-      for (const Json& level : method["levels"])
+      for (const nlohmann::json& level : method["levels"])
         CHECK(fs::exists(folder / ("out/" + level["mesh"].get<std::string>())));
     for (const auto& entry : fs::recursive_directory_iterator(folder / "out")) {
       INFO(entry.path());

@@ -9,8 +9,6 @@
 
 namespace {
 
-using Json = nlohmann::json;
-
 /// A square that is held along two sides and rests on a ball, turned about z and then moved.
 std::string scene(double degrees, const Eigen::Vector3d& by) {
   const Eigen::AngleAxisd turn(degrees * std::acos(-1.0) / 180, Eigen::Vector3d::UnitZ());
@@ -35,7 +33,7 @@ const std::set<std::string> excepted = {"seconds", "preview_seconds", "seconds_b
                                         "energy",  "energy_parts",    "energy_on_finest", "machine"};
 
 /// Compares every number. Silhouettes are counted in pixels along axes that are fixed in space.
-void check_same(const Json& a, const Json& b, const std::string& path) {
+void check_same(const nlohmann::json& a, const nlohmann::json& b, const std::string& path) {
   INFO(path);
   REQUIRE(a.type() == b.type());
   if (a.is_structured()) {
@@ -60,14 +58,15 @@ TEST_CASE("a scene that is moved and turned has the same figures on every page")
   folder.write("there.yaml", scene(37, {3, -2, 10}));
   for (const std::string name : {"here", "there"})
     drape_ends("run " + name + ".yaml --method all -q --no-report -o " + name, folder);
-  const Json here = json_in(folder / "here/results.json"), there = json_in(folder / "there/results.json");
-  const auto on_finest = [](const Json& results) {
+  const nlohmann::json here = json_in(folder / "here/results.json"),
+                       there = json_in(folder / "there/results.json");
+  const auto on_finest = [](const nlohmann::json& results) {
     return results["methods"]["pcs"]["levels"][1]["energy_on_finest"].get<double>();
   };
   CHECK(on_finest(there) > on_finest(here) + 1);  // so far does the origin matter
   check_same(here, there, "results.json");
   const auto rows = [&](const std::string& run) {
-    return Json::parse(drape_with("table " + run + " --format json", folder.path).out);
+    return nlohmann::json::parse(drape_with("table " + run + " --format json", folder.path).out);
   };
   check_same(rows("here"), rows("there"), "table");
   drape_ends("compare here there --bound energy_released=1.00001", folder);

@@ -12,7 +12,6 @@
 #include "tests/support/command.h"
 
 namespace fs = std::filesystem;
-using Json = nlohmann::json;
 
 namespace {
 
@@ -33,16 +32,16 @@ const fs::path& whole_run() {
   return path;
 }
 
-Json results() { return json_in(whole_run() / "results.json"); }
+nlohmann::json results() { return json_in(whole_run() / "results.json"); }
 
-std::set<std::string> keys(const Json& object) {
+std::set<std::string> keys(const nlohmann::json& object) {
   std::set<std::string> names;
   for (const auto& [key, value] : object.items()) names.insert(key);
   return names;
 }
 
 /// Whether the object has all of these keys.
-bool has(const Json& object, const std::set<std::string>& names) {
+bool has(const nlohmann::json& object, const std::set<std::string>& names) {
   const std::set<std::string> present = keys(object);
   for (const std::string& name : names) {
     UNSCOPED_INFO("key " << name);
@@ -65,7 +64,7 @@ std::vector<std::string> undocumented(std::vector<std::string> names) {
 }  // namespace
 
 TEST_CASE("results.json has every key, finite figures and every pair of levels") {
-  const Json all = results();
+  const nlohmann::json all = results();
   CHECK(all.at("experiment") == "small");
   CHECK(all.at("complete") == true);
   REQUIRE((keys(all.at("methods")) == std::set<std::string>(methods.begin(), methods.end())));
@@ -79,13 +78,14 @@ TEST_CASE("results.json has every key, finite figures and every pair of levels")
     double seconds = 0;
     for (int l = 0; l < levels; ++l) {
       INFO("level " << l);
-      const Json& level = method["levels"][l];
+      const nlohmann::json& level = method["levels"][l];
       REQUIRE(has(level, {"level", "vertices", "triangles", "status", "steps", "iterations", "seconds",
                           "seconds_by_phase", "energy", "energy_on_finest", "energy_released", "decrement",
                           "force_residual", "largest_stretch", "intersections", "smallest_gap", "mesh"}));
       std::set<std::string> declared;
       for (const auto& [metric, declaration] : all["metrics"].items())
-        for (const Json& column : declaration["columns"]) declared.insert(column["name"].get<std::string>());
+        for (const nlohmann::json& column : declaration["columns"])
+          declared.insert(column["name"].get<std::string>());
       std::vector<std::string> own;
       for (const std::string& key : keys(level))
         if (!declared.count(key)) own.push_back(key);
@@ -115,7 +115,7 @@ TEST_CASE("results.json has every key, finite figures and every pair of levels")
     CHECK(method["levels"].back()["energy_on_finest"] == method["levels"].back()["energy"]);
 
     std::vector<std::pair<int, int>> pairs;
-    for (const Json& pair : method["consistency"]) {
+    for (const nlohmann::json& pair : method["consistency"]) {
       const std::set<std::string> measures = {"d_H_fit",         "d_H_ddg",      "d_K_fit",
                                               "d_K_ddg",         "distance_rms", "silhouette_overlap",
                                               "energy_above_end"};
@@ -134,7 +134,7 @@ TEST_CASE("results.json has every key, finite figures and every pair of levels")
 }
 
 TEST_CASE("every mesh and field that is named reads back, on the level's triangles") {
-  const Json all = results();
+  const nlohmann::json all = results();
   std::vector<drape::Triangles> triangles;
   for (int l = 0; l < levels; ++l)
     triangles.push_back(drape::read_mesh(whole_run() / ("rest/l" + std::to_string(l) + ".ply")).triangles);
@@ -149,7 +149,7 @@ TEST_CASE("every mesh and field that is named reads back, on the level's triangl
       CHECK(text_of(fs::path(file).replace_extension(".vtp")).ends_with("</VTKFile>\n"));
     }
     int fields = 0;
-    for (const Json& pair : method["consistency"]) {
+    for (const nlohmann::json& pair : method["consistency"]) {
       CHECK(pair.contains("fields") == (pair["fine"] == levels - 1));
       if (!pair.contains("fields")) continue;
       ++fields;
@@ -183,7 +183,7 @@ TEST_CASE("iterations.csv has a row for every Newton iteration, and the proxy wh
     }
     CHECK(csv.number(row, "flops").value() > 0);
   }
-  const Json all = results();
+  const nlohmann::json all = results();
   for (const std::string& method : methods)
     for (int l = 0; l < levels; ++l)
       CHECK(rows[{method, l}] == all["methods"][method]["levels"][l]["iterations"].get<int>());
@@ -195,7 +195,7 @@ TEST_CASE("log.jsonl is one JSON object a line, from start to end") {
   std::map<std::string, int> events;
   double last = 0;
   for (std::string line; std::getline(lines, line);) {
-    const Json entry = Json::parse(line);
+    const nlohmann::json entry = nlohmann::json::parse(line);
     ++events[entry.at("event").get<std::string>()];
     CHECK(entry.at("time").get<double>() >= last);
     last = entry["time"];
@@ -241,7 +241,7 @@ TEST_CASE("a run takes as many threads as there are cores that it may use") {
   const Ended ended = drape_with("run e.yaml --out out --quiet --no-report", folder.path);
   sched_setaffinity(0, sizeof before, &before);
   REQUIRE(ended.exit_code == 0);
-  const Json machine = json_in(folder / "out/results.json")["machine"];
+  const nlohmann::json machine = json_in(folder / "out/results.json")["machine"];
   CHECK(machine["threads"] == 1);
   CHECK(machine["cores"] == 1);
 }
@@ -265,7 +265,7 @@ TEST_CASE("a metric that throws leaves a note, and the run continues") {
   std::istringstream lines(ended.err.substr(ended.err.find('\n') + 1));
   for (std::string line; std::getline(lines, line);)
     CHECK_THAT(line, Catch::StartsWith("metric ") && Catch::Contains(" was not measured: "));
-  const Json all = json_in(folder / "out/results.json");
+  const nlohmann::json all = json_in(folder / "out/results.json");
   CHECK(all["complete"] == true);
   REQUIRE((keys(all["methods"]) == std::set<std::string>(methods.begin(), methods.end())));
   for (const auto& [name, method] : all["methods"].items()) {

@@ -14,7 +14,6 @@
 using namespace drape;
 namespace fs = std::filesystem;
 using Catch::Contains;
-using OrderedJson = nlohmann::ordered_json;
 
 namespace {
 
@@ -24,7 +23,7 @@ const fs::path& sweep() {
   static const Scratch folder;
   static const fs::path path = [] {
     folder.write("e.yaml", small_experiment());
-    OrderedJson runs = OrderedJson::array();
+    Json runs = Json::array();
     for (const std::string matrix : {"galerkin", "coarse"})
       for (int seed = 1; seed <= 3; ++seed) {
         const std::string run = "runs/matrix=" + matrix + "/seed_" + std::to_string(seed);
@@ -39,8 +38,7 @@ const fs::path& sweep() {
                     {"folder", "runs/wrong"},
                     {"status", "failed"},
                     {"error", "error: a < b\nand more"}});
-    folder.write("sweep/sweep.json",
-                 OrderedJson{{"sweep", "matrices"}, {"complete", true}, {"runs", runs}}.dump());
+    folder.write("sweep/sweep.json", Json{{"sweep", "matrices"}, {"complete", true}, {"runs", runs}}.dump());
     return folder / "sweep";
   }();
   return path;
@@ -63,7 +61,7 @@ struct Edited {
   explicit Edited(Edit edit) {
     fs::copy(sweep() / "runs/matrix=galerkin/seed_1", folder / "a", fs::copy_options::recursive);
     fs::copy(folder / "a", folder / "b", fs::copy_options::recursive);
-    OrderedJson results = OrderedJson::parse(text_of(folder / "b/results.json"));
+    Json results = Json::parse(text_of(folder / "b/results.json"));
     edit(results);
     folder.write("b/results.json", results.dump());
   }
@@ -132,17 +130,17 @@ TEST_CASE("the table counts steps of the levels that the last state builds on") 
 
 TEST_CASE("report of a sweep is one page with every row, state and failure") {
   CHECK(shown_by("report sweep", sweep().parent_path()) == "report: sweep/report.html\n");
-  const OrderedJson data = page_data(text_of(sweep() / "report.html"));
+  const Json data = page_data(text_of(sweep() / "report.html"));
   CHECK(data["kind"] == "runs");
   CHECK(data["table"]["rows"].size() == 19);
   REQUIRE(data["runs"].size() == 7);
   int rows = 0;
-  for (const OrderedJson& run : data["runs"]) rows += run["count"].get<int>();
+  for (const Json& run : data["runs"]) rows += run["count"].get<int>();
   CHECK(rows == 19);
   CHECK(data["runs"][0]["pictures"].size() == 3);
   CHECK(data["runs"][0]["physics"] == data["runs"][3]["physics"]);  // they differ in a solver's setting
   CHECK(data["runs"][0]["physics"] == data["runs"][1]["physics"]);  // they differ in the noise at the start
-  CHECK(data["model_keys"] == OrderedJson(model_keys()));
+  CHECK(data["model_keys"] == Json(model_keys()));
   CHECK(data["runs"][0]["reference"] == "newton");
   CHECK(data["runs"][0]["errors"]["rows"].size() > 6);
   CHECK(data["runs"][0]["first_levels"]["newton"] == 1);
@@ -186,13 +184,12 @@ TEST_CASE("variations of one name are kept apart if they are of different sweeps
   const Scratch folder;
   const auto write = [&](const std::string& where, const std::string& name,
                          const std::vector<std::string>& variations) {
-    OrderedJson runs = OrderedJson::array();
+    Json runs = Json::array();
     for (const std::string& variation : variations)
       for (int seed = 1; seed <= 2; ++seed)
         runs.push_back({{"name", variation}, {"seed", seed}, {"folder", "r"}, {"status", "pending"}});
     fs::create_directory(folder / where);
-    folder.write(where + "/sweep.json",
-                 OrderedJson{{"sweep", name}, {"complete", true}, {"runs", runs}}.dump());
+    folder.write(where + "/sweep.json", Json{{"sweep", name}, {"complete", true}, {"runs", runs}}.dump());
   };
   write("a", "balls", {"base", "soft"});
   write("b", "cubes", {"base", "stiff"});
@@ -219,7 +216,7 @@ TEST_CASE("an experiment and the folder of another one may have the same name") 
   for (const auto& [from, to] : {std::pair("galerkin", "soft"), {"coarse", "stiff"}, {"coarse", "other"}})
     fs::copy(sweep() / ("runs/matrix=" + std::string(from) + "/seed_1"), folder / to,
              fs::copy_options::recursive);
-  OrderedJson results = OrderedJson::parse(text_of(folder / "other/results.json"));
+  Json results = Json::parse(text_of(folder / "other/results.json"));
   results["experiment"] = "soft";
   folder.write("other/results.json", results.dump());
   folder.write("other/config.yaml",
@@ -257,7 +254,7 @@ TEST_CASE("an incomplete sweep is read as far as it got") {
       "sweep.json",
       R"({"sweep": "s", "complete": false, "runs": [{"name": "a", "seed": 1, "folder": "r", "status": "running"}]})");
   drape_ends("report .", folder);
-  const OrderedJson data = page_data(text_of(folder / "report.html"));
+  const Json data = page_data(text_of(folder / "report.html"));
   CHECK(data["complete"] == false);
   CHECK(data["runs"][0]["status"] == "running");
   folder.write("sweep.json", "{\"sweep\": ");
@@ -266,7 +263,7 @@ TEST_CASE("an incomplete sweep is read as far as it got") {
 }
 
 TEST_CASE("a page of several runs says that one of them is not complete") {
-  const Edited cut([](OrderedJson& all) { all["complete"] = false; });
+  const Edited cut([](Json& all) { all["complete"] = false; });
   shown_by("report a b --out two.html", cut.folder.path);
   CHECK(page_data(text_of(cut.folder / "two.html"))["complete"] == false);
 }
@@ -306,10 +303,10 @@ TEST_CASE("what a run of one level has is compared, and its newton is the experi
 }
 
 TEST_CASE("compare lists changes, and exits with 1 if a bound is broken") {
-  const Edited run([](OrderedJson& all) {
-    OrderedJson& pcs = all["methods"]["pcs"];
+  const Edited run([](Json& all) {
+    Json& pcs = all["methods"]["pcs"];
     pcs["levels"][1]["seconds"] = pcs["levels"][1]["seconds"].get<double>() + 10;
-    for (OrderedJson& pair : pcs["consistency"]) pair["d_H_fit"] = pair["d_H_fit"].get<double>() / 2;
+    for (Json& pair : pcs["consistency"]) pair["d_H_fit"] = pair["d_H_fit"].get<double>() / 2;
     all["methods"]["cascadic"]["levels"][1]["iterations"] = 1000;
   });
   const Ended plain = run.compare();
@@ -326,8 +323,8 @@ TEST_CASE("compare lists changes, and exits with 1 if a bound is broken") {
 }
 
 TEST_CASE("compare gives energies no verdict where the models differ, and names the keys") {
-  const Edited run([](OrderedJson& all) {
-    OrderedJson& level = all["methods"]["pcs"]["levels"][1];
+  const Edited run([](Json& all) {
+    Json& level = all["methods"]["pcs"]["levels"][1];
     level["energy_released"] = level["energy_released"].get<double>() + 0.1;
   });
   const auto matches = [](const std::string& line) {
@@ -361,27 +358,27 @@ TEST_CASE("energies compare among starts at one place, whatever their noise") {
 }
 
 TEST_CASE("a bound is broken if a method no longer converges or exists") {
-  const Edited stalled([](OrderedJson& all) { all["methods"]["pcs"]["status"] = "stalled"; });
+  const Edited stalled([](Json& all) { all["methods"]["pcs"]["status"] = "stalled"; });
   CHECK(stalled.compare().exit_code == 0);
   CHECK_THAT(stalled.compare().out, Contains("\npcs: converged before and does not now\n"));
   const Ended ended = stalled.compare(" --bound seconds=2");
   CHECK(ended.exit_code == 1);
   CHECK_THAT(ended.out, Contains("broken: pcs: converged before and does not now; no bound holds\n"));
-  const Edited gone([](OrderedJson& all) { all["methods"].erase("pcs"); });
+  const Edited gone([](Json& all) { all["methods"].erase("pcs"); });
   CHECK_THAT(gone.compare().out, Contains("only in the first: pcs\n"));
   CHECK(gone.compare(" --bound seconds=2").exit_code == 1);
 }
 
 TEST_CASE("bounds on negative energies and on counts that were zero") {
-  const Edited run([](OrderedJson& all) {
-    OrderedJson& level = all["methods"]["pcs"]["levels"][1];
+  const Edited run([](Json& all) {
+    Json& level = all["methods"]["pcs"]["levels"][1];
     level["energy_released"] = level["energy_released"].get<double>() - 0.1;
   });
   CHECK(run.compare(" --bound energy_released=1.05").exit_code == 1);
   CHECK(run.compare(" --bound energy_released=2").exit_code == 0);
   const auto write = [&](const std::string& side, double released, int intersections) {
-    OrderedJson all = OrderedJson::parse(text_of(run.folder / side / "results.json"));
-    OrderedJson& level = all["methods"]["pcs"]["levels"][1];
+    Json all = Json::parse(text_of(run.folder / side / "results.json"));
+    Json& level = all["methods"]["pcs"]["levels"][1];
     level["energy_released"] = released, level["intersections"] = intersections;
     run.folder.write(side + "/results.json", all.dump());
   };

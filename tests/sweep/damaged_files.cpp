@@ -5,7 +5,6 @@
 
 #include "tests/support/sweep_runs.h"
 
-using Json = nlohmann::json;
 using Catch::Contains;
 
 TEST_CASE("a value of the wrong kind in a sweep's files is named with its file and its key") {
@@ -14,12 +13,12 @@ TEST_CASE("a value of the wrong kind in a sweep's files is named with its file a
   // What the sweep says of the file with this value there, or without one.
   const auto said = [&](const std::string& file, const std::string& path, const std::string& value) {
     const std::string sound = text_of(folder / file);
-    Json json = Json::parse(sound);
-    const Json::json_pointer at(path);
+    nlohmann::json json = nlohmann::json::parse(sound);
+    const nlohmann::json::json_pointer at(path);
     if (value.empty())
       json[at.parent_pointer()].erase(at.back());
     else
-      json[at] = Json::parse(value);
+      json[at] = nlohmann::json::parse(value);
     folder.write(file, json.dump());
     const std::string ended = refused_by("sweep s.yaml --out out", folder.path);
     folder.write(file, sound);
@@ -70,7 +69,7 @@ TEST_CASE("a run whose results are cut short has failed, and the sweep's others 
   CHECK_THAT(folder.sweep(0, " --dry-run").out, Contains("failed     " + run.substr(4)));
 
   CHECK_THAT(folder.sweep(1).out, Contains("    " + why + "--retry-failed runs it again\n"));
-  Json runs = folder.runs();
+  nlohmann::json runs = folder.runs();
   CHECK(runs[0]["status"] == "failed");
   CHECK(runs[0]["exit_code"] == 3);
   CHECK(runs[1]["status"] == "converged");

@@ -8,7 +8,6 @@
 using namespace drape;
 using Catch::Contains;
 using Catch::StartsWith;
-using OrderedJson = nlohmann::ordered_json;
 
 namespace {
 
@@ -71,7 +70,7 @@ TEST_CASE("a run passes when it ends as its sweep expects, for the reason expect
   CHECK_THAT(swept.out, Contains("unheld     ") && Contains("refused, as expected  ") &&
                             Contains("widen its region") && Contains("exceeded the sweep's time_limit"));
 
-  const OrderedJson rows = OrderedJson::parse(drape_ends("table out --format json", folder, 1).out);
+  const Json rows = Json::parse(drape_ends("table out --format json", folder, 1).out);
   REQUIRE(rows.size() == 7);
   const auto outcome = [&](int k) {
     return rows[k]["run"].get<std::string>() + ": " + rows[k]["status"].get<std::string>() +

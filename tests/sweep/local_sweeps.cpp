@@ -14,7 +14,6 @@
 
 namespace fs = std::filesystem;
 using Catch::Contains;
-using Json = nlohmann::json;
 
 namespace {
 
@@ -56,15 +55,15 @@ TEST_CASE("24 runs give the same results with one worker and with two, and are n
   const std::string before = text_of(folder / "one/sweep.json");
   CHECK(shown_by(small_sweep + "--out one", folder.path) == one.out);
   CHECK(text_of(folder / "one/sweep.json") == before);
-  const Json runs = runs_of(folder / "one");
+  const nlohmann::json runs = runs_of(folder / "one");
   REQUIRE(runs.size() == 24);
-  for (const Json& run : runs) CHECK(run["starts"] == 1);
+  for (const nlohmann::json& run : runs) CHECK(run["starts"] == 1);
   CHECK(runs[23]["name"] == "refiner=midpoint,levels=2,step_growth=3");
   CHECK(runs[23]["seed"] == 3);
   CHECK(runs[23]["settings"]["refiner"] == "midpoint");
 
   // Its table is tidy: a column a variable, a row an observation.
-  const Json rows = Json::parse(drape_with("table one --format json", folder.path).out);
+  const nlohmann::json rows = nlohmann::json::parse(drape_with("table one --format json", folder.path).out);
   REQUIRE(rows.size() == 48);
   CHECK(rows[47]["refiner"] == "midpoint");
   CHECK(rows[47]["levels"].is_number_integer());
@@ -96,10 +95,11 @@ TEST_CASE("sweep.json has the status of every run from the beginning of a sweep"
     while (!ended) {
       std::stringstream text;
       text << std::ifstream(folder / "out/sweep.json").rdbuf();
-      const Json runs = Json::parse(text.str(), nullptr, false).value("runs", Json::array());
+      const nlohmann::json runs =
+          nlohmann::json::parse(text.str(), nullptr, false).value("runs", nlohmann::json::array());
       read += runs.size() == 24;
-      without +=
-          std::any_of(runs.begin(), runs.end(), [](const Json& run) { return !run.contains("status"); });
+      without += std::any_of(runs.begin(), runs.end(),
+                             [](const nlohmann::json& run) { return !run.contains("status"); });
     }
   });
   for (int k = 0; k < 10; ++k) drape_with(small_sweep + "--out out", folder.path);  // nothing is left to run
@@ -118,10 +118,10 @@ TEST_CASE("kill -9 loses only the active runs") {
     command.send(SIGKILL);  // the sweep alone: its runs are in groups of their own, and must die with it
     REQUIRE(command.wait().exit_code == 128 + SIGKILL);
   }
-  const Json before = runs_of(folder / "cut");
+  const nlohmann::json before = runs_of(folder / "cut");
   drape_ends(small_sweep + "--out cut", folder);
   CHECK((outcome_of(folder / "cut") == outcome_of(folder / "whole")));
-  const Json after = runs_of(folder / "cut");
+  const nlohmann::json after = runs_of(folder / "cut");
   const int workers = drape::core_count();
   int starts = 0;
   for (std::size_t k = 0; k < after.size(); ++k) {
@@ -145,18 +145,18 @@ TEST_CASE("Ctrl-C stops the runs, which save their state, and the same command r
   CHECK(ended.exit_code == 130);
   CHECK_THAT(ended.err, Contains("stopping: 1 run is saving its state\n"));
   CHECK_THAT(ended.err, Catch::EndsWith("stopped on request; the same command runs what is missing\n"));
-  const Json stopped = folder.runs();
+  const nlohmann::json stopped = folder.runs();
   CHECK(stopped[0]["status"] == "converged");
   CHECK(stopped[1]["status"] == "cancelled");
   CHECK(stopped[2]["status"] == "pending");
   CHECK(stopped[2]["starts"] == 0);
-  const Json results = json_in(folder / "out/runs/endless/seed_1/results.json");
+  const nlohmann::json results = json_in(folder / "out/runs/endless/seed_1/results.json");
   CHECK(results["methods"]["newton"]["status"] == "cancelled");
 
   // With fewer steps it ends, though not converged: those are results, and the exit code says so.
   folder.write("s.yaml", replaced(text_of(folder / "s.yaml"), "max_steps: 100000000", "max_steps: 3"));
   folder.sweep(1);
-  const Json after = folder.runs();
+  const nlohmann::json after = folder.runs();
   CHECK(after[0]["starts"] == 1);
   CHECK(after[1]["status"] == "not_converged");
   CHECK(after[1]["exit_code"] == 1);
@@ -172,7 +172,7 @@ TEST_CASE("a failed run is listed with its error, does not stop the others, and 
   const Ended ended = folder.sweep(1);
   CHECK_THAT(ended.out, Contains(error) && Contains("unheld") && Contains("failed"));
   CHECK_THAT(ended.err, Contains("; 1 failed") && Contains(error));
-  Json runs = folder.runs();
+  nlohmann::json runs = folder.runs();
   CHECK(runs[0]["status"] == "failed");
   CHECK(runs[0]["exit_code"] == 2);
   CHECK_THAT(runs[0]["error"].get<std::string>(), Contains(error));
@@ -206,7 +206,7 @@ TEST_CASE("a killed run has failed, with the name of the signal") {
       kill(std::stoi(name), SIGKILL);
   }
   CHECK(command.wait().exit_code == 1);
-  const Json runs = folder.runs();
+  const nlohmann::json runs = folder.runs();
   CHECK(runs[1]["status"] == "failed");
   CHECK(runs[1]["error"] == "ended by signal 9 (Killed)");
   CHECK(runs[2]["status"] == "converged");
@@ -240,7 +240,7 @@ TEST_CASE("a sweep that no longer fits its results is refused, and the results s
   // What was added is run; what was there is not.
   folder.write("s.yaml", replaced(sweep, "{name: a}, ", "{name: a}, {name: c, levels: 2}, "));
   folder.sweep();
-  for (const Json& run : folder.runs()) CHECK(run["starts"] == 1);
+  for (const nlohmann::json& run : folder.runs()) CHECK(run["starts"] == 1);
 }
 
 TEST_CASE("a foreign folder in the place of a run's stays") {
@@ -262,14 +262,14 @@ TEST_CASE("runs that exceed the memory together run one after another, with a wa
   CHECK_THAT(ended.err, Contains("warning: base, seed 1 may need 0.1 GB where 0.0 GB are to be had; it runs "
                                  "alone\n"));
   double last_end = 0;
-  for (const Json& run : folder.runs()) {
+  for (const nlohmann::json& run : folder.runs()) {
     const fs::path log = folder / ("out/" + run["folder"].get<std::string>() + "/log.jsonl");
     std::istringstream lines(text_of(log));
     std::string first, last;
     for (std::string line; std::getline(lines, line); last = line)
       if (first.empty()) first = line;
-    CHECK(Json::parse(first)["time"].get<double>() > last_end);
-    last_end = Json::parse(last)["time"];
+    CHECK(nlohmann::json::parse(first)["time"].get<double>() > last_end);
+    last_end = nlohmann::json::parse(last)["time"];
   }
 }
 
@@ -282,10 +282,10 @@ TEST_CASE("a complete run without a final status keeps its results and is not re
     folder.write(status, replaced(text_of(folder / status), "\"" + word + "\"", "\"running\""));
   }
   CHECK(folder.sweep(1).err == "");
-  const Json runs = folder.runs();
+  const nlohmann::json runs = folder.runs();
   CHECK(runs[0]["status"] == "converged");
   CHECK(runs[1]["status"] == "not_converged");
-  for (const Json& run : runs) CHECK(run["starts"] == 1);
+  for (const nlohmann::json& run : runs) CHECK(run["starts"] == 1);
 
   folder.write("out/runs/a/seed_1.status.json", "{");
   CHECK_THAT(refused_by("sweep s.yaml --out out", folder.path),
@@ -303,7 +303,7 @@ TEST_CASE("two tasks for one run, as after a daemon's death, run it once") {
   CHECK(first.wait().exit_code == 0);
   CHECK(second.wait().exit_code == 0);
   drape_ends("sweep-job out", folder);  // collects
-  const Json runs = runs_of(folder / "out");
+  const nlohmann::json runs = runs_of(folder / "out");
   CHECK(runs[0]["status"] == "converged");
   CHECK(runs[0]["starts"] == 1);
   CHECK(refused_by("sweep-job out --task 1", folder.path) == "error: out: sweep.json has no run 1\n");

@@ -112,8 +112,8 @@ std::string shortfall(FitEnd end, const FitRequest& request, const std::vector<F
          digits(low) + " to " + digits(high);
 }
 
-nlohmann::ordered_json json_of(const FitSample& sample) {
-  nlohmann::ordered_json json = {{"factor", sample.factor}};
+Json json_of(const FitSample& sample) {
+  Json json = {{"factor", sample.factor}};
   if (!sample.values.empty())
     json.update(
         {{"median", sample.median()}, {"low", sample.values.front()}, {"high", sample.values.back()}});
@@ -125,13 +125,12 @@ nlohmann::ordered_json json_of(const FitSample& sample) {
 void write_fit(const SweepFolder& folder, const FitRequest& request, const std::vector<FitSample>& samples,
                const FitSample& best, bool reached) {
   const FitSetup& setup = request.setup;
-  nlohmann::ordered_json json = {
-      {"experiment", setup.config}, {"method", setup.method},         {"metric", setup.metric},
-      {"target", request.target},   {"tolerance", request.tolerance}, {"starts", setup.starts},
-      {"reached", reached}};
+  Json json = {{"experiment", setup.config}, {"method", setup.method},         {"metric", setup.metric},
+               {"target", request.target},   {"tolerance", request.tolerance}, {"starts", setup.starts},
+               {"reached", reached}};
   json.update(json_of(best));
   for (const ScaledKey& key : setup.keys) json["fitted"][key.path] = key.times(best.factor);
-  json["samples"] = nlohmann::ordered_json::array();
+  json["samples"] = Json::array();
   for (const FitSample& sample : samples) json["samples"].push_back(json_of(sample));
   write_file(folder.path() / "fit.json", json_text(json, 1) + "\n");
   write_file(folder.path() / "fitted.yaml", best.config);

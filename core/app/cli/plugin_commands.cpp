@@ -1,7 +1,6 @@
 // The commands that show what can be written: list, describe, schema and reference.
 
 #include <iostream>
-#include <nlohmann/json.hpp>
 
 #include "core/app/cli/commands.h"
 #include "core/app/experiment/describe.h"

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <iterator>
 #include <map>
-#include <nlohmann/json.hpp>
 #include <utility>
 
 #include "core/app/files/json_file.h"
@@ -24,8 +23,6 @@ NLOHMANN_JSON_SERIALIZE_ENUM(ErrorUse, {{ErrorUse::plots, "plots"},
                                         {ErrorUse::ranking, "ranking"}})
 
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 Json column_json(const MetricColumn& c) {
   Json json = {

@@ -1,11 +1,11 @@
 #pragma once
 
 #include <memory>
-#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "core/app/files/json_file.h"
 #include "core/kernel/interfaces/metric.h"
 #include "core/kernel/plugin/config_node.h"
 #include "core/kernel/plugin/registry.h"
@@ -34,9 +34,9 @@ void check_declarations(const std::vector<DeclaredMetric>& metrics, const Locati
                         ConfigErrors& errors);
 
 /// The declarations for results.json: an object by the metrics' names.
-nlohmann::ordered_json json_of(const std::vector<DeclaredMetric>& metrics);
+Json json_of(const std::vector<DeclaredMetric>& metrics);
 /// Reads them again. Entries of another form, as of an edited file, are skipped or have default members.
-std::vector<DeclaredMetric> declared_metrics(const nlohmann::ordered_json& json);
+std::vector<DeclaredMetric> declared_metrics(const Json& json);
 
 /// Columns of a scope that are shown at least as widely as `least`, in the order of declaration; each name
 /// once.

@@ -1,8 +1,8 @@
 #pragma once
 
-#include <nlohmann/json.hpp>
 #include <string>
 
+#include "core/app/files/json_file.h"
 #include "core/kernel/plugin/registry.h"
 
 namespace drape {
@@ -29,13 +29,13 @@ std::string with_parameters(const std::string& page, const RegistryEntry& entry,
                             const SharedSection* shared = nullptr);
 
 /// The node as JSON; unquoted scalars become numbers or booleans if they spell one.
-nlohmann::ordered_json json_value(const ConfigNode& node);
+Json json_value(const ConfigNode& node);
 
 /// The JSON Schema of configs with this schema, for editors. With a registry, nodes that choose a plugin
 /// accept the registered names and parameters; without, anything.
-nlohmann::ordered_json json_schema(const Schema& schema, const Registry* registry = nullptr);
+Json json_schema(const Schema& schema, const Registry* registry = nullptr);
 
 /// The JSON Schema of experiments, with the registered plugins.
-nlohmann::ordered_json experiment_json_schema(const Registry& registry);
+Json experiment_json_schema(const Registry& registry);
 
 }  // namespace drape

@@ -7,8 +7,6 @@
 namespace drape {
 namespace {
 
-using Json = nlohmann::ordered_json;
-
 /// Of a scalar parameter, or of an item of its list or map.
 Json scalar_schema(const Parameter& p) {
   const bool is_text = p.type.kind == ValueKind::text;

@@ -2,7 +2,6 @@
 
 #include <cstdint>
 #include <limits>
-#include <nlohmann/json.hpp>
 #include <stdexcept>
 #include <type_traits>
 
@@ -14,7 +13,6 @@ namespace drape {
 
 namespace {
 
-using Json = nlohmann::ordered_json;
 template <class Number, int columns>
 using Rows = Eigen::Matrix<Number, Eigen::Dynamic, columns, columns == 1 ? Eigen::ColMajor : Eigen::RowMajor>;
 

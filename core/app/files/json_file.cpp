@@ -10,8 +10,6 @@
 
 namespace drape {
 
-using Json = JsonFile::Json;
-
 namespace {
 
 constexpr int most_levels = 100;

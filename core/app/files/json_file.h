@@ -8,12 +8,13 @@
 
 namespace drape {
 
+/// JSON whose objects keep the order in which their keys were written.
+using Json = nlohmann::ordered_json;
+
 /// Reads values of a JSON file that a run or a sweep wrote and someone may have changed. A value of the wrong
 /// type throws std::runtime_error with file, key and remedy.
 class JsonFile {
  public:
-  using Json = nlohmann::ordered_json;
-
   JsonFile(std::filesystem::path path, std::string remedy)
       : path_(std::move(path)), remedy_(std::move(remedy)) {}
 
@@ -34,17 +35,17 @@ class JsonFile {
 };
 
 /// A member of an object; null if the key is absent or it is no object.
-const nlohmann::ordered_json& member_of(const nlohmann::ordered_json& object, std::string_view key);
+const Json& member_of(const Json& object, std::string_view key);
 /// A member's text; empty if it is none.
-std::string text_member(const nlohmann::ordered_json& object, const std::string& key);
+std::string text_member(const Json& object, const std::string& key);
 
 /// The value that a JSON text describes; discarded (nlohmann's is_discarded(), of no type) if it is none.
-nlohmann::ordered_json parse_json(const std::string& text);
+Json parse_json(const std::string& text);
 /// The JSON's text, on one line without `indent`. Bytes that are not UTF-8, as in a file's name, are
 /// replaced; a number that is not finite, which JSON does not have, becomes null.
-std::string json_text(const nlohmann::ordered_json& json, int indent = -1);
+std::string json_text(const Json& json, int indent = -1);
 /// The same on one line of ASCII, other characters escaped: for scripts of a page, whatever its encoding.
-std::string ascii_json_text(const nlohmann::ordered_json& json);
+std::string ascii_json_text(const Json& json);
 
 /// Why files that results.json names cannot begin with this name, as in "has 300 bytes, and may have 200"; ""
 /// if they can. Checked before a run rather than left to the file system in its middle.

@@ -12,8 +12,6 @@ namespace drape {
 
 namespace {
 
-using Json = nlohmann::ordered_json;
-
 constexpr std::size_t most_snapshot_bytes = 4'000'000;  // of the whole page, uncompressed
 
 struct State {

@@ -1,21 +1,21 @@
 #pragma once
 
 #include <filesystem>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "core/app/files/json_file.h"
 #include "core/app/report/run_data.h"
 
 namespace drape {
 
 /// One of several runs: a variation with a seed.
 struct RunRecord {
-  std::string sweep;                ///< its name; empty for a run by itself
-  std::string name;                 ///< of its variation
-  std::string variation;            ///< the same, preceded by the sweep where there are several
-  nlohmann::ordered_json settings;  ///< the values of a sweep's varied keys, by path
+  std::string sweep;      ///< its name; empty for a run by itself
+  std::string name;       ///< of its variation
+  std::string variation;  ///< the same, preceded by the sweep where there are several
+  Json settings;          ///< the values of a sweep's varied keys, by path
   OptionalNumber seed;
   std::string status;  ///< as sweep.json has it: "converged", "not_converged", "failed", …
   std::string error;   ///< message of a failed run

@@ -15,8 +15,6 @@ namespace drape {
 
 namespace {
 
-using Json = nlohmann::ordered_json;
-
 /// The members of a list; none where it has something else.
 const Json& list(const Json& json) {
   static const Json none = Json::array();

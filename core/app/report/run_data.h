@@ -1,13 +1,13 @@
 #pragma once
 
 #include <filesystem>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "core/app/experiment/declared_metrics.h"
 #include "core/app/files/csv.h"
+#include "core/app/files/json_file.h"
 #include "core/app/files/snapshot_file.h"
 #include "core/kernel/interfaces/triangle_mesh.h"
 
@@ -15,7 +15,7 @@ namespace drape {
 
 /// An object of results.json, whose numbers are in SI units.
 struct Values {
-  nlohmann::ordered_json json;
+  Json json;
 
   /// The finite number of a name; energy_parts.hinge is the member hinge of energy_parts.
   OptionalNumber of(const std::string& name) const;
@@ -30,7 +30,7 @@ struct LevelRecord {
   Values values;                    ///< costs, quantities and state metrics
 
   /// States on the way, the last of which is the final state; null without any.
-  const nlohmann::ordered_json& snapshots() const;
+  const Json& snapshots() const;
 };
 
 /// Pair metrics of a coarse state, prolonged, against a finer one.
@@ -62,7 +62,7 @@ struct ObstacleRecord {
 /// Everything a finished or interrupted run has written, except meshes.
 struct RunData {
   std::filesystem::path folder;
-  nlohmann::ordered_json results;  ///< results.json as a whole
+  Json results;  ///< results.json as a whole
   std::string experiment;
   std::string configuration;  ///< config.yaml, also parsed; empty without one
   ConfigNode config;
@@ -91,10 +91,10 @@ std::string rest_file(int level);
 
 /// The results.json of a run's folder. Throws std::runtime_error, with that remedy, if it is missing, cut
 /// short or not a run's.
-nlohmann::ordered_json read_results(const std::filesystem::path& folder,
-                                    const std::string& remedy = "run the experiment again");
+Json read_results(const std::filesystem::path& folder,
+                  const std::string& remedy = "run the experiment again");
 /// The same of a complete run; null if the run is not complete, or if its results are missing or damaged.
-nlohmann::ordered_json complete_results(const std::filesystem::path& folder);
+Json complete_results(const std::filesystem::path& folder);
 
 /// Reads results.json (required), iterations.csv, errors.csv and config.yaml (optional). Null values are
 /// absent. Throws std::runtime_error with one line if results.json is missing or damaged.

@@ -12,8 +12,6 @@ namespace drape {
 
 namespace {
 
-using Json = nlohmann::ordered_json;
-
 Json json_of(const OptionalNumber& number) { return number ? Json(*number) : Json(); }
 /// A whole number.
 Json count_of(const OptionalNumber& number) { return number ? Json(std::llround(*number)) : Json(); }

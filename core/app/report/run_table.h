@@ -1,14 +1,13 @@
 #pragma once
 
-#include <nlohmann/json.hpp>
-
+#include "core/app/files/json_file.h"
 #include "core/app/report/run_collection.h"
 
 namespace drape {
 
 /// One method of one run, its cells by the names of the columns: numbers, words, or null if not
 /// known. A run without results is one row.
-using TableRow = nlohmann::ordered_json;
+using TableRow = Json;
 
 /// A method's row, without what tells the runs apart.
 TableRow row_of(const RunData& run, const MethodRecord& method);

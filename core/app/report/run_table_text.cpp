@@ -15,8 +15,6 @@ namespace drape {
 
 namespace {
 
-using Json = nlohmann::ordered_json;
-
 std::string cell_text(const Json& value, bool rounded) {
   if (value.is_null()) return "";
   if (value.is_boolean()) return value.get<bool>() ? "yes" : "NO";

@@ -2,7 +2,6 @@
 // that another program or another version of drape wrote.
 
 #include <algorithm>
-#include <nlohmann/json.hpp>
 #include <stdexcept>
 
 #include "core/app/files/json_file.h"
@@ -12,8 +11,6 @@
 namespace drape {
 
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 /// Strictly ascending.
 template <class Values, class Key>

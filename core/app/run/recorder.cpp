@@ -39,7 +39,7 @@ std::vector<std::pair<const char*, std::string>> cells_of(const IterationRow& ro
 }
 
 /// What runs, and where.
-nlohmann::ordered_json program_and_machine() {
+Json program_and_machine() {
   return {{"version", std::string("drape ") + version()},
           {"commit", commit()},
           {"machine", {{"cpu", cpu_name()}, {"cores", core_count()}, {"threads", thread_count()}}}};
@@ -185,7 +185,7 @@ void Recorder::iteration(const IterationRow& r, const Positions& x) {
   exclude(watch.seconds());
 }
 
-Recorder::Json Recorder::state_entry(const LevelResult& r, const Cost& cost) {
+Json Recorder::state_entry(const LevelResult& r, const Cost& cost) {
   const Level& level = scene_.hierarchy.levels[r.level];
   const LevelModel model = scene_.model(r.level)->with_stiffness(r.contact_stiffness);
   Json parts = Json::object(), released_parts = parts;

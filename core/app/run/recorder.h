@@ -3,9 +3,9 @@
 #include <fstream>
 #include <functional>
 #include <map>
-#include <nlohmann/json.hpp>
 #include <string>
 
+#include "core/app/files/json_file.h"
 #include "core/app/run/errors.h"
 #include "core/app/run/run_folder.h"
 #include "core/app/scene/scene.h"
@@ -82,8 +82,6 @@ class Recorder : public Observer {
   const std::map<std::string, std::string>& not_measured() const { return not_measured_; }
 
  private:
-  using Json = nlohmann::ordered_json;
-
   Recorder(const RunFolder& folder, const Experiment& experiment, const Scene& scene,
            std::ios::openmode mode);
   /// Writes a file of the folder unless it has these bytes already; `written_` takes its name.

@@ -92,7 +92,7 @@ const Positions* Recorder::find_reference(Observer& observer, bool cancelled) {
   return &solved_reference_->x;
 }
 
-Recorder::Json Recorder::add_snapshots(const LevelResult& r, const Cost& cost, RecordedState& state) {
+Json Recorder::add_snapshots(const LevelResult& r, const Cost& cost, RecordedState& state) {
   const Cost before = r.from_initial_state ? Cost() : s_.spent;
   const std::string file = snapshots_file(state);
   LevelSnapshots& own = state.snapshots;

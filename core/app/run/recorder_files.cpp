@@ -4,7 +4,6 @@
 #include <cmath>
 #include <cstring>
 #include <fstream>
-#include <nlohmann/json.hpp>
 
 #include "core/app/files/json_file.h"
 #include "core/app/report/run_data.h"
@@ -71,7 +70,7 @@ void refuse_short_files(const RunFolder& folder, const Recorder::State& state) {
 
 void record_abort(const RunFolder& folder, const std::string& cause) {
   try {
-    nlohmann::ordered_json results = parse_json(read_file(folder.file("results.json")));
+    Json results = parse_json(read_file(folder.file("results.json")));
     results["aborted"] = cause;
     for (auto& [name, method] : results.at("methods").items())
       if (method.at("status").get<std::string>() == "running") method["status"] = "aborted";

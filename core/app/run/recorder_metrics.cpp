@@ -13,7 +13,7 @@ namespace drape {
 namespace {
 
 /// The member of an object with a dotted name: "a.b" is member b of member a.
-nlohmann::ordered_json& at_dotted(nlohmann::ordered_json& object, const std::string& name) {
+Json& at_dotted(Json& object, const std::string& name) {
   const std::size_t dot = name.find('.');
   return dot == std::string::npos ? object[name]
                                   : at_dotted(object[name.substr(0, dot)], name.substr(dot + 1));
@@ -49,8 +49,7 @@ MetricResult Recorder::measure(const std::string& name, const Metric& metric, co
   return {};
 }
 
-Recorder::Json Recorder::compare(int level, const Positions& x, const Positions& other,
-                                 VertexFields* fields) {
+Json Recorder::compare(int level, const Positions& x, const Positions& other, VertexFields* fields) {
   Json row = Json::object();  // not null, even without a metric of pairs
   for (const auto& [name, metric] : experiment_.metrics) {
     if (metric->scope() != MetricScope::pair) continue;
@@ -62,7 +61,7 @@ Recorder::Json Recorder::compare(int level, const Positions& x, const Positions&
   return row;
 }
 
-Recorder::Json Recorder::pair_entry(const RecordedState& coarse, const RecordedState& fine) {
+Json Recorder::pair_entry(const RecordedState& coarse, const RecordedState& fine) {
   const Positions x = prolonged(fine.method, coarse.x, coarse.level, fine.level);
   Json row = {{"coarse", coarse.level}, {"fine", fine.level}};
   VertexFields fields;

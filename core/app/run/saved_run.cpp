@@ -195,7 +195,7 @@ std::optional<SavedRun> read_saved_run(const fs::path& folder, const Registry& r
 }
 
 SavedState saved_state(const fs::path& folder, const std::string& method, std::optional<int> level) {
-  const nlohmann::ordered_json results = read_results(folder);
+  const Json results = read_results(folder);
   SavedState state{method, 0, {}};
   std::optional<Checkpoint> checkpoint;
   if (member_of(results, "complete") != true) {

@@ -165,7 +165,7 @@ double FitSample::median() const {
 FitRuns::FitRuns(const FitSetup& setup, const SweepFolder& folder, const SweepOptions& options,
                  const Registry& registry)
     : setup_(setup), folder_(folder), options_(options), registry_(registry) {
-  const nlohmann::ordered_json before = folder.read();
+  const Json before = folder.read();
   if (before.is_null() || before["sweep"] != setup.name) return;
   for (const auto& run : before["runs"]) {
     const std::string name = run["name"];

@@ -18,8 +18,6 @@ namespace drape {
 
 namespace {
 
-using Json = nlohmann::ordered_json;
-
 constexpr const char* words[] = {"pending", "running", "converged", "not_converged", "failed", "cancelled"};
 
 /// The status of a run that had results, by what is there of them now.

@@ -2,10 +2,10 @@
 
 #include <csignal>
 #include <filesystem>
-#include <nlohmann/json.hpp>
 #include <string>
 
 #include "core/app/experiment/exit_codes.h"
+#include "core/app/files/json_file.h"
 #include "core/app/sweep/process.h"
 #include "core/app/sweep/sweep.h"
 #include "core/kernel/threads/stopwatch.h"
@@ -29,7 +29,7 @@ struct RunStatus {
   /// The run refused its input, before any computation.
   bool refused() const { return state == RunState::failed && exit_code == exit_bad_input; }
   bool has_results() const { return state == RunState::converged || state == RunState::not_converged; }
-  nlohmann::ordered_json json() const;
+  Json json() const;
 };
 
 /// One run's files in a sweep's folder: results inside, the others beside it.

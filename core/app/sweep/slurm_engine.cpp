@@ -13,7 +13,6 @@
 namespace drape {
 
 namespace fs = std::filesystem;
-using Json = nlohmann::ordered_json;
 
 namespace {
 

@@ -33,7 +33,7 @@ void keep_methods(ConfigNode& resolved, const std::vector<std::string>& chosen) 
 }
 
 /// The value at a path of a resolved experiment: of a plugin its type; null if the experiment has none.
-nlohmann::ordered_json setting_at(const ConfigNode& resolved, const std::string& path) {
+Json setting_at(const ConfigNode& resolved, const std::string& path) {
   // A fabric has become numbers; its name stays as a record.
   const ConfigNode* node = value_at(resolved, path == "material.fabric" ? "material.from_fabric" : path);
   // A method's newton has what differs from the experiment's alone.
@@ -48,7 +48,7 @@ nlohmann::ordered_json setting_at(const ConfigNode& resolved, const std::string&
 
 /// Takes the numbers that the experiment has in the end: an option, a schedule's key or a later setting may
 /// have replaced what the variation sets.
-void take_final_numbers(const ConfigNode& resolved, nlohmann::ordered_json& settings) {
+void take_final_numbers(const ConfigNode& resolved, Json& settings) {
   for (auto& [path, value] : settings.items())
     if (const ConfigNode* node = value.is_number() ? value_at(resolved, path) : nullptr;
         node && node->kind == NodeKind::scalar)
@@ -107,7 +107,7 @@ class Reader {
     SweepRun run;
     run.name = variation.name;
     run.expect = variation.expect;
-    run.settings = nlohmann::ordered_json::object();
+    run.settings = Json::object();
     if (!base.label.empty()) run.settings["experiment"] = base.label;
     for (const ConfigNode* set : {&p.set, &variation.set})
       for (std::size_t k = 0; k < set->entries.size(); ++k) {
@@ -179,10 +179,10 @@ class Reader {
 
   /// Gives every run a value for each key that some variation sets.
   void complete_settings() {
-    nlohmann::ordered_json keys = nlohmann::ordered_json::object();
+    Json keys = Json::object();
     for (const SweepRun& run : sweep_.runs) keys.update(run.settings);
     for (std::size_t k = 0; k < sweep_.runs.size(); ++k) {
-      nlohmann::ordered_json& settings = sweep_.runs[k].settings;
+      Json& settings = sweep_.runs[k].settings;
       for (const auto& [key, value] : keys.items())
         if (key != "methods" && !settings.contains(key)) settings[key] = setting_at(resolved_[k], key);
     }

@@ -1,9 +1,9 @@
 #pragma once
 
 #include <functional>
-#include <nlohmann/json.hpp>
 
 #include "core/app/experiment/experiment.h"
+#include "core/app/files/json_file.h"
 
 namespace drape {
 
@@ -33,8 +33,8 @@ struct SweepParameters {
 
 /// One run: a resolved experiment.
 struct SweepRun {
-  std::string name;                 ///< of the variation, after its experiment's if there are several
-  nlohmann::ordered_json settings;  ///< the run's values of all keys that variations set, by path
+  std::string name;  ///< of the variation, after its experiment's if there are several
+  Json settings;     ///< the run's values of all keys that variations set, by path
   int seed = 1;
   std::string folder;  ///< "runs/NAME/seed_1", unique in the sweep
   std::string config;  ///< the resolved experiment as YAML, with the chosen methods only
@@ -74,6 +74,6 @@ std::optional<Sweep> read_sweep(ConfigNode source, const Registry& registry, Con
 /// The schema of sweeps, `ablation` included, for `drape describe` and as JSON Schema for editors.
 std::string describe_sweep();
 std::string describe_sweep_markdown();
-nlohmann::ordered_json sweep_json_schema();
+Json sweep_json_schema();
 
 }  // namespace drape

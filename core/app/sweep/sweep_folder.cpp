@@ -14,7 +14,6 @@
 namespace drape {
 
 namespace fs = std::filesystem;
-using Json = nlohmann::ordered_json;
 
 namespace {
 

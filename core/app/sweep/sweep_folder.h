@@ -36,13 +36,13 @@ class SweepFolder {
   void finalize() const;
   /// sweep.json; null if there is none. Throws std::runtime_error, with file, key and remedy, if it has
   /// another form.
-  nlohmann::ordered_json read() const;
+  Json read() const;
 
  private:
   /// The runs' statuses by their results. Throws for other contents, as prepare does.
   std::vector<RunStatus> checked_statuses(const Sweep& sweep, int threads) const;
   /// Writes this sweep.json with every run's status.
-  void write(nlohmann::ordered_json json) const;
+  void write(Json json) const;
   std::filesystem::path path_;
 };
 

@@ -60,8 +60,7 @@ std::string describe_sweep_markdown() {
          describe_markdown(schema_of<Variation>());
 }
 
-nlohmann::ordered_json sweep_json_schema() {
-  using Json = nlohmann::ordered_json;
+Json sweep_json_schema() {
   Json schema = json_schema(schema_of<SweepParameters>());
   const Json values = {{"type", "array"}, {"minItems", 1}};
   const Json grid = {{"type", "object"}, {"minProperties", 1}, {"additionalProperties", values}};

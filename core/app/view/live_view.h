@@ -35,7 +35,6 @@ class LiveView : public Observer {
   bool refine_requested() override { return refine_.exchange(false); }
 
  private:
-  using Json = ViewDocument::Json;
   struct Method {
     std::string name;
     int style;

@@ -4,7 +4,6 @@
 #include <boost/algorithm/string/replace.hpp>
 #include <cctype>
 #include <iterator>
-#include <nlohmann/json.hpp>
 #include <string_view>
 #include <utility>
 
@@ -20,7 +19,7 @@ extern "C" __attribute__((visibility("hidden"))) const char drape_page[], drape_
 
 namespace drape {
 
-std::string page(const std::string& title, const nlohmann::ordered_json& data, const std::string& blocks) {
+std::string page(const std::string& title, const Json& data, const std::string& blocks) {
   const std::string safe_title =
       boost::replace_all_copy(boost::replace_all_copy(title, "&", "&amp;"), "<", "&lt;");
   const std::string json = boost::replace_all_copy(ascii_json_text(data), "<", "\\u003c");

@@ -19,10 +19,10 @@ namespace {
 
 /// Where arrows along warp are, on some 150 triangles: the corners' indices, then a and b [1/m] of warp's
 /// image a e₁ + b e₂ by the triangle's edges.
-ViewDocument::Json warp_arrows(const Level& level) {
+Json warp_arrows(const Level& level) {
   constexpr int most = 150;
   const std::vector<MaterialTriangle> triangles = material_triangles(level);
-  ViewDocument::Json arrows = ViewDocument::Json::array();
+  Json arrows = Json::array();
   for (int t = 0; t < level.triangle_count(); t += (level.triangle_count() - 1) / most + 1) {
     const auto v = level.rest.triangles.row(t);
     arrows.push_back({v[0], v[1], v[2], triangles[t][0], triangles[t][1]});
@@ -85,8 +85,8 @@ bool ViewDocument::widen_ranges(const std::vector<const SurfaceFields*>& states)
   return wider;
 }
 
-ViewDocument::Json ViewDocument::state(const std::string& name, const Positions& x,
-                                       const SurfaceFields& fields, const Obstacles* moved) {
+Json ViewDocument::state(const std::string& name, const Positions& x, const SurfaceFields& fields,
+                         const Obstacles* moved) {
   keep_(name, encode_positions(x));
   Json entry = {{"x", name}, {"fields", Json::object()}};
   for (std::size_t k = 0; k < kinds_.size(); ++k) {
@@ -106,7 +106,7 @@ ViewDocument::Json ViewDocument::state(const std::string& name, const Positions&
   return entry;
 }
 
-ViewDocument::Json ViewDocument::document(const std::string& title, Json methods) const {
+Json ViewDocument::document(const std::string& title, Json methods) const {
   Json fields = Json::array();
   for (const FieldKind& kind : kinds_)
     if (kind.high > kind.low)

@@ -1,11 +1,11 @@
 #pragma once
 
 #include <functional>
-#include <nlohmann/json.hpp>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "core/app/files/json_file.h"
 #include "core/app/view/surface_fields.h"
 
 namespace drape {
@@ -14,7 +14,6 @@ namespace drape {
 /// of bytes that it refers to. The report embeds them, the live view serves them.
 class ViewDocument {
  public:
-  using Json = nlohmann::ordered_json;
   /// Receives a named block.
   using Keep = std::function<void(const std::string& name, std::string bytes)>;
 

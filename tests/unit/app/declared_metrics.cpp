@@ -9,7 +9,6 @@
 #include "tests/support/declared_metrics.h"
 
 using namespace drape;
-using Json = nlohmann::ordered_json;
 using Catch::Contains;
 
 namespace {

@@ -20,7 +20,6 @@
 
 using namespace drape;
 namespace fs = std::filesystem;
-using Json = nlohmann::ordered_json;
 
 namespace {
 
