@@ -16,8 +16,8 @@
 
 namespace drape {
 
-/// Takes values as bytes, as memory holds them. `pass` below goes through a value in the same way to write and
-/// to read it.
+/// Takes values as bytes, as memory holds them. `pass` below goes through a value in the same way to write
+/// and to read it.
 struct ArchiveWriter {
   static constexpr bool reads = false;
   std::string bytes;

@@ -190,7 +190,8 @@ void bind_run(py::module_& m) {
       .def_readonly("energy", &Iteration::energy, "Plain energy of the level [J].")
       .def_readonly("proxy_energy", &Iteration::proxy_energy,
                     "Energy that the method minimises in its place [J], or None.")
-      .def_readonly("decrement", &Iteration::decrement, "‖p‖ / (h √n) for the first h, or a bound of it [m/s].")
+      .def_readonly("decrement", &Iteration::decrement,
+                    "‖p‖ / (h √n) for the first h, or a bound of it [m/s].")
       .def_readonly("force_residual", &Iteration::force_residual, "[1]")
       .def_readonly("step_length", &Iteration::step_length, "α of the line search.")
       .def_readonly("step_size", &Iteration::step_size, "h [s].")

@@ -74,8 +74,8 @@ void load(Registry& registry, const fs::path& library) {
   const auto entry_point =
       reinterpret_cast<const DrapePluginDescriptor* (*)()>(dlsym(handle, "drape_plugin"));
   const auto refuse = [&](const std::string& why) {
-    refuse_path(library, "is not a drape plugin: " + why +
-                             " (see DRAPE_PLUGIN in core/kernel/plugin/plugin.h)");
+    refuse_path(library,
+                "is not a drape plugin: " + why + " (see DRAPE_PLUGIN in core/kernel/plugin/plugin.h)");
   };
   if (!entry_point) refuse("it exports no function drape_plugin");
   const DrapePluginDescriptor* descriptor = call(path, "function drape_plugin", entry_point);

@@ -81,8 +81,7 @@ std::string Schema::unread_fault(const Parameter& p, const void* object) const {
   if (!selector) return "";
   const std::string chosen = selector->write(object).scalar;
   const auto& reads = p.selector_values;
-  if (is_one_of(chosen, reads) || p.write(object).one_line() == p.write(fresh().get()).one_line())
-    return "";
+  if (is_one_of(chosen, reads) || p.write(object).one_line() == p.write(fresh().get()).one_line()) return "";
   std::string needed;
   for (const std::string& value : reads) needed += (needed.empty() ? "" : " or ") + p.selector + ": " + value;
   return "\"" + p.name + "\"" + (name.empty() ? "" : " in " + name) + " needs \"" + needed + "\"; here \"" +
