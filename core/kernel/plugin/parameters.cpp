@@ -26,8 +26,9 @@ std::string with_unit(double value, const Parameter& p) {
   return p.unit.empty() || p.unit == "1" ? text : text + " " + p.unit;
 }
 
-/// What the number must be if it is out of range, else "".
-std::string range_fault(double value, const Parameter& p) {
+}  // namespace
+
+std::string number_fault(const Parameter& p, double value) {
   if (!std::isfinite(value)) return "a finite number";
   if (p.open_minimum && !(value > p.minimum)) return "above " + with_unit(p.minimum, p);
   if (!p.open_minimum && !(value >= p.minimum)) return "at least " + with_unit(p.minimum, p);
@@ -36,18 +37,20 @@ std::string range_fault(double value, const Parameter& p) {
   return "";
 }
 
+namespace {
+
 /// What a scalar must be if it is not, else "".
 std::string scalar_fault(const ConfigNode& node, const Parameter& p) {
   const bool plain = node.kind == NodeKind::scalar && !node.quoted;
   if (p.type.kind == ValueKind::integer) {
     const auto value = plain ? parse_integer(node.scalar) : std::nullopt;
-    return value ? range_fault(*value, p) : "an integer";
+    return value ? number_fault(p, *value) : "an integer";
   }
   if (p.type.kind == ValueKind::number) {
     if (plain && (node.scalar == ".nan" || node.scalar == ".inf" || node.scalar == "-.inf"))
       return "a finite number";
     const auto value = plain ? parse_number(node.scalar) : std::nullopt;
-    return value ? range_fault(*value, p) : "a number";
+    return value ? number_fault(p, *value) : "a number";
   }
   if (p.type.kind == ValueKind::boolean)
     return plain && (node.scalar == "true" || node.scalar == "false") ? "" : "true or false";
@@ -183,11 +186,6 @@ void read_parameter(const Parameter& p, void* object, const ConfigNode& written,
   const ConfigNode value = completed(written, p, object);
   if (check(value, p, errors))
     p.read(object, p.path ? relative_path(value) : expand_shorthand(value, p), errors);
-}
-
-std::string number_fault(const Parameter& p, double value) {
-  const bool integer = p.type.kind == ValueKind::integer;
-  return integer && value != std::rint(value) ? "an integer" : range_fault(value, p);
 }
 
 std::optional<double> parse_number(const std::string& text) { return parsed<double>(text); }

@@ -61,6 +61,14 @@ constexpr auto run_adders(std::integer_sequence<int, K...>) {
   return std::array{&add_run<Scalar, 3 * (K + 1)>...};
 }
 
+template <class Scalar>
+void add_runs(const std::vector<Run<Scalar>>& runs, const int* indices, int pivots) {
+  static constexpr auto adders = run_adders<Scalar>(std::make_integer_sequence<int, lanes<Scalar>>());
+  parallel_kernels<Scalar>(static_cast<int>(runs.size()), 8, [&](int begin, int end) {
+    for (int k = begin; k < end; ++k) adders[runs[k].vertices - 1](runs[k], indices, pivots);
+  });
+}
+
 /// Cholesky of the pivot rows of row panels [begin, end).
 template <class Scalar>
 bool factorise_diagonal(const Front<Scalar>& f, int begin, int end) {
@@ -79,11 +87,7 @@ bool factorise_diagonal(const Front<Scalar>& f, int begin, int end) {
 
 template <class Scalar>
 void Front<Scalar>::add_update(const Front& child, const int* indices) const {
-  static constexpr auto adders = run_adders<Scalar>(std::make_integer_sequence<int, lanes>());
-  const std::vector<Run<Scalar>> runs = runs_of(child, indices, *this);
-  parallel_kernels<Scalar>(static_cast<int>(runs.size()), 8, [&](int begin, int end) {
-    for (int k = begin; k < end; ++k) adders[runs[k].vertices - 1](runs[k], indices, pivots);
-  });
+  add_runs(runs_of(child, indices, *this), indices, pivots);
 }
 
 template <class Scalar>

@@ -7,7 +7,8 @@
 namespace drape {
 
 /// How the coordinates in a mesh file are meant: their unit, and the axis that points up. Both say how to
-/// read the file, before any transform. core/kernel/plugin/placement.h declares them.
+/// read the file, before any transform. core/kernel/plugin/placement.h declares them; another word counts as
+/// the default.
 struct FileCoordinates {
   std::string unit = "m";  ///< "mm", "cm", "m" or "inch"
   std::string up = "z";    ///< "y" or "z"

@@ -24,7 +24,8 @@ TriangleMesh read_mesh(const std::filesystem::path& path);
 /// All scalar vertex properties of a PLY other than x, y and z, in the file's order.
 VertexFields read_ply_fields(const std::filesystem::path& path);
 
-/// A PLY, binary little endian, coordinates and fields in double; reads back to the same bits.
+/// A PLY, binary little endian, coordinates and fields (n values each) in double; reads back to the same
+/// bits.
 std::string ply_bytes(const TriangleMesh& mesh, const VertexFields& fields = {});
 /// A VTK XML PolyData file, base64 inline, for ParaView; without texture coordinates, which VTK has no seams
 /// for.

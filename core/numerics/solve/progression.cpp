@@ -44,6 +44,7 @@ std::vector<LevelResult> Progression::resume(const Problem& problem, const Metho
     if (result.outcome == Outcome::stalled) {
       result.message += "; the level starts from the scene's start instead";
       result.x = problem.starts[l];
+      result.outcome = {};
       if (problem.load_stepping) problem.load_stepping->begin(l, true);
     }
     if (result.outcome == Outcome::cancelled) {

@@ -224,6 +224,8 @@ TEST_CASE("ipc: a mesh finer than dhat has no barrier at rest, yet never interse
   CHECK(limit.fraction < 1);
   CHECK(contact->intersections(above + limit.fraction * (through - above)).empty());
   CHECK(!contact->intersections(0.5 * (above + through)).empty());
+  // Layers that are far apart at rest repel.
+  CHECK(collisions_at(*contact, folded(level, 2, 4e-4, 0, 1))->contact_count() > 100);
 }
 
 TEST_CASE("ipc: a motion with too many candidates is shortened") {

@@ -158,4 +158,5 @@ TEST_CASE("exactly degenerate pairs") {
   CHECK(closest_point_triangle(e3, o, e1, e2).free == 0);
   CHECK(closest_point_triangle(e3 + 0.5 * e1, o, e1, e2).free == 1);
   CHECK(closest_point_triangle(e3 + 0.3 * (e1 + e2), o, e1, e2).free == 2);
+  CHECK(nearest_on_segment(o, e1) == 0);
 }

@@ -118,8 +118,7 @@ TEST_CASE("The decrement is that of the first step size, or a bound of it, whate
   } observer;
   const NewtonParameters p = {.step_size = 0.3, .step_growth = 3, .max_steps = 20, .force_tolerance = tight};
   NewtonCase c;
-  const LevelModel model(c.level, Material(), {{"wells", energy_of(Wells(c.centres, 10, 0.4))}},
-                         {{0, c.level.rest.vertices.row(0), 0}});
+  const LevelModel model(c.level, Material(), {{"wells", energy_of(Wells(c.centres, 10, 0.4))}}, c.pinned());
   PlainObjective objective(model);
   minimise(objective, c.level.rest.vertices, p, {Stopwatch(), observer});
   int longer = 0, shorter = 0;
