@@ -287,7 +287,7 @@ TEST_CASE("A rest shape with a triangle without area is refused", "[conformance]
   level.rest.vertices.row(4) = level.rest.vertices.row(0);
   for (const Candidate& candidate : all_energies()) {
     // A spring needs its edge alone.
-    if (!candidate.internal() || candidate.name == "springs") continue;
+    if (!candidate.internal() || candidate.name.starts_with("springs")) continue;
     INFO(candidate.name);
     CHECK_THROWS_WITH(candidate.energy->bind(level, material),
                       Catch::Contains(" of level 0 has no area at rest") ||

