@@ -16,12 +16,13 @@ SOURCES = $(shell find core plugins examples tests benchmarks -name '*.cpp' -o -
         pictures api format fix-format lint clean
 all: build
 
-# Installs what third_party/packages-to-run.txt and packages-to-test.txt list; setup-to-develop also packages-to-develop.txt.
+# Installs what third_party/packages-to-run.txt and packages-to-test.txt list; setup-to-develop also packages-to-develop.txt and
+# packages-to-use-clang.txt.
 setup:
-	@third_party/setup run test $(if $(filter clang asan tsan,$(PRESET)),develop)
+	@third_party/setup run test $(if $(filter clang asan tsan,$(PRESET)),use-clang)
 
 setup-to-develop:
-	@third_party/setup run test develop
+	@third_party/setup run test develop use-clang
 
 CONFIGURE = cmake --preset $(PRESET) --log-level=WARNING
 
@@ -73,7 +74,8 @@ test: build-tests  # runs every test
 
 # Fuzzes the readers of configs, --set, meshes and checkpoints for FUZZ_SECONDS each (20), or FUZZ_RUNS inputs each;
 # FUZZ_TARGETS="mesh config" chooses some; what ends one is kept in build-fuzz/artifacts.
-fuzz: build setup-to-develop
+fuzz: build
+	@third_party/setup run test use-clang
 	@cmake --preset fuzz --log-level=WARNING -DDRAPE_BUILD=$(abspath $(BUILD)) >/dev/null
 	@cmake --build build-fuzz -j $(JOBS)
 	@FUZZ_SECONDS=$(FUZZ_SECONDS) FUZZ_RUNS=$(FUZZ_RUNS) JOBS=$(JOBS) tests/fuzz/run build-fuzz $(FUZZ_TARGETS)
@@ -103,23 +105,28 @@ figures:  # fills the pages' figures in from the stored records; runs nothing
 FROM ?= $(patsubst %sphere,%,$(shell ls -td results/studies/*/sphere 2>/dev/null | head -1))
 # The start whose PCS preview has the median distance from its final state.
 SPHERE = $(FROM)sphere/runs/base/seed_1
-pictures: benchmarks data setup-to-develop
+pictures: benchmarks data
+	@third_party/setup develop
 	@[ -e $(SPHERE)/results.json ] || { echo "pictures: no run of the study sphere; make results STUDIES=sphere" >&2; exit 1; }
 	@tests/browser/install $(BUILD)/tests/browser
 	DRAPE_BIN=$(abspath $(BUILD))/bin DRAPE_NODE_MODULES=$(abspath $(BUILD))/tests/browser node docs/pictures/make.mjs $(SPHERE) results/pictures
 
-api: setup-to-develop  # pages of the headers that plugins include, by Doxygen
+api:  # pages of the headers that plugins include, by Doxygen
+	@third_party/setup develop
 	@doxygen docs/Doxyfile
 	@echo "build/api/html/index.html"
 
-format: setup-to-develop  # checks the layout of the sources
+format:  # checks the layout of the sources
+	@third_party/setup develop
 	@clang-format --dry-run -Werror $(SOURCES)
 
-fix-format: setup-to-develop
+fix-format:
+	@third_party/setup develop
 	@clang-format -i $(SOURCES)
 
 # Static analysis of core and plugins, or of one folder (LINT=core/app/sweep), each source checked by itself.
-lint: setup-to-develop
+lint:
+	@third_party/setup run test use-clang
 	@cmake --preset single-files --log-level=ERROR >/dev/null
 	@cmake --build build-single-files -j $(JOBS) --target drape_cli drape_plugins
 	@cmake --preset lint --log-level=ERROR >/dev/null
