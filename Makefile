@@ -136,4 +136,5 @@ lint:
 	  -extra-arg=-Wno-unused-command-line-argument '$(LINTED)'
 
 clean:  # removes what was built
-	rm -rf build build-package build-debug build-clang build-asan build-tsan build-lint build-fuzz build-single-files
+	@[ ! -d build ] || find build/ -mindepth 1 -delete  # build itself may be a mount, as in .devcontainer
+	rm -rf build-package build-debug build-clang build-asan build-tsan build-lint build-fuzz build-single-files
