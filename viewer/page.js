@@ -19,4 +19,7 @@ addEventListener('beforeprint', () => {
   document.querySelectorAll('details').forEach(part => { part.open = true; });
   window.drapeViewer?.copyForPaper();
 });
-addEventListener('afterprint', () => { delete document.documentElement.dataset.theme; });
+addEventListener('afterprint', () => {
+  delete document.documentElement.dataset.theme;
+  window.drapeViewer?.scene?.draw();
+});

@@ -238,14 +238,16 @@ export class View {
     const nearest = Math.min(...this.stops.map(stop => Math.abs(stop.level - level)));
     this.show(this.stops.findLastIndex(stop => Math.abs(stop.level - level) === nearest));
   }
-  /// A canvas of WebGL cannot be printed: a copy of it stands in, unless the page has a picture.
+  /// A canvas of WebGL cannot be printed: a copy of it stands in, with its labels, unless the page has a picture.
   copyForPaper() {
     if (this.picture || !this.scene?.panel) return;
     this.scene.render(2);
-    const copy = h('canvas', {class: 'fallback', role: 'img', 'aria-label': 'The cloth', width: this.canvas.width, height: this.canvas.height});
+    const copy = h('canvas', {role: 'img', 'aria-label': 'The cloth', width: this.canvas.width, height: this.canvas.height}), labels = this.labels.cloneNode(true);
     copy.getContext('2d').drawImage(this.canvas, 0, 0);
+    labels.removeAttribute('id');
+    labels.style.gridTemplateRows = `repeat(${this.scene.rows}, 1fr)`;
     this.copy?.remove();
-    this.element.append(this.copy = copy);
+    this.element.append(this.copy = h('div', {class: 'fallback'}, copy, labels));
   }
   async savePicture() { save((this.data.title || 'cloth') + '.png', await this.scene.picture()); }
 

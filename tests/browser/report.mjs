@@ -303,7 +303,16 @@ test('printed, and without WebGL', async () => {
     dispatchEvent(new Event('beforeprint'));
   });
   await page.emulateMedia({media: 'print'});
-  assert.ok(await drawnShare(page, 'canvas.fallback') > .05);
+  assert.ok(await drawnShare(page, '.fallback canvas') > .05);
+  assert.deepEqual(await page.locator('.fallback b').allTextContents(), await page.locator('#viewer-labels b').allTextContents());
+  assert.ok(await page.locator('.fallback b').first().isVisible());
+  // The screen may be dark again.
+  assert.equal(await page.evaluate(() => {
+    let drawn = 0;
+    window.drapeViewer.scene.draw = () => ++drawn;
+    dispatchEvent(new Event('afterprint'));
+    return drawn;
+  }), 1);
   await page.context().close();
 
   const bare = await newPage();
