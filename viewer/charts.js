@@ -22,11 +22,12 @@ function markPath(mark, x, y, r) {
   return `M${x - r} ${y}a${r} ${r} 0 1 0 ${2 * r} 0a${r} ${r} 0 1 0 ${-2 * r} 0`;
 }
 
-/// Round values from one to the other, at least `least` apart, as [value, text]. There is room for texts of some eight characters.
+/// Round values from one to the other, at least `least` apart, as [value, text]; a text has the digits that tell neighbours apart.
 function roundTicks(from, to, least) {
   const unit = 10 ** Math.floor(Math.log10(least)), step = [1, 2, 5, 10].map(m => m * unit).find(u => u >= least), ticks = [];
+  const digits = Math.max(6, 2 + Math.floor(Math.log10(Math.max(Math.abs(from), Math.abs(to)))) - Math.floor(Math.log10(step)));
   for (let k = Math.ceil(from / step); k * step <= to; ++k) {
-    const t = Number((k * step).toPrecision(6)), plain = t === 0 || Math.abs(t) >= 1e-3 && Math.abs(t) < 1e6;
+    const t = Number((k * step).toPrecision(digits)), plain = t === 0 || Math.abs(t) >= 1e-3 && Math.abs(t) < 1e6;
     ticks.push([k * step, plain ? String(t) : t.toExponential().replace('+', '')]);
   }
   return ticks;
@@ -111,14 +112,15 @@ export class Chart {
     const {x, y, series} = this.plot;
     this.element.querySelector('.saving').hidden = !series.length;
     if (!series.length) return this.box.replaceChildren(h('p', {class: 'absent'}, this.plot.absent || 'Nothing was recorded for this plot.'));
-    const W = this.width, left = 62, right = W - 14, top = 10, legend = this.legend(series, left, right);
+    const shown = series.filter(line => !this.hidden.has(line.label)), of = shown.length ? shown : series;
+    const points = of.flatMap(line => line.points), ends = p => [p.y, p.low, p.high].filter(v => known(v) && (!y.log || v > 0));
+    const sy = scale(points.flatMap(ends), y.log, null, 6);
+    const left = Math.max(62, 22 + 6.6 * Math.max(0, ...sy.ticks.map(([, label]) => label.length)));  // room for the longest text
+    const W = this.width, right = W - 14, top = 10, legend = this.legend(series, left, right);
     const longest = 6.6 * Math.max(0, ...(x.categories ?? []).map(c => String(c ?? '–').length));  // [px]
     const tilted = longest > (right - left) / (x.categories?.length ?? 1) ? Math.min(.7 * longest, 110) : 0;  // height of names that do not fit beside each other
     const H = Math.max(this.height, legend.height + tilted + 240), bottom = H - 46 - tilted - legend.height;
-    const shown = series.filter(line => !this.hidden.has(line.label)), of = shown.length ? shown : series;
-    const points = of.flatMap(line => line.points), ends = p => [p.y, p.low, p.high].filter(v => known(v) && (!y.log || v > 0));
     const sx = scale(points.map(p => p.x), x.log, x.categories, Math.max(2, Math.floor((right - left) / 80)));
-    const sy = scale(points.flatMap(ends), y.log, null, 6);
     const px = v => left + sx.place(v) * (right - left), py = v => bottom - sy.place(v) * (bottom - top), r2 = v => Math.round(100 * v) / 100;
     const svg = s('svg', {xmlns: space, width: W, height: H, viewBox: `0 0 ${W} ${H}`, role: 'group', 'font-family': 'system-ui, "DejaVu Sans", sans-serif',
       'font-size': 12, 'aria-label': `${y.title} against ${x.title}: ${series.map(line => line.label).join(', ')}`});

@@ -386,6 +386,13 @@ test('large values have short ticks', async () => {
   assert.ok(texts.includes('1e7') && texts.includes('2e7'), texts.join());
 });
 
+test('ticks of a narrow range differ', async () => {
+  const {page} = await edited('narrow', methods => { methods.newton.increments = [0, 1].map(time => ({level: 1, time, energy_released: 5 + 1e-6 * time, steps: 1})); });
+  await page.evaluate(() => document.querySelectorAll('details').forEach(part => { part.open = true; }));
+  const texts = await until('the plot', async () => { const all = await page.locator('#increment-energy .grid text').allTextContents(); return all.length && all; });
+  assert.ok(texts.includes('5.0000002') && texts.includes('5.0000004'), texts.join());
+});
+
 test('dashes tell methods of one solver apart, the width of a line its level', async () => {
   const {page} = await edited('alike', methods => { methods.cascadic.solver = methods.newton.solver; });
   await page.evaluate(() => document.querySelectorAll('details').forEach(part => { part.open = true; }));
