@@ -64,7 +64,9 @@ export function distancePlot(name, caption, height, {measures, rows, absent}, se
   chosen.target = Object.keys(targets).find(t => rows.some(row => known(row[`${t}_${chosen.measure}`]))) || 'own';
   const draw = () => {
     const y = `${chosen.target}_${chosen.measure}`, {cost} = chosen;
-    const why = !rows.length ? absent : rows.some(row => known(row[y])) ? 'No value is above zero, and the axes are logarithmic.' : `No state was compared with ${targets[chosen.target]}.`;
+    const compared = rows.filter(row => known(row[y]));
+    const why = !rows.length ? absent : !compared.length ? `No state was compared with ${targets[chosen.target]}.`
+      : !compared.some(row => known(row[cost])) ? `No state that was compared has its ${costs[cost]}.` : 'No value is above zero, and the axes are logarithmic.';
     chart.draw({x: {title: costs[cost], name: cost, log: true}, y: {title: measures.find(m => m.name === chosen.measure)?.label, name: y, log: true}, absent: why, series: series(cost, y)});
   };
   const pick = (label, part, options) => choice(label, options, chosen[part], value => { chosen[part] = value; draw(); }, `${name}-${part}`);

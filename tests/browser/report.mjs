@@ -207,11 +207,17 @@ test('plots have a line a method, are saved, and follow the choices', async () =
   await page.reload();
   assert.equal(await absent(), 'errors.csv is missing or empty: a run writes it once all its methods have ended.');
 
-  // Within less than a decade a logarithmic axis has the ticks of a linear one.
+  // A logarithmic axis on which fewer than two of 1, 2, 5 times a power of ten lie has the ticks of a linear one.
   fs.writeFileSync(path.join(folder, 'timed/errors.csv'), 'method,level,seconds,iterations,flops,own_rms\npcs,0,1.1,1,1,1.1\npcs,1,1.9,2,2,1.9\n');
   await writeReport('timed');
   await page.reload();
   assert.ok((await page.locator('#distance .grid text').allTextContents()).filter(text => text === '1.4').length === 2);
+
+  fs.writeFileSync(path.join(folder, 'timed/errors.csv'), 'method,level,seconds,own_rms\npcs,0,1.1,1.1\npcs,1,1.9,1.9\n');
+  await writeReport('timed');
+  await page.reload();
+  await page.locator('#distance-cost').selectOption('flops');
+  assert.equal(await absent(), 'No state that was compared has its flops of factorisations.');
 });
 
 test('a table begins with few columns, sorts by every one and is saved', async () => {
