@@ -25,6 +25,7 @@ struct Watch : Observer {
 struct Observed {
   RunData data;
   std::string shown;
+  std::size_t levels_shown;
 };
 
 /// Runs an experiment, which `watch` sees.
@@ -45,8 +46,8 @@ Observed observed(Watch& watch, const Overrides& overrides = {}) {
   REQUIRE(
       client.send(address.request("GET", address.path + "news?version=0&rows=0", "Connection: close\r\n")));
   const std::string answer = client.answer();
-  return {read_run(options.out),
-          nlohmann::json::parse(answer.substr(answer.find("\r\n\r\n") + 4))["outcome"]};
+  const auto news = nlohmann::json::parse(answer.substr(answer.find("\r\n\r\n") + 4));
+  return {read_run(options.out), news["outcome"], news["methods"][0]["levels"].size()};
 }
 
 }  // namespace
@@ -60,6 +61,7 @@ TEST_CASE(
   CHECK(static_cast<std::size_t>(watch.iterations) == run.data.iterations.size());
   CHECK(watch.levels == 2);
   CHECK(run.shown.starts_with("everything converged; the results are in "));
+  CHECK(run.levels_shown == 2);  // which nobody asked for while it ran
 }
 
 TEST_CASE("an observer stops a run") {

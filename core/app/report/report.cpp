@@ -222,7 +222,7 @@ std::string viewer_page(const std::string& title, const Level& level, const Posi
       [&](const std::string& name, const std::string& bytes) { blocks += block_element(name, bytes); });
   SurfaceFields fields = document.fields(0, x);
   add_contact_pressure(fields, pressure);
-  document.widen_ranges({&fields});
+  document.set_ranges({&fields});
   const Json state = document.state("state", x, fields);
   const Json entry = {{"level", 0}, {"status", ""}, {"states", Json::array({state})}};
   const Json method = {{"name", title}, {"levels", Json::array({entry})}};

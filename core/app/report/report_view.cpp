@@ -121,7 +121,7 @@ ReportView view_of(const RunData& run) {
   if (states.empty()) return {nullptr, "", view.notes};
   std::vector<const SurfaceFields*> fields;
   for (const auto& [level, state] : states) fields.push_back(&state.fields);
-  document.widen_ranges(fields);
+  document.set_ranges(fields);
   Json methods = Json::array();
   for (std::size_t m = 0; m < run.methods.size(); ++m) {
     Json entries = Json::array();

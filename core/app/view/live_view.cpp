@@ -64,7 +64,7 @@ void LiveView::iteration(const IterationRow& row, const Positions& x) {
   ++view.iteration;
   view.seconds = row.seconds;
   const double now = clock_.seconds(), pause = std::max(shortest_pause, seconds_to_show_ / share_of_time);
-  if (now - last_heard_ < looked_lately && now - last_shown_ > pause) show(view, row.level, x);
+  if (listened_to() && now - last_shown_ > pause) show(view, row.level, x);
 }
 
 /// The schedule makes the finest level's model of a new load only now, if it is not the level that is being
@@ -80,16 +80,28 @@ void LiveView::show(LevelView& view, int level, const Positions& x, const Eigen:
   view.obstacles = obstacles_;
   view.fields = document_.fields(level, x, obstacles_.get());
   add_contact_pressure(view.fields, pressure);
-  // Levels that ended within narrower ranges are encoded again: their colours were cut off.
-  const bool wider = document_.widen_ranges({&view.fields});
+  std::vector<const SurfaceFields*> shown;
+  for (const auto& [key, other] : levels_) shown.push_back(&other.fields);
+  // Others are encoded again where the ranges grow, since their colours are cut off, and at the end of a
+  // level, since their steps are coarse where the ranges have shrunk.
+  const bool all = document_.set_ranges(shown) || view.status != "running";
   for (auto& [key, other] : levels_)
-    if (&other == &view || (wider && !other.state.is_null())) encode(other);
+    if (&other == &view || (all && other.x.rows() > 0)) other.stale = true;
+  if (listened_to()) encode_stale();
   ++version_;
   last_shown_ = clock_.seconds();
   seconds_to_show_ = watch.seconds();
 }
 
+bool LiveView::listened_to() const { return clock_.seconds() - last_heard_ < looked_lately; }
+
+void LiveView::encode_stale() {
+  for (auto& [key, view] : levels_)
+    if (view.stale) encode(view);
+}
+
 void LiveView::encode(LevelView& view) {
+  view.stale = false;
   if (view.name != view.sent) forget_blocks(view.name);
   view.name = "m" + std::to_string(++encoded_);
   view.state = document_.state(view.name, view.x, view.fields, view.obstacles.get());
@@ -110,7 +122,7 @@ void LiveView::run_finished(const std::string& outcome) {
   std::unique_lock lock(mutex_);
   outcome_ = outcome;
   const long last = ++version_;
-  if (clock_.seconds() - last_heard_ > looked_lately) return;
+  if (!listened_to()) return;
   heard_.wait_for(lock, std::chrono::seconds(5), [&] { return heard_version_ >= last; });
 }
 
@@ -144,6 +156,7 @@ std::string LiveView::news(long version, std::size_t rows) {
     heard_.notify_all();
     return "";
   }
+  encode_stale();  // what ended while nobody listened
   Json methods = Json::array();
   for (std::size_t m = 0; m < methods_.size(); ++m) {
     Json levels = Json::array();

@@ -48,12 +48,15 @@ class LiveView : public Observer {
     Positions x;  // of the state that is shown, without rows at first
     SurfaceFields fields;
     std::shared_ptr<const std::vector<TriangleMesh>> obstacles;  // null for where they were first
+    bool stale = false;                                          // not encoded, or in other colour ranges
     Json state;                                                  // as ViewDocument makes it; null at first
     std::string name;                                            // of its blocks
     std::string sent, sent_before;  // of those that pages know, and may still request
   };
 
   void show(LevelView& view, int level, const Positions& x, const Eigen::VectorXd& pressure = {});
+  bool listened_to() const;
+  void encode_stale();
   void encode(LevelView& view);
   std::string news(long version, std::size_t rows);
   std::string refine();

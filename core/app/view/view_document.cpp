@@ -69,7 +69,7 @@ SurfaceFields ViewDocument::fields(int level, const Positions& x, const Obstacle
   return all;
 }
 
-bool ViewDocument::widen_ranges(const std::vector<const SurfaceFields*>& states) {
+bool ViewDocument::set_ranges(const std::vector<const SurfaceFields*>& states) {
   bool wider = false;
   for (FieldKind& kind : kinds_) {
     std::vector<const Eigen::VectorXd*> values;
@@ -77,9 +77,8 @@ bool ViewDocument::widen_ranges(const std::vector<const SurfaceFields*>& states)
       if (const auto field = state->find(kind.name); field != state->end() && !field->second.isZero(0))
         values.push_back(&field->second);  // the finest level's difference from itself is zero
     if (values.empty()) continue;
-    auto [low, high] = field_range(kind, values, gap_range_);
-    if (kind.high > kind.low) low = std::min(low, kind.low), high = std::max(high, kind.high);
-    wider = wider || low != kind.low || high != kind.high;
+    const auto [low, high] = field_range(kind, values, gap_range_);
+    wider = wider || low < kind.low || high > kind.high;
     kind.low = low, kind.high = high;
   }
   return wider;

@@ -28,9 +28,10 @@ class ViewDocument {
 
   /// The fields that depend on positions only.
   SurfaceFields fields(int level, const Positions& x, const Obstacles* moved = nullptr) const;
-  /// Widens the colour ranges, which are empty at first, to those of typical states, usually the last of each
-  /// level. Returns whether one has changed: states that were encoded before are cut off at its old ends.
-  bool widen_ranges(const std::vector<const SurfaceFields*>& states);
+  /// Sets the colour ranges, which are empty at first, to those of the states, usually the last of each
+  /// level; a field that no state has keeps its range. Returns whether one reaches beyond its old ends, at
+  /// which states that were encoded before are cut off.
+  bool set_ranges(const std::vector<const SurfaceFields*>& states);
   /// Encodes a state; its blocks are named after `name`.
   Json state(const std::string& name, const Positions& x, const SurfaceFields& fields,
              const Obstacles* moved = nullptr);

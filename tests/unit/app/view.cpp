@@ -125,7 +125,7 @@ TEST_CASE("the document names what can be coloured, and blocks of every state") 
   Positions x = levels[0].rest.vertices * 1.1;
   x.col(2) = x.col(0).array().square();
   const SurfaceFields fields = view.fields(0, x);
-  view.widen_ranges({&fields});
+  view.set_ranges({&fields});
   const auto state = view.state("s", x, fields);
   const auto document = view.document("a title", {});
   REQUIRE(document["fields"].size() == 2);  // no contact, no difference from a finest level
@@ -136,7 +136,7 @@ TEST_CASE("the document names what can be coloured, and blocks of every state") 
   CHECK(blocks.at(document["levels"][0]["block"]).size() == 12 * 32);
 }
 
-TEST_CASE("the range of a field's colours grows with the states, and never shrinks") {
+TEST_CASE("a field's colours range over the states that are shown") {
   const std::vector<Level> levels = {square(1)};
   const ViewDocument::Obstacles none_at_all;
   ViewDocument view(levels, none_at_all, false, [](const std::string&, const std::string&) {});
@@ -144,10 +144,13 @@ TEST_CASE("the range of a field's colours grows with the states, and never shrin
     return SurfaceFields{{"stretch", Eigen::VectorXd(Eigen::VectorXd::LinSpaced(4, 1, largest))}};
   };
   const SurfaceFields little = stretched(1.25), much = stretched(1.5);
-  CHECK(view.widen_ranges({&little}));
-  CHECK(view.widen_ranges({&much}));
-  CHECK_FALSE(view.widen_ranges({&little}));
-  CHECK(view.document("a title", {})["fields"][0]["high"] == 1.5);
+  CHECK(view.set_ranges({&little}));
+  CHECK(view.set_ranges({&much}));
+  CHECK_FALSE(view.set_ranges({&little, &much}));
+  CHECK_FALSE(view.set_ranges({&little}));
+  CHECK(view.document("a title", {})["fields"][0]["high"] == 1.25);
+  CHECK_FALSE(view.set_ranges({}));
+  CHECK(view.document("a title", {})["fields"][0]["high"] == 1.25);
 }
 
 TEST_CASE("contact forces are coloured from zero, and not where there are none") {
@@ -157,7 +160,7 @@ TEST_CASE("contact forces are coloured from zero, and not where there are none")
                     [&](const std::string& name, std::string bytes) { blocks[name] = std::move(bytes); });
   SurfaceFields fields = view.fields(0, levels[0].rest.vertices);
   add_contact_pressure(fields, Eigen::Vector4d(0, 2, 4, 4));
-  view.widen_ranges({&fields});
+  view.set_ranges({&fields});
   const auto state = view.state("s", levels[0].rest.vertices, fields);
   const auto document = view.document("a title", {});
   REQUIRE(document["fields"].back()["name"] == "contact_pressure");
