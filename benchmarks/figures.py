@@ -297,11 +297,11 @@ def scale():
     """Exponents are those of the levels with multigrid, from 20,000 vertices on. Only a factorisation analyses a pattern."""
     records = read("scale.json")["rows"]
     multigrid = [r for r in records if r["vertices"] >= 20000]
-    factorised = lambda r: "all" if r not in multigrid else "some" if "analyse" in r["by_phase"] else "none"  # noqa: E731
-    rows = [[str(r["vertices"]), figure(r["iterations"]), factorised(r), figure(r["seconds"], 2), figure(r["total_seconds"], 3),
+    by_factorisation = lambda r: "all" if r not in multigrid else "some" if "analyse" in r["by_phase"] else "none"  # noqa: E731
+    rows = [[str(r["vertices"]), figure(r["iterations"]), by_factorisation(r), figure(r["seconds"], 2), figure(r["total_seconds"], 3),
              figure(r["peak_bytes"] / 1e9, 2)] for r in records]
     rows.append(["exponent", "", "", exponent(multigrid, itemgetter("seconds")), "", exponent(multigrid, itemgetter("peak_bytes"))])
-    lines = table(["vertices", "iterations", "of these factorised", "seconds per iteration", "seconds of all levels", "peak memory [GB]"],
+    lines = table(["vertices", "iterations", "of these by a factorisation", "seconds per iteration", "seconds of all levels", "peak memory [GB]"],
                   rows, "rrlrrr")
     largest = records[-1]
     phases = sorted(largest["by_phase"].items(), key=lambda p: -p[1])
