@@ -356,7 +356,7 @@ def medians_over(other, study, value):
 def scenes_above(study, value, other="cascadic"):
     """Those on which PCS has more than another method, and how many times as much."""
     found = [f"{name} ({figure(ratio)})" for name, ratio in medians_over(other, study, value).items() if ratio > 1]
-    return " and ".join([", ".join(found[:-1]), found[-1]] if len(found) > 1 else found) or "none"
+    return " and ".join([", ".join(found[:-1]), found[-1]] if len(found) > 1 else found) or "no scene"
 
 
 def seconds_of_scenes(fewest, most):
