@@ -193,9 +193,9 @@ class KeyReader {
 
 void ScheduleKey::declare(Declaration<ScheduleKey>& d) {
   d.add("parameter", &ScheduleKey::parameter,
-        "path of the parameter, a number or a list of them but no integer, as for --set, in material, "
-        "energies, contact, obstacles, friction, pins or "
-        "handles; an index or a name selects an item of a list, as in energies.gravity.acceleration")
+        "path of the parameter, a number or a list of numbers, as for --set, in material, energies, contact, "
+        "obstacles, friction, pins or handles; an index or a name selects an item of a list, as in "
+        "energies.gravity.acceleration. Integers cannot change")
       .required();
   d.add("times", &ScheduleKey::times, "pseudo-times, ascending; the scene begins at 0")
       .between(0, 1e9)

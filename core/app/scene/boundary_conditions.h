@@ -10,15 +10,16 @@ std::vector<int> selected_vertices(const VertexSelection& selection, const Level
                                    const Level& coarsest);
 
 /// Appends an error for every pin and handle that selects no vertex of a level, or one that does not exist,
-/// under a load with these parameters. With `only`, looks at the one that this target of a key names, as
-/// errors then name no line of it.
+/// under a load with these parameters. With `only`, checks only the pin or handle that this target of a key
+/// names.
 void check_selections(const Experiment& experiment, const ExperimentParameters& load,
                       const std::vector<Level>& levels, ConfigErrors& errors,
                       const KeyTarget* only = nullptr);
 
 /// Appends an error for every two pins, and every two handles, that select the same vertex of a level and
 /// have different targets for it, under such a load. `placed` has the positions, n×3 [m] for each level,
-/// where those without a transform hold. With `only`, compares that one with the others.
+/// where those without a transform hold. With `only`, compares that one with the others; the messages then
+/// give no lines of pins, because the error is about the key.
 void check_shared_vertices(const Experiment& experiment, const ExperimentParameters& load,
                            const std::vector<Level>& levels, const std::vector<Positions>& placed,
                            ConfigErrors& errors, const KeyTarget* only = nullptr);
