@@ -41,7 +41,8 @@ TEST_CASE("a value of the wrong kind in a sweep's files is named with its file a
   CHECK(said(sweep, "/runs/0/seed", "-1e300") == "\"seed\" must be a whole number, not -1e+300" + another);
   CHECK(said(sweep, "/runs/0/expect", "{\"status\": true}") ==
         "\"status\" must be a text, not true" + another);
-  CHECK(said(sweep, "/runs/0/expect/message", "") == "\"message\" is missing" + another);
+  CHECK(said(sweep, "/runs/0/expect/message", "") == "\"runs[].expect.message\" is missing" + another);
+  CHECK(said(sweep, "/runs/0/expect", "") == "\"runs[].expect.status\" is missing" + another);
 
   const std::string results = "out/runs/base/seed_1/results.json",
                     rerun = "; remove the run's folder, and the sweep runs it again\n";

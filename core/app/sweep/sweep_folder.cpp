@@ -41,7 +41,9 @@ Json SweepFolder::read() const {
     sweep.at<std::string>(run, "name");
     sweep.at<std::string>(run, "folder");
     sweep.at<int>(run, "seed");
-    for (const char* key : {"status", "message"}) sweep.at<std::string>(member_of(run, "expect"), key);
+    const Json& expect = member_of(run, "expect");
+    for (const std::string key : {"status", "message"})
+      if (!sweep.find<std::string>(expect, key)) sweep.refuse("\"runs[].expect." + key + "\" is missing");
   }
   return json;
 }
