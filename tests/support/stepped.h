@@ -6,7 +6,7 @@
 #include "tests/support/solve.h"
 
 /// A scene that its first method solves, with the result of every increment, and the number of intersections
-/// where increments end.
+/// after every iteration and at the end of every increment.
 struct Stepped : Solved, drape::Observer {
   explicit Stepped(const std::string& yaml) : Solved(scene_from(yaml)) {
     levels = experiment.methods[0].second->solve(*scene, *this);
@@ -18,7 +18,15 @@ struct Stepped : Solved, drape::Observer {
   void increment_finished(const drape::IncrementRow& row, const drape::Positions& x) override {
     rows.push_back(row);
     states.push_back(x);
-    for (const auto& contact : scene->model(row.level)->contacts())
+    count_intersections(row.level, x);
+  }
+  void iteration(const drape::IterationRow& row, const drape::Positions& x) override {
+    count_intersections(row.level, x);
+  }
+
+ private:
+  void count_intersections(int level, const drape::Positions& x) {
+    for (const auto& contact : scene->model(level)->contacts())
       intersections += contact->intersections(x).size();
   }
 };
