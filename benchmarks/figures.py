@@ -438,7 +438,6 @@ VALUES = {
     "sphere, time to the preview": lambda: lowest_to_highest(start_by_start("sphere", lambda r: r["seconds_of_preview"])),
     "sphere, later previews": lambda: starts_above("sphere", lambda r: r["seconds_of_preview"]),
     "sphere, time to the end": lambda: lowest_to_highest(start_by_start("sphere", lambda r: r["seconds"])),
-    "sphere.slower": lambda: starts_above("sphere", lambda r: r["seconds"]),
     "sphere, flops over direct": lambda: figure(medians_over("newton", "sphere", TFLOP)["sphere"], 2),
     **{f"{study}, flops over direct from single starts": lambda study=study: lowest_to_highest(start_by_start(study, TFLOP, "newton"))
        for study in ("sphere", "previews")},
