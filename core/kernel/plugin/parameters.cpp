@@ -177,7 +177,7 @@ ConfigNode completed(const ConfigNode& node, const Parameter& p, const void* obj
 
 std::string ParameterType::text() const {
   constexpr const char* words[] = {"number", "integer", "boolean", "text", "section", "node"};
-  const std::string word = words[static_cast<int>(kind)];
+  std::string word = words[static_cast<int>(kind)];
   if (shape == Shape::one) return word;
   return (shape == Shape::list ? "list of " : "map of ") + word + "s";
 }
