@@ -3,6 +3,7 @@
 A function of a record that is not stored raises FileNotFoundError; fill_figures then says so in its place."""
 
 import csv
+import itertools
 import math
 import re
 import statistics
@@ -98,16 +99,16 @@ def sphere(columns):
                  "ll" + "r" * (len(columns) - 1))
 
 
+def rows_of(record):
+    """The rows of a record's first Markdown table, by the names of its columns."""
+    from_table = itertools.dropwhile(lambda line: not line.startswith("|"), (RESULTS / record).read_text().splitlines())
+    cells = [[c.strip() for c in line.strip("|").split("|")] for line in itertools.takewhile(lambda line: line.startswith("|"), from_table)]
+    return [dict(zip(cells[0], row)) for row in cells[2:]]
+
+
 def scenes(study, columns):
     """PCS, the cascadic method and the direct solve, a row a scene: the columns of the study's summary that are asked for."""
-    lines = [line for line in (RESULTS / f"{study}.md").read_text().splitlines() if line.startswith("|")]
-    head = [c.strip() for c in lines[0].strip("|").split("|")]
-    rows = []
-    for line in lines[2:]:
-        cells = [c.strip() for c in line.strip("|").split("|")]
-        if len(cells) != len(head) or cells[0] == "method":
-            break
-        rows.append([cells[0]] + [cells[head.index(c)] for c in columns])
+    rows = [[r["scene"]] + [r[c] for c in columns] for r in rows_of(f"{study}.md")]
     right = "l" + "".join("r" if c in ("preview's flops, relative to cascadic", TOP[-1]) else "l" for c in columns)
     return table(["scene"] + columns, rows, right)
 
@@ -361,10 +362,7 @@ def scenes_above(study, value, other="cascadic"):
 
 def seconds_of_scenes(fewest, most):
     """Of those whose finest level has so many vertices."""
-    rows = [[cell.strip() for cell in line.split("|")[1:-1]] for line in (RESULTS / "scenes.md").read_text().splitlines() if line.startswith("|")]
-    name = dict(enumerate(rows[0]))
-    records = [{name[k]: cell for k, cell in enumerate(row)} for row in rows[2:]]
-    seconds = [float(r["seconds"]) for r in records if fewest <= int(r["vertices"]) <= most]
+    seconds = [float(r["seconds"]) for r in rows_of("scenes.md") if fewest <= int(r["vertices"]) <= most]
     return f"{min(seconds):.0f} to {max(seconds):.0f}"
 
 
