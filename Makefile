@@ -39,7 +39,8 @@ build-tests: setup
 	@$(CONFIGURE) -D DRAPE_TESTS=ON >/dev/null
 	@cmake --build $(BUILD) -j $(JOBS) --target drape_tests
 
-benchmarks: setup  # the benchmark programs, build/bin/drape_bench_*
+# The benchmark programs, build/bin/drape_bench_*.
+benchmarks: setup
 	@$(CONFIGURE) -D DRAPE_BENCHMARKS=ON >/dev/null
 	@cmake --build $(BUILD) -j $(JOBS) --target drape_cli drape_plugins drape_benchmarks
 
@@ -63,13 +64,16 @@ wheel:
 	@CMAKE_BUILD_PARALLEL_LEVEL=$(JOBS) /usr/bin/python3 -m pip wheel -q --no-build-isolation --no-deps --no-index -w build-package .
 	@ls build-package/drape-*.whl
 
-notebooks: python setup  # runs those of docs/guide/notebooks and stores their outputs in them
+# Runs the notebooks of docs/guide/notebooks and stores their outputs in them.
+notebooks: python setup
 	@PYTHONPATH=$(BUILD)/python /usr/bin/python3 tests/python/notebooks.py
 
-demo: build  # drapes a square over a sphere by PCS, shows the preview first
+# Drapes a square over a sphere by PCS, shows the preview first.
+demo: build
 	@configs/demo $(BUILD)/bin/drape
 
-test: build-tests  # runs every test
+# Runs every test.
+test: build-tests
 	@ctest --preset $(PRESET) -j $(JOBS)
 
 # Fuzzes the readers of configs, --set, meshes and checkpoints for FUZZ_SECONDS each (20), or FUZZ_RUNS inputs each;
@@ -84,7 +88,8 @@ fuzz: build
 extremes: build setup
 	@tests/extremes/run $(BUILD)/bin/drape --count $(or $(EXTREMES),500) --seed $(or $(EXTREMES_SEED),1) --jobs $(JOBS)
 
-data: configure  # fetches scanned meshes and makes obstacles of them: data/*.ply (third_party/data/meshes.txt)
+# Fetches scanned meshes and makes obstacles of them: data/*.ply (third_party/data/meshes.txt).
+data: configure
 	@third_party/data/fetch data $(BUILD)
 
 # Runs what the pages state and fills their figures in: about three hours on two idle cores; resumes. STUDIES=sphere,scale chooses
@@ -97,7 +102,8 @@ results: benchmarks
 	@third_party/data/fetch data $(BUILD) || true
 	@benchmarks/run_studies $(if $(filter no,$(LIMIT)),--no-limit) $(BUILD) $(STUDIES)
 
-figures:  # fills the pages' figures in from the stored records; runs nothing
+# Fills the pages' figures in from the stored records; runs nothing.
+figures:
 	@benchmarks/fill_figures
 
 # Pictures of README and docs, from the runs of the study sphere that `make results` has left (FROM=results/studies/COMMIT/ chooses
@@ -111,12 +117,14 @@ pictures: benchmarks data
 	@tests/browser/install $(BUILD)/tests/browser
 	DRAPE_BIN=$(abspath $(BUILD))/bin DRAPE_NODE_MODULES=$(abspath $(BUILD))/tests/browser node docs/pictures/make.mjs $(SPHERE) results/pictures
 
-api:  # pages of the headers that plugins include, by Doxygen
+# Pages of the headers that plugins include, by Doxygen.
+api:
 	@third_party/setup develop
 	@doxygen docs/Doxyfile
 	@echo "build/api/html/index.html"
 
-format:  # checks the layout of the sources
+# Checks the layout of the sources.
+format:
 	@third_party/setup develop
 	@clang-format --dry-run -Werror $(SOURCES)
 
@@ -135,6 +143,7 @@ lint:
 	@run-clang-tidy-16 -quiet -p build-lint -j $(JOBS) -extra-arg=-Wno-ignored-optimization-argument \
 	  -extra-arg=-Wno-unused-command-line-argument '$(LINTED)'
 
-clean:  # removes what was built
+# Removes what was built.
+clean:
 	@[ ! -d build ] || find build/ -mindepth 1 -delete  # build itself may be a mount, as in .devcontainer
 	rm -rf build-package build-debug build-clang build-asan build-tsan build-lint build-fuzz build-single-files
