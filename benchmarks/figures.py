@@ -13,6 +13,7 @@ from records import CONVERGED, RESULTS, WITHOUT_CONTACT, conditions, figure, med
 
 TFLOP = itemgetter("tflop")
 METHODS = ["pcs", "cascadic", "newton"]
+TOLERANCES_AND_STEPS = ["tolerance_1e-2", "tolerance_1e-4", "step_growth_1", "step_growth_3", "step_size_0.01_s", "step_size_1_s"]  # of ablations
 TWO_DRAPES = ["hanging", "draped"]  # the scenes of two_drapes.py
 MEASURED = ["cotton-broad", "wool-tropical", "polyester-tropical", "polyester-faille"]  # their drape coefficients
 FABRICS = [*MEASURED, *(f"{fabric} elastic" for fabric in MEASURED), "11oz-black-denim", "gray-interlock", "tango-red-jet-set", "cotton"]
@@ -65,8 +66,9 @@ def starts_above(study, value):
 
 
 def lowest_to_highest(values):
-    """The range of a figure, for a sentence."""
-    return f"{figure(min(values), 2)} to {figure(max(values), 2)}"
+    """The range of a figure, for a sentence; one figure where the two read alike."""
+    lowest, highest = figure(min(values), 2), figure(max(values), 2)
+    return lowest if lowest == highest else f"{lowest} to {highest}"
 
 
 def iterations(records):
@@ -76,6 +78,10 @@ def iterations(records):
 def plain_name(variation):
     """A variation's name as pages have it; records made before `psd_blend: adaptive` had its name call it "least"."""
     return variation.replace("_", " ").replace("as it is", "defaults").replace("least", "adaptive")
+
+
+def distance_of_previews(records):
+    return median([r["preview"]["distance_rms"] for r in records])
 
 
 def preview(records, measure):
@@ -138,24 +144,47 @@ def table1():
                   "iterations on the finest level"], rows, "lr")
 
 
-def remedies():
-    """Newton iterations of each remedy that is a choice: three small scenes one by one, the sum of the large ones."""
+def iterations_of_remedies():
+    """Newton iterations of each remedy that is a choice: by small scene, and in the sum of the large ones."""
     small, large = {}, {}
     for r in read("hard_remedies.json"):
         scene, remedy = r["run"].split(", ", 1)
+        name = plain_name(remedy)
         if r["sweep"] == "hard_remedies":
-            small.setdefault(remedy, {})[scene.removeprefix("hard_")] = r["iterations"]
+            small.setdefault(name, {})[scene.removeprefix("hard_")] = r["iterations"]
         else:
-            large[remedy] = large.get(remedy, 0) + r["iterations"]
+            large[name] = large.get(name, 0) + r["iterations"]
+    return small, large
+
+
+def remedies():
+    small, large = iterations_of_remedies()
     scenes_of = list(next(iter(small.values())))
-    rows = [[plain_name(remedy)] + [figure(of_scene.get(s)) for s in scenes_of] + [f"{large[remedy]:.0f}" if remedy in large else "–"]
-            for remedy, of_scene in small.items()]
+    rows = [[name] + [figure(of_scene.get(s)) for s in scenes_of] + [f"{large[name]:.0f}" if name in large else "–"]
+            for name, of_scene in small.items()]
     return table(["Newton iterations", *scenes_of, "sphere, cube and tablecloth, PCS and direct"], rows, "lrrrr")
+
+
+def of_large_scenes(*names):
+    """Iterations on the large scenes by these remedies, over those by the defaults."""
+    _, large = iterations_of_remedies()
+    return lowest_to_highest([large[name] / large["defaults"] for name in names])
+
+
+def of_small_scenes(name):
+    small, _ = iterations_of_remedies()
+    return lowest_to_highest([count / small["defaults"][scene] for scene, count in small[name].items()])
 
 
 def named_ablations():
     """The runs by variation and method, and the direct solve's flops by the defaults."""
     return grouped(read("ablations.json"), "variant", "method"), of(runs("ablations", "newton", variant="as_it_is"), "tflop")
+
+
+def over_defaults(value, *variants):
+    """What these variations of the sphere's experiment have over its defaults, for each of the two methods that has both."""
+    named, _ = named_ablations()
+    return lowest_to_highest([value(named[v, m]) / value(named["as_it_is", m]) for v in variants for m in ("pcs", "cascadic") if (v, m) in named])
 
 
 def ablations():
@@ -427,10 +456,9 @@ VALUES = {
     "sphere.seen": lambda: median_seconds("pcs", "seconds_of_preview"),
     "sphere.finished": lambda: median_seconds("pcs", "seconds"),
     "sphere.cascadic": lambda: median_seconds("cascadic", "seconds"),
-    "sphere.distance": lambda: figure(100 * median([r["preview"]["distance_rms"] for r in finished("sphere", "pcs")]), 2),
+    "sphere.distance": lambda: figure(100 * distance_of_previews(finished("sphere", "pcs")), 2),
     "sphere.distance_ratio": lambda: figure(
-        median([r["preview"]["distance_rms"] for r in finished("sphere", "cascadic")])
-        / median([r["preview"]["distance_rms"] for r in finished("sphere", "pcs")]), 2),
+        distance_of_previews(finished("sphere", "cascadic")) / distance_of_previews(finished("sphere", "pcs")), 2),
     "sphere, previews": lambda: lowest_to_highest(start_by_start("sphere", lambda r: r["preview"]["distance_rms"])),
     "sphere, level 1": lambda: lowest_to_highest(start_by_start("sphere", lambda r: r["level_1"]["distance_rms"])),
     "sphere, time to the preview": lambda: lowest_to_highest(start_by_start("sphere", lambda r: r["seconds_of_preview"])),
@@ -454,6 +482,20 @@ VALUES = {
        for study in ("previews", "four_levels")},
     "iterations of the coarse matrix": lambda: lowest_to_highest([matrix / galerkin for matrix, galerkin in zip(
         *(iterations(runs("ablations", "pcs_loop", variant=variant))[:-1] for variant in ("coarse_matrix", "as_it_is")))]),
+    **{f"{what}, {measure} over the defaults": lambda variants=variants, value=value: over_defaults(value, *variants)
+       for what, variants in (("not relaxed", ["not_relaxed"]), ("first step of 0.01 s", ["step_size_0.01_s"]),
+                              ("tolerance and step size", TOLERANCES_AND_STEPS),
+                              ("other tolerances and steps", [v for v in TOLERANCES_AND_STEPS if v != "step_size_0.01_s"]))
+       for measure, value in (("distance", distance_of_previews), ("flops", lambda r: of(r, "tflop")))},
+    "flops of the coarse matrix over direct": lambda: figure(of(runs("ablations", "pcs_loop", variant="coarse_matrix"), "tflop") / named_ablations()[1], 2),
+    "near the defaults, large scenes": lambda: of_large_scenes("absolute, adaptive", "step size 1", "static", "step growth 3"),
+    "full or no projection, large scenes": lambda: of_large_scenes("clamp, full", "absolute, full", "no projection"),
+    "κ ten times, small scenes": lambda: of_small_scenes("κ ten times"),
+    **{f"{method} on the pinned square, distance": lambda method=method, variant=variant: figure(
+        distance_of_previews(finished("previews", method, "pinned_square", variant)) / distance_of_previews(finished("previews", "cascadic", "pinned_square")), 2)
+       for method, variant in (("pcs", "default"), ("pcs_loop", None))},
+    **{f"{what} of the sphere, four levels": lambda value=value: figure(medians_over("cascadic", "four_levels", value)["sphere"], 2)
+       for what, value in (("finest iterations", lambda r: r["iterations"][-1]), ("flops", TFLOP))},
     "changes with more iterations": longer_changes,
     **{f"{key} of all changes": lambda key=key: " and ".join(figure(sum_of_changes(method, key)) for method in ("pcs", "newton"))
        for key in ("iterations", "seconds")},
