@@ -3,7 +3,7 @@
 set(git git -C ${SOURCE_DIR} -c safe.directory=*)
 execute_process(COMMAND ${git} describe --always --tags OUTPUT_VARIABLE COMMIT OUTPUT_STRIP_TRAILING_WHITESPACE ERROR_QUIET)
 execute_process(COMMAND ${git} diff --quiet HEAD -- . ":(exclude)*.md" ":(exclude)docs" ":(exclude)tests"
-                ":(exclude)benchmarks/results" ":(exclude)benchmarks/fill_figures" ":(exclude)benchmarks/figures.py"
+                ":(exclude)plugins/*/test_*.cpp" ":(exclude)benchmarks/results" ":(exclude)benchmarks/fill_figures" ":(exclude)benchmarks/figures.py"
                 ":(exclude)benchmarks/plots.py" RESULT_VARIABLE changed ERROR_QUIET)
 if(NOT COMMIT)
   set(COMMIT unknown)
