@@ -1,4 +1,4 @@
-"""Prototypes that tests, the guide and the benchmark share."""
+"""Prototypes that the tests and the benchmark share."""
 
 import numpy
 import scipy.sparse
@@ -129,22 +129,8 @@ class Midpoint(drape.Refiner):
         return scipy.sparse.vstack([scipy.sparse.identity(n), half]).tocsr()
 
 
-def newton_step(model, x, shift):
-    """The state after a step of projected Newton with backtracking on the free vertices, and the length of the step; `shift`
-    is added to the Hessian's diagonal [N/m]."""
-    free = numpy.flatnonzero(numpy.repeat(~model.fixed, 3))
-    g = model.gradient(x).ravel()
-    h = scipy.sparse.csc_matrix(model.hessian(x, "clamp"))[free][:, free]
-    p = numpy.zeros_like(g)
-    p[free] = -scipy.sparse.linalg.spsolve(h + shift * scipy.sparse.identity(len(free)), g[free])
-    energy, length = model.energy(x), 1.0
-    while model.energy(x + length * p.reshape(-1, 3)) > energy + 1e-4 * length * (g @ p):
-        length /= 2
-    return x + length * p.reshape(-1, 3), length
-
-
 class ProjectedNewton(drape.Solver):
-    """Projected Newton with backtracking, level after level, each from the one before."""
+    """Projected Newton with backtracking on the free vertices, level after level, each from the one before."""
 
     parameters = {"tolerance": 1e-3, "most": 300}
 
@@ -160,8 +146,15 @@ class ProjectedNewton(drape.Solver):
                 return
 
     def minimise(self, problem, model, x):
+        free = numpy.flatnonzero(numpy.repeat(~model.fixed, 3))
         for _ in range(self.most):
-            x, length = newton_step(model, x, 1e-6)
+            g, p = model.gradient(x).ravel(), numpy.zeros(3 * len(x))
+            h = scipy.sparse.csc_matrix(model.hessian(x, "clamp"))[free][:, free]
+            p[free] = -scipy.sparse.linalg.spsolve(h + 1e-6 * scipy.sparse.identity(len(free)), g[free])
+            energy, length = model.energy(x), 1.0
+            while model.energy(x + length * p.reshape(-1, 3)) > energy + 1e-4 * length * (g @ p):
+                length /= 2
+            x = x + length * p.reshape(-1, 3)
             if not problem.iteration(x, step_length=length):
                 return x, "cancelled"
             if model.force_residual(x) < self.tolerance:

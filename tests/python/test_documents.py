@@ -42,28 +42,27 @@ def test_everything_public_has_a_docstring():
             assert inspect.getdoc(thing), name
 
 
-def blocks_of(page):
-    text = (SOURCE / page).read_text()
-    return re.findall(r"```python\n(.*?)```", text, re.S)
+@pytest.fixture
+def at_source(monkeypatch):
+    """For code that is run where the sources are, and draws into no window."""
+    pytest.importorskip("matplotlib").use("Agg")
+    monkeypatch.chdir(SOURCE)
 
 
 @pytest.mark.parametrize("page", ["README.md", "docs/guide/python.md", "docs/extend/from-python.md"])
-def test_the_code_of_a_page_runs(page, monkeypatch, tmp_path):
-    matplotlib = pytest.importorskip("matplotlib")
-    matplotlib.use("Agg")
+def test_the_code_of_a_page_runs(page, at_source, monkeypatch, tmp_path):
     monkeypatch.setattr("webbrowser.open", lambda url: None)
-    monkeypatch.chdir(SOURCE)
     monkeypatch.setattr("tempfile.tempdir", str(tmp_path))
-    code = blocks_of(page)
+    code = re.findall(r"```python\n(.*?)```", (SOURCE / page).read_text(), re.S)
     assert code
     exec(compile("\n".join(code), page, "exec"), {"__name__": "page"})
 
 
 @pytest.mark.parametrize("notebook", NOTEBOOKS, ids=lambda path: path.stem)
-def test_a_notebook_runs_and_has_its_outputs(notebook, monkeypatch, capsys):
-    matplotlib = pytest.importorskip("matplotlib")
-    matplotlib.use("Agg")
-    monkeypatch.chdir(SOURCE)
+def test_a_notebook_runs_and_has_its_outputs(notebook, at_source, capsys):
+    def words(text):
+        return re.findall(r"[^\W\d]{2,}", text)
+
     text = notebook.read_text()
     assert len(text) < 300_000
     for place in (str(SOURCE), str(pathlib.Path.home()), "/tmp/", "site-packages", "text/html"):
@@ -77,7 +76,3 @@ def test_a_notebook_runs_and_has_its_outputs(notebook, monkeypatch, capsys):
         exec(compile("".join(cell["source"]), f"{notebook.name}, code cell {number}", "exec"), names)
         stored = "".join("".join(output["text"]) for output in cell["outputs"] if output["output_type"] == "stream")
         assert words(stored) == words(capsys.readouterr().out), f"code cell {number}: `make notebooks` stores the outputs"
-
-
-def words(text):
-    return re.findall(r"[^\W\d]{2,}", text)
