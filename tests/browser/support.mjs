@@ -6,12 +6,14 @@ import {createRequire} from 'node:module';
 import os from 'node:os';
 import path from 'node:path';
 import nodeTest, {after} from 'node:test';
+import {pathToFileURL} from 'node:url';
 
 const drape = path.join(process.env.DRAPE_BIN, 'drape');
 export const source = path.resolve(path.dirname(new URL(import.meta.url).pathname), '../..');
 
 export const contactConfig = path.join(source, 'tests/configs/data/contact.yaml');
 
+const load = createRequire(path.join(process.env.DRAPE_NODE_MODULES, '/'));
 const deadline = 600e3;  // [ms], many times what anything that a test waits for takes
 const commands = new Set(), complaints = [];  // of pages from the disk in the test under way
 let chrome, closes = false;
@@ -54,6 +56,9 @@ export async function until(what, condition) {
   }
 }
 
+export const addressOf = (...parts) => pathToFileURL(path.join(...parts)).href;
+export const jsonIn = (...parts) => JSON.parse(fs.readFileSync(path.join(...parts)));
+
 export function scratch() {
   const folder = fs.mkdtempSync(path.join(os.tmpdir(), 'drape_browser_'));
   process.on('exit', () => fs.rmSync(folder, {recursive: true, force: true}));
@@ -88,8 +93,7 @@ export async function run(folder, ...args) {
 
 /// Chromium, one for all tests of a file.
 export function browser() {
-  const {chromium} = createRequire(path.join(process.env.DRAPE_NODE_MODULES, '/'))('playwright-core');
-  chrome ??= chromium.launch({
+  chrome ??= load('playwright-core').chromium.launch({
     executablePath: process.env.DRAPE_CHROMIUM || '/usr/bin/chromium', timeout: deadline,
     args: ['--headless=new', '--no-sandbox', '--use-gl=angle', '--use-angle=swiftshader', '--enable-unsafe-swiftshader',
       '--disable-background-networking', '--disable-component-update', '--disable-sync', '--no-first-run'],
@@ -129,21 +133,24 @@ export async function openPage(url, options = {}) {
   return {page, heard, state: () => page.evaluate(() => window.drapeViewer.state())};
 }
 
-/// Checks that a page, with all of it unfolded and so many plots drawn, fits its width and has no serious fault; closes it.
-export async function checkWhole(page, plots) {
-  await page.evaluate(() => document.querySelectorAll('details').forEach(part => { part.open = true; }));
-  await until('the plots are drawn', async () => await page.evaluate(() => document.querySelectorAll('.plot svg').length) >= plots);
-  assert.ok(await page.evaluate(() => document.documentElement.scrollWidth <= innerWidth));
-  assert.deepEqual(await faultsOf(page), []);
-  await page.context().close();
+export const textOf = (page, selector) => page.locator(selector).textContent();
+
+export function unfold(page) {
+  return page.evaluate(() => document.querySelectorAll('details').forEach(part => { part.open = true; }));
 }
 
-/// Serious faults of accessibility that axe-core finds in a page.
-async function faultsOf(page) {
-  const {source} = createRequire(path.join(process.env.DRAPE_NODE_MODULES, '/'))('axe-core');
-  await page.evaluate(source);
+/// Checks that a page, with all of it unfolded and so many plots drawn, fits its width and has no serious fault of
+/// accessibility; closes it.
+export async function checkWhole(page, plots) {
+  await unfold(page);
+  await until('the plots are drawn', async () => await page.evaluate(() => document.querySelectorAll('.plot svg').length) >= plots);
+  assert.ok(await page.evaluate(() => document.documentElement.scrollWidth <= innerWidth));
+  await page.evaluate(load('axe-core').source);
   const {violations} = await page.evaluate(() => window.axe.run());
-  return violations.filter(fault => ['serious', 'critical'].includes(fault.impact)).map(fault => `${fault.id}: ${fault.nodes.map(node => node.html).join(' ').slice(0, 300)}`);
+  const faults = violations.filter(fault => ['serious', 'critical'].includes(fault.impact))
+    .map(fault => `${fault.id}: ${fault.nodes.map(node => node.html).join(' ').slice(0, 300)}`);
+  assert.deepEqual(faults, []);
+  await page.context().close();
 }
 
 /// Whether all of an element is on the first screen, and the page is no wider than the screen.
@@ -158,6 +165,11 @@ export function onFirstScreen(page, selector) {
 export async function downloaded(page, button) {
   const [download] = await Promise.all([page.waitForEvent('download'), page.locator(button).click()]);
   return {name: download.suggestedFilename(), bytes: fs.readFileSync(await download.path())};
+}
+
+/// What the JSON button of a plot or a table saves.
+export async function savedRows(page, part) {
+  return JSON.parse((await downloaded(page, part + ' button:text-is("JSON")')).bytes);
 }
 
 export const screens = ['light', 'dark'].flatMap(colorScheme => [1200, 400].map(width => ({colorScheme, viewport: {width, height: 800}})));

@@ -3,8 +3,8 @@ import assert from 'node:assert/strict';
 import fs from 'node:fs';
 import path from 'node:path';
 import {before} from 'node:test';
-import {pathToFileURL} from 'node:url';
-import {checkWhole, contactConfig, downloaded, drawnShare, listenTo, newPage, onFirstScreen, run, scratch, screens, source, test, until} from './support.mjs';
+import {addressOf, checkWhole, contactConfig, downloaded, drawnShare, jsonIn, listenTo, newPage, onFirstScreen, run, savedRows,
+  scratch, screens, source, test, textOf, unfold, until} from './support.mjs';
 
 const folder = scratch();
 
@@ -18,9 +18,10 @@ async function open(name, options = {}) {
   listenTo(page);
   const session = await page.context().newCDPSession(page);
   await session.send('Performance.enable', {timeDomain: 'threadTicks'});
-  await page.goto(pathToFileURL(path.join(folder, name)).href);
+  await page.goto(addressOf(folder, name));
   /// What the page's thread has worked since it was opened [s].
-  const work = async () => (await session.send('Performance.getMetrics')).metrics.find(metric => metric.name === 'TaskDuration').value;
+  const work = async () =>
+    (await session.send('Performance.getMetrics')).metrics.find(metric => metric.name === 'TaskDuration').value;
   return {page, work};
 }
 
@@ -32,7 +33,7 @@ test('24 runs fit one screen of thumbnails, and nothing scrolls sideways', async
     assert.ok(await work() < 2, `${await work()} s`);
     assert.ok(await onFirstScreen(page, '#matrix'), `at ${screen.viewport.width}`);
     assert.ok(await drawnShare(page, '#matrix') > .1);
-    assert.equal(await page.locator('#counts').textContent(), '24 runs of 8 variations: 24 converged.');
+    assert.equal(await textOf(page, '#counts'), '24 runs of 8 variations: 24 converged.');
     await checkWhole(page, 2);
   }
 });
@@ -42,10 +43,11 @@ test('a value is shown against a parameter: medians, with ranges over starts', a
   await page.locator('#quantity').selectOption('iterations');
   await page.locator('#parameter-key').selectOption('levels');
   assert.match(await page.locator('#parameter svg').getAttribute('aria-label'), /^Newton iterations against levels: pcs, refiner loop/);
-  const rows = JSON.parse((await downloaded(page, '#parameter button:text-is("JSON")')).bytes);
+  const rows = await savedRows(page, '#parameter');
   assert.equal(rows.length, 16);  // two methods, eight variations
-  const results = seed => JSON.parse(fs.readFileSync(path.join(folder, `sweep/runs/refiner=loop,levels=1,step_growth=1.5/seed_${seed}/results.json`)));
-  const iterations = [1, 2, 3].map(seed => results(seed).methods.pcs.levels[0].iterations).sort((a, b) => a - b);
+  const runs = path.join(folder, 'sweep/runs/refiner=loop,levels=1,step_growth=1.5');
+  const iterations = [1, 2, 3].map(seed => jsonIn(runs, `seed_${seed}/results.json`).methods.pcs.levels[0].iterations)
+    .sort((a, b) => a - b);
   const row = rows.find(each => each.series === 'pcs, refiner loop, step_growth 1.5' && each.levels === 1);
   assert.deepEqual([row.low, row.iterations, row.high, row.runs], [...iterations, 3]);
   assert.match(await page.locator('.tile .value').first().textContent(), new RegExp(`^(${iterations.join('|')})$`));
@@ -53,9 +55,9 @@ test('a value is shown against a parameter: medians, with ranges over starts', a
 
 test('distance against time is the median over starts at equal cost, between the lowest and the highest', async () => {
   const {page} = await open('sweep/report.html');
-  await page.evaluate(() => document.querySelectorAll('details').forEach(part => { part.open = true; }));
+  await unfold(page);
   await page.locator('#errors-cost').selectOption('iterations');
-  const rows = JSON.parse((await downloaded(page, '#errors button:text-is("JSON")')).bytes);
+  const rows = await savedRows(page, '#errors');
   const name = 'refiner=loop,levels=2,step_growth=1.5', curve = rows.filter(row => row.series === name + ', pcs');
   assert.equal(curve.length, 40);
   curve.forEach((point, k) => {
@@ -64,29 +66,30 @@ test('distance against time is the median over starts at equal cost, between the
     assert.ok(k === 0 || point.iterations > curve[k - 1].iterations);
   });
   // It ends where the last of the three starts does.
-  const ends = [1, 2, 3].map(seed => fs.readFileSync(path.join(folder, `sweep/runs/${name}/seed_${seed}/errors.csv`), 'utf8').split('\n')
-    .filter(line => line.startsWith('pcs,')).map(line => Number(line.split(',')[4])).pop());
+  const errors = seed => fs.readFileSync(path.join(folder, `sweep/runs/${name}/seed_${seed}/errors.csv`), 'utf8').split('\n');
+  const ends = [1, 2, 3].map(seed => Number(errors(seed).findLast(line => line.startsWith('pcs,')).split(',')[4]));
   assert.equal(curve.at(-1).iterations, Math.max(...ends));
 });
 
 test('two sweeps stay apart, and what has no results is found by its status', async () => {
   fs.cpSync(path.join(folder, 'sweep'), path.join(folder, 'again'), {recursive: true});
-  const file = path.join(folder, 'again/sweep.json'), sweep = JSON.parse(fs.readFileSync(file));
+  const sweep = jsonIn(folder, 'again/sweep.json');
   Object.assign(sweep.runs[0], {status: 'failed', exit_code: 124});
-  fs.writeFileSync(file, JSON.stringify({...sweep, sweep: 'again'}));
+  fs.writeFileSync(path.join(folder, 'again/sweep.json'), JSON.stringify({...sweep, sweep: 'again'}));
   await run(folder, 'report', 'sweep', 'again', '-o', 'both.html');
   const {page} = await open('both.html');
-  const rows = JSON.parse((await downloaded(page, '#parameter button:text-is("JSON")')).bytes);
+  const rows = await savedRows(page, '#parameter');
   assert.ok(rows.length > 0 && rows.every(row => row.runs <= 3));
   await page.locator('#filter').fill('status=timeout');
-  assert.equal(await page.locator('#matching').textContent(), '1 of 48 runs');
+  assert.equal(await textOf(page, '#matching'), '1 of 48 runs');
 });
 
 test('plots keep their height above a long legend, and tables their chooser of columns', async () => {
   const {page} = await open('sweep/report.html', screens[1]);
-  await page.evaluate(() => document.querySelectorAll('details').forEach(part => { part.open = true; }));
-  await until('the plot', () => page.locator('#errors .grid line').count());
-  assert.ok(await page.locator('#errors .grid line').evaluateAll(all => Math.max(...all.map(l => l.y2.baseVal.value - l.y1.baseVal.value))) > 150);
+  await unfold(page);
+  const grid = page.locator('#errors .grid line');
+  await until('the plot', () => grid.count());
+  assert.ok(await grid.evaluateAll(all => Math.max(...all.map(l => l.y2.baseVal.value - l.y1.baseVal.value))) > 150);
   await page.locator('#table details button').click();
   await page.locator('#filter').fill('pcs');
   assert.equal(await page.locator('#table summary').count(), 1);
@@ -94,38 +97,39 @@ test('plots keep their height above a long legend, and tables their chooser of c
 
 test('the table sorts and filters, by medians or by run, and compares within one physics only', async () => {
   const {page} = await open('sweep/report.html');
-  assert.equal(await page.locator('#table tbody tr').count(), 16);
+  const rows = page.locator('#table tbody tr'), parameter = page.locator('#parameter .series');
+  assert.equal(await rows.count(), 16);
   const lines = (await downloaded(page, '#table button:text-is("CSV")')).bytes.toString().trim().split('\n');
   assert.equal(new Set(lines.map(line => line.replace(/"[^"]*"/g, '').split(',').length)).size, 1);
   await page.locator('#medians').uncheck();
-  assert.equal(await page.locator('#table tbody tr').count(), 48);
-  const shown = async () => [await page.locator('.tile').count(), await page.locator('#table tbody tr').count(), await page.locator('#matching').textContent()];
-  await page.locator('#filter').fill('levels>=2 seed!=3 method=pcs');
-  assert.deepEqual(await shown(), [8, 8, '8 of 24 runs']);
-  assert.match(await page.locator('#parameter svg').getAttribute('aria-label'), /: pcs, levels 2, step_growth 1.5, pcs, levels 2, step_growth 3$/);
-  assert.equal(new Set(await page.locator('#parameter .series').evaluateAll(all => all.map(line => line.getAttribute('stroke')))).size, 2);
-  await page.locator('#filter').fill('^lo+p$ step_growth=3 levels=1');
-  assert.deepEqual(await shown(), [3, 6, '3 of 24 runs']);
-  await page.locator('#filter').fill('preview_seconds<100 levels=1');  // which have no preview
-  assert.deepEqual(await shown(), [0, 0, '0 of 24 runs']);
-  await page.locator('#filter').fill('(unfinished');
-  assert.deepEqual(await shown(), [0, 0, '0 of 24 runs']);
-  await page.locator('#filter').fill('midpoint newton');
-  assert.deepEqual(await shown(), [12, 12, '12 of 24 runs']);
+  assert.equal(await rows.count(), 48);
+  const shows = async (filter, tiles, count) => {
+    await page.locator('#filter').fill(filter);
+    assert.deepEqual([await page.locator('.tile').count(), await rows.count()], [tiles, count]);
+    assert.equal(await textOf(page, '#matching'), `${tiles} of 24 runs`);
+  };
+  await shows('levels>=2 seed!=3 method=pcs', 8, 8);
+  assert.match(await page.locator('#parameter svg').getAttribute('aria-label'),
+    /: pcs, levels 2, step_growth 1.5, pcs, levels 2, step_growth 3$/);
+  assert.equal(new Set(await parameter.evaluateAll(all => all.map(line => line.getAttribute('stroke')))).size, 2);
+  await shows('^lo+p$ step_growth=3 levels=1', 3, 6);
+  await shows('preview_seconds<100 levels=1', 0, 0);  // which have no preview
+  await shows('(unfinished', 0, 0);
+  await shows('midpoint newton', 12, 12);
   const seconds = async () => (await page.locator('#table td[data-name="time [s]"]').allTextContents()).map(Number);
   await page.locator('#table [data-column="seconds"] button').click();
   const sorted = await seconds();
   assert.deepEqual(sorted, [...sorted].sort((a, b) => a - b));
   await page.locator('#table [data-column="seconds"] button').click();
   assert.deepEqual(await seconds(), [...sorted].reverse());
-  const rows = JSON.parse((await downloaded(page, '#table button:text-is("JSON")')).bytes);
-  assert.deepEqual(rows.map(row => row.method), Array(12).fill('newton'));
-  assert.ok(rows.every(row => row.refiner === 'midpoint' && Number.isInteger(row.seed) && Number.isInteger(row.levels)));
+  const saved = await savedRows(page, '#table');
+  assert.deepEqual(saved.map(row => row.method), Array(12).fill('newton'));
+  assert.ok(saved.every(row => row.refiner === 'midpoint' && Number.isInteger(row.seed) && Number.isInteger(row.levels)));
 
   // Of two runs with other energies neither is the best.
-  const quick = [contactConfig, '--quiet', '--no-report', '--threads', '1', '--set', 'snapshots=0', '--set', 'newton.force_tolerance=0.1'];
-  await run(folder, 'run', ...quick, '-o', 'soft', '--set', 'material.bending_modulus=1e4');
-  await run(folder, 'run', ...quick, '-o', 'stiff', '--set', 'material.bending_modulus=1e6');
+  for (const [name, modulus] of [['soft', '1e4'], ['stiff', '1e6']])
+    await run(folder, 'run', contactConfig, '--quiet', '--no-report', '--threads', '1', '--set', 'snapshots=0', '-o', name,
+      '--set', 'newton.force_tolerance=0.1', '--set', 'material.bending_modulus=' + modulus);
   await run(folder, 'report', 'soft', 'stiff', '-o', 'two.html');
   const two = await open('two.html');
   assert.equal(await two.page.locator('#table tbody tr').count(), 2);
