@@ -7,6 +7,7 @@ import copy
 import json
 import math
 import random
+from dataclasses import dataclass
 
 FALLING = {"cloth": {"shape": "square", "side": 0.3, "columns": 6, "rows": 6},
            "start": {"translate": [-0.15, -0.15, 0.13], "perturbation": 1e-3},
@@ -38,17 +39,33 @@ PULLED = {"cloth": {"shape": "polygon", "vertices": 40,
           "contact": ["ipc"],
           "obstacles": [{"meshed_shape": "box", "size": [0.1, 0.1, 0.1], "translate": [0.15, 0.15, -0.1]}]}
 SCENES = [FALLING, HUNG, DRAGGED, PULLED]
-METHODS = ["pcs", "cascadic", "newton"]
 
 
 class Plugin:
-    """A step of a path: the plugin's map in a list (or in a place of its own)."""
+    """A step of a path: a plugin's map in a list, or in a place of its own."""
 
     def __init__(self, name, section):
         self.name, self.section = name, section
 
     def __str__(self):
         return self.name
+
+    def is_in(self, entry):
+        return entry == self.name or isinstance(entry, dict) and entry.get("type") == self.name
+
+    def place(self, scene, kind, rng):
+        """The plugin's map in the scene: the one that is there, or a new one."""
+        fresh = {"type": self.name, **filled(self.section, rng)}
+        if kind == "methods":
+            return scene["methods"].setdefault(self.name, {})
+        if kind not in ("energies", "contact", "metrics"):
+            scene[kind] = fresh
+            return fresh
+        entries = scene.setdefault(kind, [])
+        k = next((k for k, entry in enumerate(entries) if self.is_in(entry)), len(entries))
+        if k == len(entries) or entries[k] == self.name:
+            entries[k:k + 1] = [fresh]
+        return entries[k]
 
 
 class Obstacle(Plugin):
@@ -58,10 +75,28 @@ class Obstacle(Plugin):
         """Those that tell its items from another model's."""
         return [rule["required"][0] for rule in self.section["allOf"][0]["anyOf"]]
 
+    def is_in(self, entry):
+        return any(key in entry for key in self.keys())
 
+    def place(self, scene, kind, rng):
+        """An obstacle of the contact model in the scene: one that is there, or a new one with its model."""
+        there = [item for item in scene.setdefault(kind, []) if self.is_in(item)]
+        if there:
+            return rng.choice(there)
+        words = [(key, alternatives(self.section["properties"][key])[0].get("enum")) for key in self.keys()]
+        key, enum = next(pair for pair in words if pair[1])  # the others name files
+        scene[kind].append({key: rng.choice(enum)})
+        models = scene.setdefault("contact", [])
+        if not any(super(Obstacle, self).is_in(model) for model in models):
+            models.append(self.name)
+        return scene[kind][-1]
+
+
+@dataclass
 class Parameter:
-    def __init__(self, path, schema, nullable):
-        self.path, self.schema, self.nullable = path, schema, nullable
+    path: tuple  # of keys, plugins, and None for an item of a list
+    schema: dict
+    nullable: bool
 
     def __str__(self):
         return ".".join("[]" if step is None else str(step) for step in self.path)
@@ -74,13 +109,20 @@ class Parameter:
             size = self.schema.get("minItems", 1)
             lists = [[v] * size for v in values]
             if size > 1 and len(values) > 1:
-                lists += [[values[0]] * (size - 1) + [values[1]], [values[1]] + [values[0]] * (size - 1)]
+                low, high = values[:2]
+                lists += [[low] * (size - 1) + [high], [high] + [low] * (size - 1)]
             values = lists
         return values + ([None] if self.nullable else [])
 
 
-def ends(s):
-    """The smallest and the largest number that a schema allows; every number has both bounds (tests/conformance/bounds.cpp)."""
+def scalar_extremes(s):
+    """Every word; of numbers the smallest and the largest: every number has both bounds (tests/conformance/bounds.cpp)."""
+    if "enum" in s:
+        return list(s["enum"])
+    if s.get("type") == "boolean":
+        return [False, True]
+    if s.get("type") not in ("number", "integer"):
+        return []
     integer = s["type"] == "integer"
     low, high = s.get("minimum"), s.get("maximum")
     if "exclusiveMinimum" in s:
@@ -89,15 +131,7 @@ def ends(s):
     if "exclusiveMaximum" in s:
         bound = s["exclusiveMaximum"]
         high = bound - 1 if integer else math.nextafter(bound, -math.inf)
-    return (int(low), int(high)) if integer else (float(low), float(high))
-
-
-def scalar_extremes(s):
-    if "enum" in s:
-        return list(s["enum"])
-    if s.get("type") == "boolean":
-        return [False, True]
-    return list(ends(s)) if s.get("type") in ("number", "integer") else []
+    return [int(low), int(high)] if integer else [float(low), float(high)]
 
 
 def alternatives(schema):
@@ -115,17 +149,14 @@ def parameters_of(schema, path=()):
     """Every parameter below, those of plugins among them."""
     options = alternatives(schema)
     if path == ("obstacles",):
-        for o in alternatives(schema["items"]):
-            step = Obstacle(o["description"].split(":")[0].split()[-1], o)
-            for key, s in o["properties"].items():
-                yield from parameters_of(s, path + (step, key))
-        return
-    if any(plugin_name(o) for o in options):
-        for o in options:
-            if plugin_name(o):
-                for key, s in o["properties"].items():
-                    if key != "type":
-                        yield from parameters_of(s, path + (Plugin(plugin_name(o), o), key))
+        plugins = [Obstacle(o["description"].split(":")[0].split()[-1], o) for o in alternatives(schema["items"])]
+    else:
+        plugins = [Plugin(plugin_name(o), o) for o in options if plugin_name(o)]
+    for plugin in plugins:
+        for key, s in plugin.section["properties"].items():
+            if key != "type":
+                yield from parameters_of(s, path + (plugin, key))
+    if plugins:
         return
     nullable = any(o.get("type") == "null" for o in options)
     for o in options:
@@ -135,8 +166,8 @@ def parameters_of(schema, path=()):
             if isinstance(o.get("additionalProperties"), dict):  # a map by name, as the methods are
                 yield from parameters_of(o["additionalProperties"], path)
         elif o.get("type") == "array" and any(a.get("type") == "object" for a in alternatives(o["items"])):
-            plugins = any(plugin_name(a) for a in alternatives(o["items"]))
-            yield from parameters_of(o["items"], path if plugins else path + (None,))
+            of_plugins = any(plugin_name(a) for a in alternatives(o["items"]))
+            yield from parameters_of(o["items"], path if of_plugins else path + (None,))
         elif o.get("type") != "null":
             parameter = Parameter(path, o, nullable)
             if parameter.extremes():
@@ -144,71 +175,31 @@ def parameters_of(schema, path=()):
 
 
 def filled(section, rng):
-    """The least that a section needs."""
+    """The least that a section needs, but for a plugin's type."""
     made = {}
     for key in section.get("required", []):
         s = alternatives(section["properties"][key])[0]
-        if s.get("type") == "array" and s["items"].get("type") == "object":
-            made[key] = [filled(s["items"], rng)]
-        elif s.get("type") == "array":
-            made[key] = [0.1] * s.get("minItems", 1)
-        elif "enum" in s:
-            made[key] = rng.choice(s["enum"])
-        else:
-            made[key] = 0.1
+        if s.get("type") == "array":
+            made[key] = [filled(s["items"], rng)] if s["items"].get("type") == "object" else [0.1] * s.get("minItems", 1)
+        elif key != "type":
+            made[key] = rng.choice(s["enum"]) if "enum" in s else 0.1
     return made
-
-
-def in_plugin(scene, kind, plugin, rng):
-    """The plugin's map in the scene: the one that is there, or a new one."""
-    fresh = {"type": plugin.name, **filled({**plugin.section, "required": [
-        k for k in plugin.section.get("required", []) if k != "type"]}, rng)}
-    if kind == "methods":
-        return scene["methods"].setdefault(plugin.name, {})
-    if kind in ("energies", "contact", "metrics"):
-        entries = scene.setdefault(kind, [])
-        for k, entry in enumerate(entries):
-            if entry == plugin.name:
-                entries[k] = fresh
-            if entry == plugin.name or isinstance(entry, dict) and entry["type"] == plugin.name:
-                return entries[k]
-        entries.append(fresh)
-        return fresh
-    scene[kind] = fresh
-    return fresh
-
-
-def of_obstacle(scene, step, rng):
-    """An obstacle of the contact model in the scene: one that is there, or a new one with its model."""
-    there = [item for item in scene.setdefault("obstacles", []) if any(key in item for key in step.keys())]
-    if there:
-        return rng.choice(there)
-    properties = step.section["properties"]
-    words = {key: alternatives(properties[key])[0].get("enum") for key in step.keys()}
-    key = next(key for key, enum in words.items() if enum)  # the others name files
-    scene["obstacles"].append({key: rng.choice(words[key])})
-    models = scene.setdefault("contact", [])
-    if not any(model == step.name or isinstance(model, dict) and model["type"] == step.name for model in models):
-        models.append(step.name)
-    return scene["obstacles"][-1]
 
 
 def put(scene, schema, parameter, value, rng):
     at, section = scene, schema
     steps = list(parameter.path)
-    for k, step in enumerate(steps[:-1]):
-        if isinstance(step, Obstacle):
-            at, section = of_obstacle(scene, step, rng), step.section
-        elif isinstance(step, Plugin):
-            at, section = in_plugin(at, steps[k - 1], step, rng), step.section
+    for step, before, after in zip(steps, [None, *steps], steps[1:]):
+        if isinstance(step, Plugin):
+            at, section = step.place(at, before, rng), step.section
         elif step is None:
             if not at:
                 at.append(filled(section, rng))
-            at = rng.choice([item for item in at if steps[k + 1] in item] or at)
-        elif not isinstance(steps[k + 1], Plugin):
+            at = rng.choice([item for item in at if after in item] or at)
+        elif not isinstance(after, Plugin):
             below = alternatives(section["properties"][step])
             section = next(o.get("items", o) for o in below if o.get("type") in ("object", "array"))
-            at = at.setdefault(step, [] if steps[k + 1] is None else {})
+            at = at.setdefault(step, [] if after is None else {})
     at[steps[-1]] = value
 
 
@@ -216,10 +207,8 @@ def steps_there(scene, parameter):
     """How much of the parameter's path the scene has: the more, the likelier it is to have an effect."""
     at, there = scene, 0
     for step in parameter.path:
-        if isinstance(step, Obstacle):
-            found = [e for e in at if any(key in e for key in step.keys())]
-        elif isinstance(step, Plugin):
-            found = [e for e in at if e == step.name or isinstance(e, dict) and e.get("type") == step.name]
+        if isinstance(step, Plugin):
+            found = [entry for entry in at if step.is_in(entry)]
         elif step is None:
             found = sorted(at, key=lambda item: parameter.path[-1] in item, reverse=True)
         else:
@@ -228,6 +217,10 @@ def steps_there(scene, parameter):
             break
         at, there = found[0], there + 1
     return there
+
+
+def text_of(config):
+    return "".join(f"{key}: {json.dumps(value)}\n" for key, value in config.items())
 
 
 class Case:
@@ -243,10 +236,10 @@ class Case:
         for p, value in chosen:
             put(self.config, schema, p, value, rng)
         if not self.config["methods"]:
-            self.config["methods"] = {rng.choice(METHODS): {}}
+            self.config["methods"] = {rng.choice(["pcs", "cascadic", "newton"]): {}}
 
     def text(self):
-        return "".join(f"{key}: {json.dumps(value)}\n" for key, value in self.config.items())
+        return text_of(self.config)
 
 
 def cases(schema, seed, count):
