@@ -2,6 +2,7 @@
 
 Needs to be root: slurmd does. Nothing of it stays, and nothing of an existing Slurm or munge is touched."""
 
+import contextlib
 import os
 import shutil
 import signal
@@ -38,26 +39,23 @@ def install():
         policy.write_text("#!/bin/sh\nexit 101\n")
         policy.chmod(0o755)
     try:
-        apt = ["apt-get", "-qq", "-o", "DPkg::Lock::Timeout=300"]
-        environment = dict(os.environ, DEBIAN_FRONTEND="noninteractive")
-        for words in (["update"], ["install", "-y", "--no-install-recommends", "slurm-wlm", "munge"]):
-            ended = subprocess.run(apt + words, env=environment, stdin=subprocess.DEVNULL,
+        for words in ("update", "install -y --no-install-recommends slurm-wlm munge"):
+            ended = subprocess.run(["apt-get", "-qq", "-o", "DPkg::Lock::Timeout=300", *words.split()],
+                                   env=dict(os.environ, DEBIAN_FRONTEND="noninteractive"), stdin=subprocess.DEVNULL,
                                    stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
             if ended.returncode:
-                skip(f"apt-get {' '.join(words)}: {ended.stderr.strip()}")
+                skip(f"apt-get {words}: {ended.stderr.strip()}")
     finally:
         if own_policy:
             policy.unlink()
 
 
 def free_ports(count):
-    sockets = [socket.socket() for _ in range(count)]
-    for s in sockets:
-        s.bind(("127.0.0.1", 0))
-    ports = [s.getsockname()[1] for s in sockets]
-    for s in sockets:
-        s.close()
-    return ports
+    with contextlib.ExitStack() as stack:
+        sockets = [stack.enter_context(socket.socket()) for _ in range(count)]
+        for s in sockets:
+            s.bind(("127.0.0.1", 0))
+        return [s.getsockname()[1] for s in sockets]
 
 
 def environment_of(pid):
@@ -69,13 +67,6 @@ def environment_of(pid):
 
 def processes():
     return [int(entry.name) for entry in Path("/proc").iterdir() if entry.name.isdigit()]
-
-
-def kill(pid):
-    try:
-        os.kill(pid, signal.SIGKILL)
-    except ProcessLookupError:
-        pass
 
 
 class Cluster:
@@ -112,9 +103,7 @@ class Cluster:
             except subprocess.TimeoutExpired:
                 daemon.kill()
                 daemon.wait()
-        for pid in processes():  # steps and their runs: all that knows of this cluster
-            if pid != os.getpid() and self.mark in environment_of(pid):
-                kill(pid)
+        self.kill(processes())  # steps and their runs
         if sys.exc_info()[0] and os.environ.get("DRAPE_KEEP_SLURM"):
             print(f"kept: {self.folder}")
             return
@@ -142,7 +131,9 @@ class Cluster:
         ports = free_ports(3)
         for name in ("state", "spool.n1", "spool.n2"):
             (self.folder / name).mkdir()
-        text = f"""ClusterName=drape_test
+        nodes = "".join(f"NodeName={node} NodeHostname=localhost NodeAddr=127.0.0.1 Port={port} CPUs=1 "
+                        "RealMemory=2000 State=UNKNOWN\n" for node, port in zip(self.nodes, ports[1:]))
+        (self.folder / "slurm.conf").write_text(f"""ClusterName=drape_test
 SlurmctldHost=localhost
 SlurmctldPort={ports[0]}
 SlurmUser=root
@@ -170,12 +161,8 @@ SlurmctldTimeout=5
 KillWait=5
 SchedulerTimeSlice=5
 SchedulerParameters=batch_sched_delay=0,sched_min_interval=0,sched_interval=1,bf_interval=1
-"""
-        for node, port in zip(self.nodes, ports[1:]):
-            text += (f"NodeName={node} NodeHostname=localhost NodeAddr=127.0.0.1 Port={port} CPUs=1 "
-                     "RealMemory=2000 State=UNKNOWN\n")
-        text += "PartitionName=all Nodes=n1,n2 Default=YES MaxTime=INFINITE State=UP\n"
-        (self.folder / "slurm.conf").write_text(text)
+{nodes}PartitionName=all Nodes=n1,n2 Default=YES MaxTime=INFINITE State=UP
+""")
 
     def call(self, *words):
         return subprocess.run(words, env=self.environment, stdin=subprocess.DEVNULL, capture_output=True, text=True)
@@ -211,6 +198,11 @@ SchedulerParameters=batch_sched_delay=0,sched_min_interval=0,sched_interval=1,bf
         self.killed.add(node)
         self.daemons[node].kill()
         self.daemons[node].wait()
-        for pid in steps + tasks + self.tasks_on(node):
+        self.kill(steps + tasks + self.tasks_on(node))
+
+    def kill(self, pids):
+        """Those that know of this cluster."""
+        for pid in pids:
             if pid > 1 and pid != os.getpid() and self.mark in environment_of(pid):
-                kill(pid)
+                with contextlib.suppress(ProcessLookupError):
+                    os.kill(pid, signal.SIGKILL)
