@@ -3,19 +3,17 @@
 import gc
 import json
 import locale
-import os
 import pathlib
 import pickle
 import re
 import shutil
 import subprocess
-import sys
 
 import numpy
 import pytest
 
 import drape
-from conftest import PRELOADED, SMALL_FILE, SOURCE, bits_of, command, run
+from conftest import SMALL_FILE, SOURCE, bits_of, command, run
 from drape import plots
 
 ALL = ["pcs", "cascadic", "newton"]
@@ -173,12 +171,3 @@ def test_plots_have_the_reports_colours(experiment):
     assert len(result.plot_convergence().lines) == 6
     with pytest.raises(ValueError, match="choose a measure"):
         result.plot_errors(measure="nothing_such")
-
-
-@pytest.mark.skipif("DRAPE_TEST_PLUGINS" not in os.environ, reason="the tests' plugins are not built")
-def test_a_plugin_of_another_abi_is_refused():
-    plugins = os.environ["DRAPE_TEST_PLUGINS"] + "/wrong_abi"
-    ended = subprocess.run([sys.executable, "-c", "import drape; drape.plugins('energy')"], capture_output=True,
-                           text=True, env={**os.environ, **PRELOADED, "DRAPE_PLUGIN_PATH": plugins})
-    assert ended.returncode == 1
-    assert "RuntimeError" in ended.stderr and "does not fit this drape" in ended.stderr

@@ -87,11 +87,8 @@ def test_contacts():
     assert 0 < fraction < 0.06 and "ball" in by
     first, second, where = scene[0].intersections(down)[0]
     assert "ball" in first + second and len(where) == 3
-
-
-def test_states_that_contacts_cannot_search():
-    scene = drape.Experiment(CONTACT).scene()
-    model, x = scene[0], scene.start(0)
+    # States that contacts cannot search.
+    model = scene[0]
     for wrong in (numpy.nan * x, numpy.where(x == x[0, 0], numpy.inf, x), 1e30 + x):
         for ask in (model.energy, model.gradient, model.hessian, model.energy_parts, model.force_residual,
                     model.contacts, model.intersections, lambda y: model.max_step(x, y)):
@@ -150,20 +147,6 @@ def test_wrong_shapes_and_types(scene):
         model.hessian(x, "all")
     with pytest.raises(ValueError, match="blend"):
         model.hessian(x, "clamp", 2)
-
-
-def test_an_energy_is_a_formula(small):
-    spring = {"type": "formula", "name": "spring", "per": "vertex", "role": "position",
-              "constants": {"stiffness": {"value": 400, "unit": "1/s^2"}, "height": {"value": 0.1, "unit": "m"}},
-              "energy": "stiffness/2*mass*(z - height)^2"}
-    assert drape.check_energy(spring)
-    experiment = drape.Experiment({**small, "energies": [*small["energies"], spring]})
-    model = experiment.scene()[0]
-    rest = model.level.rest
-    gradient = drape.bind_energy(spring, model.level).gradient(rest)
-    assert numpy.allclose(gradient[:, 2], 400 * model.masses * (rest[:, 2] - 0.1))
-    experiment.set("energies.spring.stiffness", 800)
-    assert experiment.scene()[0].energy(rest) > model.energy(rest)
 
 
 def test_a_material_has_its_stiffness_by_direction(small):
