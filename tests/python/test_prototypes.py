@@ -212,8 +212,6 @@ HEIGHT = {"height": drape.Column("m", "neither")}
     (drape.Metric, "columns", {"height": "m"}, TypeError,
      "Own.columns: \"height\" must be a drape.Column, such as .*, not 'm'"),
     (drape.Metric, "columns", {1: drape.Column()}, TypeError, "Own.columns: a name must be a str, not 1"),
-    (drape.Metric, "columns", {"height": drape.Column(unit=1)}, TypeError,
-     r'Own.columns\["height"\].unit must be a str, not 1'),
     (drape.Metric, "columns", {"height": drape.Column(label=1)}, TypeError,
      r'Own.columns\["height"\].label must be a str or None, not 1'),
     (drape.Metric, "columns", {"height": drape.Column(better="best")}, ValueError,

@@ -75,13 +75,10 @@ TEST_CASE("24 runs give the same results with one worker and with two, and are n
   };
   const nlohmann::json rows = nlohmann::json::parse(table(" --format json"));
   REQUIRE(rows.size() == 48);
-  CHECK(rows[47]["refiner"] == "midpoint");
-  for (const auto& [key, value] : {std::pair{"levels", 2}, std::pair{"seed", 3}}) {
-    CHECK(rows[47][key].is_number_integer());
-    CHECK(rows[47][key] == value);
-  }
-  CHECK(rows[47]["newton.step_growth"] == 3);
-  CHECK(rows[47]["run"] == runs[23]["name"]);
+  const nlohmann::json& last = rows[47];
+  CHECK(
+      (last["run"] == runs[23]["name"] && last["refiner"] == "midpoint" && last["newton.step_growth"] == 3));
+  CHECK((last["levels"].dump() == "2" && last["seed"].dump() == "3"));  // whole numbers
   const std::string columns = "sweep,run,refiner,levels,newton.step_growth,seed,method,pass,status,vertices,";
   CHECK_THAT(table(" --format csv"), Catch::StartsWith(columns));
   const std::string page = table("");
