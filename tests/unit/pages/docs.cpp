@@ -1,34 +1,16 @@
-// The pages of docs/ and beside the sources: links, pictures, messages and codes that they speak of.
+// The pages of docs/ and beside the sources: links, pictures, messages, codes and commands that they speak
+// of. Commands of the README and of docs/start are run by tests/configs/readme_commands.cpp.
 
 #include <catch2/catch.hpp>
-#include <filesystem>
-#include <iterator>
-#include <regex>
 #include <set>
 #include <sstream>
-#include <string>
 
 #include "core/app/experiment/exit_codes.h"
-#include "tests/support/pages.h"
+#include "tests/unit/pages/source_texts.h"
 
 namespace fs = std::filesystem;
 
 namespace {
-
-/// All sources of core and plugins, with string literals that go on in the next line joined.
-std::string sources() {
-  std::string all;
-  for (const fs::path& file : pages::below({"core", "plugins"}, {".cpp", ".h"})) all += pages::text_of(file);
-  return std::regex_replace(all, std::regex("\"\\s*\n\\s*\""), "");
-}
-
-/// Every page with links: documents, and the pages of core, plugins, dependencies and stored results.
-std::vector<fs::path> linked_pages() {
-  std::vector<fs::path> found = pages::documents();
-  for (const fs::path& page : pages::below({"core", "plugins", "third_party", "benchmarks"}, {".md"}))
-    found.push_back(page);
-  return found;
-}
 
 /// The fragment that a heading is reached by: letters, digits, '-' and '_' in lower case, spaces as '-'.
 std::string fragment_of(const std::string& heading) {
@@ -53,81 +35,101 @@ std::set<std::string> fragments_of(const fs::path& page) {
   return fragments;
 }
 
-}  // namespace
+struct ShellLine {
+  fs::path page;
+  std::string text;
+};
 
-TEST_CASE("docs/guide/troubleshooting.md speaks of messages that there are") {
-  const std::string page = pages::text_of(folders::source() / "docs/guide/troubleshooting.md");
-  const std::string code = sources();
-  const std::regex row("\n\\| `([^`]+)` \\|");
-  int rows = 0;
-  for (std::sregex_iterator it(page.begin(), page.end(), row), end; it != end; ++it, ++rows) {
-    INFO((*it)[1].str());
-    CHECK(code.find((*it)[1].str()) != std::string::npos);
+/// The lines of the pages' sh blocks, continued lines joined, comments cut.
+std::vector<ShellLine> shell_lines() {
+  std::vector<ShellLine> found;
+  for (const fs::path& page : pages::documents()) {
+    bool inside = false, continued = false;
+    for (std::string line : pages::lines_of(page)) {
+      if (line.starts_with("```")) {
+        inside = !inside && line.starts_with("```sh");
+        continue;
+      }
+      if (!inside) continue;
+      line = line.substr(0, std::min(line.find(" #"), line.find("# ") == 0 ? 0 : line.npos));
+      const bool more = line.ends_with("\\");
+      if (more) line.pop_back();
+      if (continued)
+        found.back().text += line;
+      else
+        found.push_back({page, line});
+      continued = more;
+    }
   }
-  CHECK(rows > 20);
+  return found;
 }
 
-TEST_CASE("docs/reference/exit-codes.md has every code as `drape --help` does") {
-  const std::string page = pages::text_of(folders::source() / "docs/reference/exit-codes.md");
-  for (const drape::ExitCode& code : drape::exit_codes) {
-    INFO(code.code);
-    CHECK(page.find("\n| `" + std::to_string(code.code) + "` | " + code.description + " |\n") !=
-          std::string::npos);
+/// The sources of the `drape` command.
+std::string cli_sources() { return texts_of_files(pages::below({"core/app/cli"}, {".cpp", ".h"})); }
+
+}  // namespace
+
+TEST_CASE("the pages have every exit code, and speak of messages that there are") {
+  const std::string codes = source_text("docs/reference/exit-codes.md");
+  for (const drape::ExitCode& code : drape::exit_codes)
+    CHECK_THAT(codes,
+               Catch::Contains("\n| `" + std::to_string(code.code) + "` | " + code.description + " |\n"));
+  // String literals that go on in the next line are joined.
+  const std::string code = std::regex_replace(
+      texts_of_files(pages::below({"core", "plugins"}, {".cpp", ".h"})), std::regex("\"\\s*\n\\s*\""), "");
+  const auto rows = matches_in(source_text("docs/guide/troubleshooting.md"), "\n\\| `([^`]+)` \\|");
+  for (const auto& row : rows) {
+    INFO(row[1]);
+    CHECK(code.find(row[1]) != std::string::npos);
   }
+  CHECK(rows.size() > 20);
 }
 
 TEST_CASE("every link between the pages leads somewhere") {
-  const std::regex link("\\]\\(([^)#]*)(#([^)]*))?\\)");
+  std::vector<fs::path> linked = pages::below({"core", "plugins", "third_party", "benchmarks"}, {".md"});
+  for (const fs::path& page : pages::documents()) linked.push_back(page);
   int links = 0, fragments = 0;
-  for (const fs::path& page : linked_pages()) {
-    const std::string text = pages::text_of(page);
-    for (std::sregex_iterator it(text.begin(), text.end(), link), end; it != end; ++it) {
-      const std::string target = (*it)[1], fragment = (*it)[3];
+  for (const fs::path& page : linked)
+    for (const auto& link : matches_in(pages::text_of(page), "\\]\\(([^)#]*)(#([^)]*))?\\)")) {
+      const std::string &target = link[1], &fragment = link[3];
       if (target.starts_with("http")) continue;
       const fs::path file = target.empty() ? page : page.parent_path() / target;
-      INFO(page.string() << " links to " << (*it)[0].str());
+      INFO(page.string() << " links to " << link[0]);
       CHECK(fs::exists(file));
       ++links;
       if (fragment.empty() || file.extension() != ".md" || !fs::exists(file)) continue;
       CHECK(fragments_of(file).count(fragment) == 1);
       ++fragments;
     }
-  }
   CHECK(links > 200);
   CHECK(fragments > 10);
 }
 
 TEST_CASE("pages that sources and scripts name are there, with the sections that they name") {
   const fs::path root = folders::source();
-  const std::regex name("(docs/[A-Za-z0-9/_-]+\\.md)(,? sections? ([0-9]))?");
   int names = 0, sections = 0;
   std::vector<fs::path> files = {root / "Makefile"};
   for (const char* folder : {"core", "plugins", "tests", "benchmarks", "configs", "third_party"})
     for (const auto& entry : fs::recursive_directory_iterator(root / folder))
       if (entry.is_regular_file() && entry.file_size() < 200000) files.push_back(entry.path());
-  for (const fs::path& file : files) {
-    const std::string text = pages::text_of(file);
-    for (std::sregex_iterator it(text.begin(), text.end(), name), end; it != end; ++it) {
-      INFO(file.string() << " names " << (*it)[0].str());
-      const fs::path page = root / (*it)[1].str();
-      REQUIRE(fs::exists(page));
+  for (const fs::path& file : files)
+    for (const auto& name :
+         matches_in(pages::text_of(file), "(docs/[A-Za-z0-9/_-]+\\.md)(,? sections? ([0-9]))?")) {
+      INFO(file.string() << " names " << name[0]);
+      REQUIRE(fs::exists(root / name[1]));
       ++names;
-      if (!(*it)[3].matched) continue;
-      CHECK(pages::text_of(page).find("\n## " + (*it)[3].str() + ". ") != std::string::npos);
+      if (name[3].empty()) continue;
+      CHECK(source_text(name[1]).find("\n## " + name[3] + ". ") != std::string::npos);
       ++sections;
     }
-  }
   CHECK(names > 40);
   CHECK(sections > 10);
 }
 
 TEST_CASE("docs/README.md is the map of every page, and a page shows every picture") {
-  const fs::path docs = folders::source() / "docs";
-  const std::string map = pages::text_of(docs / "README.md");
-  std::string all;
-  for (const fs::path& page : pages::documents()) all += pages::text_of(page);
+  const std::string map = source_text("docs/README.md"), all = texts_of_files(pages::documents());
   for (const fs::path& file : pages::below({"docs"}, {".md", ".png", ".webp"})) {
-    const std::string name = fs::relative(file, docs).generic_string();
+    const std::string name = fs::relative(file, folders::source() / "docs").generic_string();
     INFO(name);
     if (name == "README.md") continue;
     const bool found = file.extension() == ".md" ? map.find("](" + name + ")") != map.npos
@@ -137,19 +139,69 @@ TEST_CASE("docs/README.md is the map of every page, and a page shows every pictu
 }
 
 TEST_CASE("a page begins with an example, and README.md is short") {
-  const fs::path root = folders::source();
   for (const fs::path& page : pages::below({"docs"}, {".md"})) {
-    const std::string name = fs::relative(page, root / "docs").generic_string();
-    // The maps and the glossary are none to read from the top.
-    if (name == "README.md" || name == "theory/glossary.md") continue;
+    const std::string name = fs::relative(page, folders::source() / "docs").generic_string();
+    if (name == "README.md" || name == "theory/glossary.md") continue;  // nobody reads them from the top
     INFO(name);
-    const std::vector<std::string> lines = pages::lines_of(page);
-    bool example = false;
-    for (std::size_t i = 0; i < std::min<std::size_t>(lines.size(), 12); ++i)
-      example = example || lines[i].starts_with("```");
-    CHECK(example);
+    std::vector<std::string> lines = pages::lines_of(page);
+    lines.resize(12);
+    CHECK(std::ranges::any_of(lines, [](const std::string& line) { return line.starts_with("```"); }));
   }
-  CHECK(pages::lines_of(root / "README.md").size() <= 120);
-  std::istringstream words(pages::text_of(root / "README.md"));
+  CHECK(pages::lines_of(folders::source() / "README.md").size() <= 120);
+  std::istringstream words(source_text("README.md"));
   CHECK(std::distance(std::istream_iterator<std::string>(words), {}) <= 900);
+}
+
+TEST_CASE("commands in the pages name commands, options and files that there are") {
+  const std::string cli = cli_sources(), makefile = source_text("Makefile");
+  // An option's long name stands alone, after its short name or after a flag's negation. It ends its
+  // declaration, or a word in capitals for its value does.
+  const auto declares = [&](const std::string& name) {
+    for (const char before : {'"', ',', '!'})
+      for (std::size_t at = cli.find(before + name); at != cli.npos; at = cli.find(before + name, at + 1)) {
+        const std::string end = cli.substr(at + 1 + name.size(), 2);
+        if (end[0] == '"' || (end[0] == ' ' && end[1] >= 'A' && end[1] <= 'Z')) return true;
+      }
+    return name.size() == 2 && cli.find("\"" + name + ",--") != cli.npos;
+  };
+  int drape_commands = 0, make_targets = 0, files = 0;
+  for (const ShellLine& line : shell_lines()) {
+    INFO(line.page.string() << ": " << line.text);
+    std::istringstream text(line.text);
+    const std::vector<std::string> words(std::istream_iterator<std::string>(text), {});
+    if (words.empty()) continue;
+    if (words[0] == "drape" || words[0].ends_with("/drape")) {
+      ++drape_commands;
+      REQUIRE(words.size() > 1);
+      if (words[1][0] != '-') CHECK(cli.find("\"" + words[1] + "\"") != cli.npos);
+      for (const std::string& word : words)
+        if (word.starts_with("-") && word != "--help") CHECK(declares(word.substr(0, word.find('='))));
+    }
+    if (words[0] == "make")
+      for (std::size_t i = 1; i < words.size(); ++i) {
+        if (words[i].find('=') != std::string::npos) continue;
+        CHECK(makefile.find("\n" + words[i] + ":") != makefile.npos);
+        ++make_targets;
+      }
+    for (const std::string& word : words)
+      if (word.starts_with("configs/") && word.find('*') == word.npos) {
+        CHECK(fs::exists(folders::source() / word.substr(0, word.find(';'))));
+        ++files;
+      }
+  }
+  CHECK(drape_commands > 40);
+  CHECK(make_targets > 15);
+  CHECK(files > 10);
+}
+
+TEST_CASE("docs/reference/command.md lists every command") {
+  const std::string page = source_text("docs/reference/command.md");
+  const auto commands =
+      matches_in(cli_sources(), "commands\\s*\\.add(?:_with_plugins)?\\(\\s*\"([a-z0-9-]+)\"");
+  for (const auto& command : commands) {
+    if (command[1] == "sweep-job") continue;  // hidden: a cluster's jobs run it
+    INFO(command[1]);
+    CHECK(page.find("| `drape " + command[1]) != std::string::npos);
+  }
+  CHECK(commands.size() > 10);
 }
