@@ -4,10 +4,10 @@
 #include <stdexcept>
 
 #include "core/app/experiment/describe.h"
-#include "core/app/files/yaml_file.h"
 #include "core/kernel/interfaces/refiner.h"
 #include "core/kernel/plugin/make.h"
 #include "tests/support/refusal.h"
+#include "tests/unit/kernel/config_faults.h"
 
 using namespace drape;
 
@@ -26,11 +26,7 @@ class Loop final : public Ballast, public Refiner {
   struct Parameters {
     double corner_angle = 30;
     static void declare(Declaration<Parameters>& d) {
-      d.add("corner_angle", &Parameters::corner_angle, "sharper corners stay | sharp")
-          .unit("deg")
-          .above(0)
-          .at_most(180)
-          .source("Loop 1987");
+      d.add("corner_angle", &Parameters::corner_angle, "sharper ones stay").unit("deg").above(0).at_most(180);
     }
   };
   explicit Loop(const Parameters& p) : angle_(p.corner_angle) {
@@ -76,19 +72,25 @@ Registry filled() {
   return registry;
 }
 
-ConfigNode node_of(const std::string& yaml) {
+ConfigNode value_node(const std::string& yaml) { return *node_of_yaml("x: " + yaml).find("x"); }
+
+/// The errors of making a refiner from the text.
+std::string refiner_faults(const std::string& yaml, const Registry& registry = filled()) {
   ConfigErrors errors;
-  const ConfigNode top = parse_yaml("x: " + yaml, "a.yaml", errors);
-  REQUIRE(errors.empty());
-  return *top.find("x");
+  CHECK_FALSE(make_from<Refiner>(registry, value_node(yaml), errors));
+  return texts_of_errors(errors);
 }
 
-/// The one error of making a refiner from the text.
-std::string refiner_fault(const std::string& yaml) {
+/// The refiner from the text, which must show itself so.
+std::shared_ptr<Refiner> refiner_from(const Registry& registry, const std::string& yaml,
+                                      const std::string& shown, const Refiner* before = nullptr) {
   ConfigErrors errors;
-  CHECK_FALSE(make_from<Refiner>(filled(), node_of(yaml), errors));
-  REQUIRE(errors.size() == 1);
-  return errors[0].text();
+  ConfigNode resolved;
+  std::shared_ptr<Refiner> refiner =
+      make_from<Refiner>(registry, value_node(yaml), errors, &resolved, before);
+  REQUIRE(texts_of_errors(errors) == "");
+  CHECK(resolved.one_line() == shown);
+  return refiner;
 }
 
 }  // namespace
@@ -105,24 +107,9 @@ TEST_CASE("entries are found by kind and name, and listed by name") {
   CHECK(registry.of_kind("energy").empty());
 }
 
-TEST_CASE("a plugin's own members are its parameters where it declares them") {
-  Registry registry;
-  registry.add<Refiner, Columns>("columns", "Columns.");
-  ConfigErrors errors;
-  ConfigNode resolved;
-  const auto refiner =
-      make_from<Refiner>(registry, node_of("{type: columns, columns: 4}"), errors, &resolved);
-  REQUIRE(errors.empty());
-  CHECK(refiner->weights({}).rows() == 4);
-  CHECK(resolved.one_line() == "{type: columns, columns: 4}");
-  CHECK_FALSE(make_from<Refiner>(registry, node_of("{type: columns, columns: 0}"), errors));
-  CHECK(errors.size() == 1);
-  CHECK(registry.find("refiner", "columns")->schema.parameters.size() == 1);
-}
-
 namespace {
 
-/// A refiner with one parameter, declared with or without a fault.
+/// A refiner with three parameters, declared with or without a fault.
 template <int fault>
 struct Declared final : Refiner {
   int size = 1;
@@ -134,12 +121,13 @@ struct Declared final : Refiner {
     if (fault == 4) of_word.choices({"none", "all"});
     auto of_list = d.add("list", &Declared::list);
     if (fault == 5) of_list.size(2);
+    if (fault == 6) d.add("size", &Declared::size);
   }
   ProlongationMatrix weights(const Level&) const override { return {}; }
 };
 
 template <int fault>
-std::string refusal(const std::string& name = "declared") {
+std::string refusal_of_declared(const std::string& name = "declared") {
   Registry registry;
   registry.current_library = "lib.so";
   return refusal_of([&] { registry.add<Refiner, Declared<fault>>(name, "One sentence."); });
@@ -148,80 +136,56 @@ std::string refusal(const std::string& name = "declared") {
 }  // namespace
 
 TEST_CASE("a declaration whose saved config could not be read again is refused") {
-  const std::string who = "lib.so: refiner declared: ";
-  CHECK(refusal<0>().empty());
-  CHECK(refusal<1>() ==
-        who + "the default of parameter \"size\" is refused: \"size\" must be at least 5, not 1");
-  CHECK_THAT(refusal<2>(), Catch::StartsWith(who + "parameter \"my word\" needs another name"));
-  CHECK_THAT(refusal<3>(), Catch::StartsWith(who + "parameter \"type\" needs another name"));
-  CHECK_THAT(refusal<4>(), Catch::StartsWith(who + "the default of parameter \"word\" is refused"));
-  CHECK_THAT(refusal<5>(), Catch::StartsWith(who + "the default of parameter \"list\" is refused"));
-  for (const char* name : {"my refiner", "my.refiner", "Mine"})
-    CHECK(refusal<0>(name) == "lib.so: the name of refiner \"" + std::string(name) +
-                                  "\" must be lower case, digits and underscores");
+  const std::string who = "lib.so: refiner declared: ", name = " needs another name",
+                    initial = "the default of parameter ";
+  CHECK(refusal_of_declared<0>().empty());
+  CHECK(refusal_of_declared<1>() ==
+        who + initial + "\"size\" is refused: \"size\" must be at least 5, not 1");
+  CHECK_THAT(refusal_of_declared<2>(), Catch::StartsWith(who + "parameter \"my word\"" + name));
+  CHECK_THAT(refusal_of_declared<3>(), Catch::StartsWith(who + "parameter \"type\"" + name));
+  CHECK_THAT(refusal_of_declared<4>(), Catch::StartsWith(who + initial + "\"word\" is refused"));
+  CHECK_THAT(refusal_of_declared<5>(), Catch::StartsWith(who + initial + "\"list\" is refused"));
+  CHECK_THAT(refusal_of_declared<6>(), Catch::EndsWith("parameter \"size\" is declared twice"));
+  for (const std::string bad : {"my refiner", "my.refiner", "Mine"})
+    CHECK(refusal_of_declared<0>(bad) ==
+          "lib.so: the name of refiner \"" + bad + "\" must be lower case, digits and underscores");
 }
 
-TEST_CASE("a node makes the object it names, with its parameters") {
-  const Registry registry = filled();
-  ConfigErrors errors;
-  ConfigNode resolved;
+TEST_CASE("a node makes the object it names, with its parameters, which may be its own members") {
+  Registry registry = filled();
+  registry.add<Refiner, Columns>("columns", "Columns.");
   {
-    const auto plain = make_from<Refiner>(registry, node_of("loop"), errors, &resolved);
-    REQUIRE(plain);
+    const auto plain = refiner_from(registry, "loop", "{type: loop, corner_angle: 30}");
     CHECK(alive == 1);
-    CHECK(plain->weights(Level()).rows() == 30);
-    CHECK(resolved.one_line() == "{type: loop, corner_angle: 30}");
-    const ConfigNode node = node_of("{corner_angle: 45, type: loop}");
-    const auto set = make_from<Refiner>(registry, node, errors, &resolved);
-    REQUIRE(set);
-    CHECK(set->weights(Level()).rows() == 45);
-    CHECK(resolved.one_line() == "{type: loop, corner_angle: 45}");
+    CHECK(plain->weights({}).rows() == 30);
+    const auto set =
+        refiner_from(registry, "{corner_angle: 45, type: loop}", "{type: loop, corner_angle: 45}");
+    CHECK(set->weights({}).rows() == 45);
   }
-  CHECK(errors.empty());
   CHECK(alive == 0);
+  const std::string four = "{type: columns, columns: 4}";
+  CHECK(refiner_from(registry, four, four)->weights({}).rows() == 4);
+  CHECK(refiner_faults("{type: columns, columns: 0}", registry) ==
+        "f:1:29: \"columns\" must be at least 1, not 0");
+  CHECK(registry.find("refiner", "columns")->schema.parameters.size() == 1);
 }
 
 TEST_CASE("faults of a node are reported with their location") {
   const std::string own =
-      "a plugin of your own is given by --plugin or found by DRAPE_PLUGIN_PATH; one registered in Python is "
+      "; a plugin of your own is given by --plugin or found by DRAPE_PLUGIN_PATH; one registered in Python "
+      "is "
       "known to that program alone";
-  CHECK(refiner_fault("lopo") ==
-        "a.yaml:1:4: unknown refiner \"lopo\"; did you mean \"loop\"? known: linear, loop; " + own);
-  CHECK(refiner_fault("butterfly") ==
-        "a.yaml:1:4: unknown refiner \"butterfly\"; known: linear, loop; " + own);
+  CHECK(refiner_faults("lopo") ==
+        "f:1:4: unknown refiner \"lopo\"; did you mean \"loop\"? known: linear, loop" + own);
   for (const char* nameless : {"{corner_angle: 3}", "[loop]"})
-    CHECK(refiner_fault(nameless) ==
-          "a.yaml:1:4: expected the name of a plugin of kind refiner, or a map with its name as \"type\"");
-  CHECK(refiner_fault("{type: loop, corner: 3}") ==
-        "a.yaml:1:17: unknown key \"corner\" in loop; known keys are type, corner_angle");
-  CHECK(refiner_fault("{type: loop, type: loop}") ==
-        "a.yaml:1:17: repeated key \"type\" in loop; it is first set at a.yaml:1:5");
-  CHECK(refiner_fault("{type: loop, corner_angle: 90}") == "a.yaml:1:4: loop: right angles do not work");
+    CHECK(refiner_faults(nameless) ==
+          "f:1:4: expected the name of a plugin of kind refiner, or a map with its name as \"type\"");
+  CHECK(refiner_faults("{type: loop, corner: 3}") ==
+        "f:1:17: unknown key \"corner\" in loop; known keys are type, corner_angle");
+  CHECK(refiner_faults("{type: loop, corner_angle: 90}") == "f:1:4: loop: right angles do not work");
   CHECK(alive == 0);
-
-  ConfigErrors errors;
-  CHECK_FALSE(make_from<Refiner>(Registry(), node_of("loop"), errors));
-  REQUIRE(errors.size() == 1);
-  CHECK(errors[0].text() == "a.yaml:1:4: unknown refiner \"loop\"; no plugin of that kind is loaded; " + own);
-}
-
-TEST_CASE("an entry describes itself for the terminal and for the reference page") {
-  const Registry registry = filled();
-  CHECK(describe(*registry.find("refiner", "loop")) ==
-        "refiner loop: Loop subdivision.\n"
-        "from /lib/a.so\n"
-        "\n"
-        "  name          type    default  unit  range\n"
-        "  corner_angle  number  30       deg   > 0, <= 180\n"
-        "      sharper corners stay | sharp [Loop 1987]\n");
-  CHECK(describe(*registry.find("refiner", "linear")) ==
-        "refiner linear: Midpoints.\nfrom /lib/a.so\n\n  no parameters\n");
-  CHECK(describe_markdown(*registry.find("refiner", "loop")) ==
-        "### refiner `loop`\n\nLoop subdivision.\n\n"
-        "| name | type | default | unit | range | description | source |\n"
-        "|---|---|---|---|---|---|---|\n"
-        "| `corner_angle` | number | `30` | deg | > 0, <= 180 "
-        "| sharper corners stay \\| sharp | Loop 1987 |\n");
+  CHECK(refiner_faults("loop", {}) ==
+        "f:1:4: unknown refiner \"loop\"; no plugin of that kind is loaded" + own);
 }
 
 TEST_CASE("the JSON schema of a node allows the registered plugins and their parameters") {
@@ -239,12 +203,10 @@ TEST_CASE("the JSON schema of a node allows the registered plugins and their par
   CHECK(one["default"] == "loop");
   REQUIRE(one["anyOf"].size() == 3);
   CHECK(one["anyOf"][0] == nlohmann::ordered_json::parse(R"({"enum": ["linear", "loop"]})"));
-  CHECK(one["anyOf"][2] == nlohmann::ordered_json::parse(R"({
-    "type": "object",
-    "properties": {
+  CHECK(one["anyOf"][2] == nlohmann::ordered_json::parse(R"({"type": "object", "properties": {
       "type": {"type": "string", "enum": ["loop"], "description": "which refiner"},
       "corner_angle": {"type": "number", "exclusiveMinimum": 0.0, "maximum": 180.0,
-                       "description": "sharper corners stay | sharp [deg]", "default": 30}},
+                       "description": "sharper ones stay [deg]", "default": 30}},
     "additionalProperties": false, "required": ["type"], "description": "Loop subdivision."})"));
   CHECK(schema["properties"]["refiners"]["items"]["anyOf"] == one["anyOf"]);
   CHECK(json_schema(schema_of<Top>())["properties"]["refiners"]["items"] == nlohmann::ordered_json::object());
@@ -253,22 +215,15 @@ TEST_CASE("the JSON schema of a node allows the registered plugins and their par
 TEST_CASE("an object is made from the one before, if its plugin knows how to") {
   Registry registry = filled();
   registry.add<Refiner, Sharing>("sharing", "Shares a number.");
-  ConfigErrors errors;
-  const auto first = make_from<Refiner>(registry, node_of("sharing"), errors);
-  const auto next =
-      make_from<Refiner>(registry, node_of("{type: sharing, columns: 2}"), errors, nullptr, first.get());
-  const auto alone = make_from<Refiner>(registry, node_of("{type: sharing, columns: 2}"), errors);
-  REQUIRE(errors.empty());
+  const std::string two = "{type: sharing, columns: 2}", angle = "{type: loop, corner_angle: 45}";
+  const auto first = refiner_from(registry, "sharing", "{type: sharing, columns: 1}");
+  const auto next = refiner_from(registry, two, two, first.get()), alone = refiner_from(registry, two, two);
   const auto& made = dynamic_cast<const Sharing&>(*next);
   CHECK(made.columns == 2);
   CHECK(made.shared == dynamic_cast<const Sharing&>(*first).shared);
   CHECK(*dynamic_cast<const Sharing&>(*alone).shared == 2);
-  // Others are made anew.
-  const auto loop = make_from<Refiner>(registry, node_of("loop"), errors);
-  const auto other =
-      make_from<Refiner>(registry, node_of("{type: loop, corner_angle: 45}"), errors, nullptr, loop.get());
-  REQUIRE(other);
-  CHECK(other->weights(Level()).rows() == 45);
+  const auto loop = refiner_from(registry, "loop", "{type: loop, corner_angle: 30}");
+  CHECK(refiner_from(registry, angle, angle, loop.get())->weights({}).rows() == 45);
 }
 
 TEST_CASE("an entry that is removed leaves its name free, and stays usable") {
