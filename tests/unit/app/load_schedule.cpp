@@ -3,10 +3,10 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "tests/support/command.h"
-#include "tests/support/solve.h"
+#include "tests/unit/app/scene_refusal.h"
 
 using namespace drape;
+using Catch::Contains;
 
 namespace {
 
@@ -29,6 +29,19 @@ schedule:
     - {parameter: material.bending_modulus, times: [2, 4], values: [8e4, 8e2], interpolation: log}
     - {parameter: obstacles.ball.translate, times: [0, 4], values: [[0.2, 0.2, -0.2], [0.2, 0.2, -0.12]]}
 )";
+
+/// A scene and its schedule.
+struct Scheduled : Solved {
+  explicit Scheduled(const std::string& yaml = two_levels) : Solved(scene_from(yaml)) {}
+  LoadSchedule schedule{experiment, *scene};
+
+  std::shared_ptr<const LevelModel> model_of(const std::vector<double>& values, int level = 0) const {
+    return schedule.model(*schedule.at(values), level, *scene->models[level]);
+  }
+  std::shared_ptr<const LevelModel> model_at(double time) const {
+    return model_of(schedule.keys().values_at(time));
+  }
+};
 
 /// What a model gives, for comparison.
 struct Figures {
@@ -55,12 +68,12 @@ Figures figures_of(const LevelModel& model) {
 }  // namespace
 
 TEST_CASE("The keys' values follow the pseudo-time, one after another") {
-  const Solved s = scene_from(two_levels);
-  const LoadSchedule schedule(s.experiment, *s.scene);
-  CHECK(schedule.keys().steps == 4);
-  CHECK(schedule.keys().time(3) == 3);
-  CHECK(schedule.values(0) == schedule.first()->values);
-  const std::vector<double> expected = {0, 0, 0.3, -3.81, 8e3, 0.2, 0.2, -0.14}, values = schedule.values(3);
+  const Scheduled s;
+  CHECK(s.schedule.keys().steps == 4);
+  CHECK(s.schedule.keys().time(3) == 3);
+  CHECK(s.schedule.values(0) == s.schedule.first()->values);
+  const std::vector<double> expected = {0, 0, 0.3, -3.81, 8e3, 0.2, 0.2, -0.14},
+                            values = s.schedule.values(3);
   REQUIRE(values.size() == expected.size());
   for (std::size_t c = 0; c < values.size(); ++c) CHECK(values[c] == Approx(expected[c]));
 }
@@ -79,14 +92,15 @@ TEST_CASE("A step is made at its key's time, also where increments are not numbe
 }
 
 TEST_CASE("A load is a value: equal when asked for twice, from whatever load, and never changed") {
-  const Solved s = scene_from(two_levels);
-  const LoadSchedule schedule(s.experiment, *s.scene);
+  const Scheduled s;
+  const LoadSchedule& schedule = s.schedule;
   const auto half = schedule.at(schedule.values(2)), again = schedule.at(schedule.values(2));
   const auto end = schedule.at(schedule.values(4), *half), back = schedule.at(schedule.values(2), *end);
-  CHECK(half->parameters->pins[0].translate.value().z() == 0.2);
-  CHECK(end->parameters->pins[0].translate.value().z() == 0.4);
+  const auto height = [](const LoadState& load) { return load.parameters->pins[0].translate.value().z(); };
+  CHECK(height(*half) == 0.2);
+  CHECK(height(*end) == 0.4);
   CHECK(end->parameters->material.bending_modulus == 800);
-  CHECK(schedule.first()->parameters->pins[0].translate.value().z() == 0);
+  CHECK(height(*schedule.first()) == 0);
   for (int level = 0; level < 2; ++level) {
     const LevelModel& first = *s.scene->models[level];
     const Figures at_first = figures_of(first);
@@ -111,47 +125,45 @@ TEST_CASE("A load is a value: equal when asked for twice, from whatever load, an
 }
 
 TEST_CASE("Loads share what is equal in them") {
-  const Solved s = scene_from(two_levels);
-  const LoadSchedule schedule(s.experiment, *s.scene);
-  const LoadState& first = *schedule.first();
+  const Scheduled s;
+  const LoadState& first = *s.schedule.first();
   std::vector<double> values = first.values;
   values[7] += 0.01;  // the ball's height
-  const auto moved = schedule.at(values);
+  const auto moved = s.schedule.at(values);
   CHECK(moved->parameters == first.parameters);
   for (std::size_t k = 0; k < first.energies.size(); ++k)
     CHECK(moved->energies[k].energy == first.energies[k].energy);
-  CHECK(moved->contacts[0] == first.contacts[0]);
-  CHECK(moved->contacts[1] != first.contacts[1]);
   const LevelModel& before = *s.scene->models[1];
-  const auto model = schedule.model(*moved, 1, before);
+  const auto model = s.schedule.model(*moved, 1, before);
   CHECK(model->pattern() == before.pattern());
-  CHECK(model->contacts()[0] == before.contacts()[0]);
-  CHECK(model->contacts()[1] != before.contacts()[1]);
-  CHECK(schedule.at(values, *moved)->contacts == moved->contacts);
+  for (const int k : {0, 1}) {  // ipc, which has no obstacle, is shared
+    CHECK((moved->contacts[k] == first.contacts[k]) == (k == 0));
+    CHECK((model->contacts()[k] == before.contacts()[k]) == (k == 0));
+  }
+  CHECK(s.schedule.at(values, *moved)->contacts == moved->contacts);
 }
 
 TEST_CASE("Load stepping passes models on, and coarser levels keep theirs") {
-  const Solved s = scene_from(two_levels);
+  const Scheduled s;
   LoadStepping& stepping = *s.scene->load_stepping;
-  const LoadSchedule schedule(s.experiment, *s.scene);
   const auto expected = [&](int increment, int level) {
-    return figures_of(
-        *schedule.model(*schedule.at(schedule.values(increment)), level, *s.scene->models[level]));
+    return figures_of(*s.model_of(s.schedule.values(increment), level));
   };
+  const auto advance = [&] { REQUIRE(stepping.advance(0, s.scene->starts[0]).fraction == 1); };
   stepping.begin(0, true);
   const auto first = stepping.model(0);
   CHECK(figures_of(*first) == expected(0, 0));
   CHECK(stepping.model(0) == first);
-  for (int k = 1; k <= 2; ++k) REQUIRE(stepping.advance(0, s.scene->starts[0]).fraction == 1);
+  advance();
+  advance();
   CHECK(stepping.increment() == 2);
   CHECK(stepping.complete());
   CHECK(stepping.model(0) != first);
   CHECK(figures_of(*first) == expected(0, 0));
-  CHECK(figures_of(*stepping.model(0)) == expected(2, 0));
-  CHECK(figures_of(*stepping.model(1)) == expected(2, 1));
+  for (const int level : {0, 1}) CHECK(figures_of(*stepping.model(level)) == expected(2, level));
   CHECK(s.scene->model(1) == stepping.model(1));
 
-  REQUIRE(stepping.advance(0, s.scene->starts[0]).fraction == 1);
+  advance();
   const LoadSteppingState third = stepping.state();
   const Figures at_third = figures_of(*stepping.model(0));
   stepping.begin(1, true);
@@ -165,14 +177,13 @@ TEST_CASE("Load stepping passes models on, and coarser levels keep theirs") {
 }
 
 TEST_CASE("A fraction of an increment that no number expresses counts as none") {
-  const Solved s = scene_from(two_levels);
+  const Scheduled s;
   LoadStepping& stepping = *s.scene->load_stepping;
   stepping.begin(0, true);
   REQUIRE(stepping.advance(0, s.scene->starts[0]).fraction == 1);
   LoadSteppingState near = stepping.state();
   near.increment = 2;
-  const LoadSchedule schedule(s.experiment, *s.scene);
-  near.values = schedule.values(2);
+  near.values = s.schedule.values(2);
   double& last = near.values.back();  // the ball's height
   last = std::nextafter(last, -1);
   stepping.restore(0, near);
@@ -183,21 +194,12 @@ TEST_CASE("A fraction of an increment that no number expresses counts as none") 
   CHECK(stepping.complete());
 }
 
-TEST_CASE("A key for an integer is refused, also where its values are integers") {
-  CHECK_THROWS_WITH(
-      scene_from(R"(name: integer
-cloth: {shape: square, side: 0.4, columns: 3, rows: 3}
-levels: 1
-energies: [neo_hookean, gravity]
-contact: ipc
-obstacles: [{meshed_shape: sphere, radius: 0.1, subdivisions: 1, translate: [0.2, 0.2, -1]}]
-methods: {newton: {}}
-schedule: {steps: 4, keys: [{parameter: obstacles.0.subdivisions, times: [0, 2], values: [2, 2]}]}
-)"),
-      Catch::Contains("key \"obstacles.0.subdivisions\": it must name a number that is no integer"));
-}
-
 namespace {
+
+/// An item of a schedule's keys.
+std::string key(const std::string& parameter, const std::string& times, const std::string& values) {
+  return "{parameter: " + parameter + ", times: [" + times + "], values: [" + values + "]}, ";
+}
 
 /// A sheet with two pins and a handle, and a schedule with these keys.
 std::string with_keys(const std::string& keys) {
@@ -210,66 +212,56 @@ pins:
 handles: [{region: box, lower: [-1, 0.35, -1], upper: [1, 1, 1]}]
 energies: [neo_hookean, {type: midedge_bending, correction_tolerance: 1}, gravity]
 methods: {newton: {}}
-schedule:
-  steps: 4
-  keys: [)" +
-         keys + "]\n";
+contact: ipc
+obstacles: [{meshed_shape: sphere, radius: 0.1, subdivisions: 1, translate: [0.2, 0.2, -1]}]
+schedule: {steps: 4, keys: [)" +
+         keys + "]}\n";
 }
 
 }  // namespace
 
-TEST_CASE("A key is refused before the run if a pin or handle has no vertex at one of its times") {
-  CHECK_THROWS_WITH(
-      scene_from(with_keys("{parameter: pins.1.point, times: [0, 1, 2], values: [[0.4, 0, 0], [0.4, 9, 0], "
-                           "[0.4, 0, 0]]}")),
-      Catch::Contains("key \"pins.1.point\" at pseudo-time 1: pin 1 (ball) selects no vertex of the coarsest "
+TEST_CASE(
+    "A key is refused before the run: for an integer, for no vertex at one of its times, for stencils") {
+  const auto refused = [](const std::string& keys) { return scene_refusal(with_keys(keys)); };
+  CHECK_THAT(refused(key("obstacles.0.subdivisions", "0, 2", "2, 2")),
+             Contains("key \"obstacles.0.subdivisions\": it must name a number that is no integer"));
+  for (const char* path : {"pins.2.radius", "pins.1.point.3", "pins.1.point.2.0", "pins.1.radius.0", "pins.1",
+                           "pins", "pins.1.region", "obstacles.wall.radius", "material.mass"})
+    CHECK(refused(key(path, "0, 1", "0.1, 0.2")) != "");
+  CHECK_THAT(refused(key("pins.1.radius", "0, 1", "0.15, -1")),
+             Contains("key \"pins.1.radius\": \"radius\" must be "));
+  CHECK_THAT(refused(key("pins.1.point", "0, 1", "[0.4, 0, 0], [0.4, 0, 1e300]")),
+             Contains("key \"pins.1.point\": item 3 of \"point\" must be at most "));
+  CHECK_THAT(refused(key("pins.1.point", "0, 1, 2", "[0.4, 0, 0], [0.4, 9, 0], [0.4, 0, 0]")),
+             Contains("key \"pins.1.point\" at pseudo-time 1: pin 1 (ball) selects no vertex of the coarsest "
                       "level; widen its region"));
-  CHECK_THROWS_WITH(
-      scene_from(with_keys("{parameter: handles.0.upper, times: [0, 1, 2], values: [[1, 1, 1], [1, 0.3, 1], "
-                           "[1, 1, 1]]}")),
-      Catch::Contains("key \"handles.0.upper\" at pseudo-time 1: handle 0 (box) selects no vertex"));
+  CHECK_THAT(refused(key("handles.0.upper", "0, 1, 2", "[1, 1, 1], [1, 0.3, 1], [1, 1, 1]")),
+             Contains("key \"handles.0.upper\" at pseudo-time 1: handle 0 (box) selects no vertex"));
   // Each key is checked with the values of the others at that time: the bounds of this box move together.
-  CHECK_NOTHROW(scene_from(
-      with_keys("{parameter: pins.0.lower.0, times: [0, 1], values: [-0.05, 0.15]}, {parameter: "
-                "pins.0.upper.0, times: [0, 1], values: [0.05, 0.25]}, {parameter: pins.1.radius, times: [0, "
-                "1], values: [0.15, 0.25]}")));
+  CHECK(refused(key("pins.0.lower.0", "0, 1", "-0.05, 0.15") + key("pins.0.upper.0", "0, 1", "0.05, 0.25") +
+                key("pins.1.radius", "0, 1", "0.15, 0.25")) == "");
   // The key of another pin is not to blame.
-  CHECK_THROWS_WITH(
-      scene_from(with_keys("{parameter: pins.1.radius, times: [0, 1], values: [0.15, 0.2]}, "
-                           "{parameter: pins.0.lower.0, times: [0, 1], values: [-0.05, 0.02]}")),
-      Catch::Contains("key \"pins.0.lower.0\" at pseudo-time 1: pin 0 (box)") &&
-          !Catch::Contains("pins.1.radius"));
+  CHECK_THAT(
+      refused(key("pins.1.radius", "0, 1", "0.15, 0.2") + key("pins.0.lower.0", "0, 1", "-0.05, 0.02")),
+      Contains("key \"pins.0.lower.0\" at pseudo-time 1: pin 0 (box)") && !Contains("pins.1.radius"));
+
+  CHECK_THAT(refused(key("handles.0.lower", "0, 2", "[-1, 0.35, -1], [-1, 0.1, -1]")),
+             Contains("key \"handles.0.lower\" at pseudo-time 2: energy handles changes its stencils"));
+  const std::string tolerance = "energies.midedge_bending.correction_tolerance";
+  CHECK_THAT(
+      scene_refusal(replaced(with_keys(key(tolerance, "0, 1, 2", "1, 0, 1")), "one_way, columns: 5, rows: 5",
+                             "random, vertices: 40")),
+      Contains("key \"" + tolerance + "\" at pseudo-time 1: energy midedge_bending changes its stencils"));
 }
 
-TEST_CASE("A key is refused before the run if it changes the stencils of an energy") {
-  CHECK_THROWS_WITH(
-      scene_from(with_keys("{parameter: handles.0.lower, times: [0, 2], values: [[-1, 0.35, -1], [-1, 0.1, "
-                           "-1]]}")),
-      Catch::Contains("key \"handles.0.lower\" at pseudo-time 2: energy handles changes its stencils"));
-  const std::string tolerance =
-      "{parameter: energies.midedge_bending.correction_tolerance, times: [0, 1, 2], values: [1, 0, 1]}";
-  CHECK_THROWS_WITH(
-      scene_from(replaced(with_keys(tolerance), "one_way, columns: 5, rows: 5", "random, vertices: 40")),
-      Catch::Contains("key \"energies.midedge_bending.correction_tolerance\" at pseudo-time 1: "
-                      "energy midedge_bending changes its stencils"));
-}
-
-TEST_CASE("A load at which a pin has no vertex is refused between the keys' times too") {
+TEST_CASE("A load at which a pin has no vertex, or two pins meet, is refused between the keys' times too") {
   // The box passes between two vertices of the border.
-  const Solved s = scene_from(with_keys(
-      "{parameter: pins.0.lower.0, times: [0, 1], values: [-0.02, 0.08]}, {parameter: pins.0.upper.0, times: "
-      "[0, 1], values: [0.02, 0.12]}"));
-  const LoadSchedule schedule(s.experiment, *s.scene);
-  const auto model = [&](double time) {
-    return schedule.model(*schedule.at(schedule.keys().values_at(time)), 0, *s.scene->models[0]);
-  };
-  CHECK(model(0)->dirichlet().size() == model(1)->dirichlet().size());
-  CHECK_THROWS_WITH(model(0.5), "pin 0 selects no vertex of level 0");
-}
-
-TEST_CASE("Two pins that meet with different targets between the keys' times are refused there") {
+  const Scheduled passing(
+      with_keys(key("pins.0.lower.0", "0, 1", "-0.02, 0.08") + key("pins.0.upper.0", "0, 1", "0.02, 0.12")));
+  CHECK(passing.model_at(0)->dirichlet().size() == passing.model_at(1)->dirichlet().size());
+  CHECK_THROWS_WITH(passing.model_at(0.5), "pin 0 selects no vertex of level 0");
   // A lifted box passes over a row that the other pin holds.
-  const Solved s = scene_from(R"(name: crossing
+  const Scheduled crossing(R"(name: crossing
 cloth: {shape: square, side: 1, triangulation: one_way, columns: 11, rows: 11}
 levels: 1
 pins:
@@ -277,16 +269,9 @@ pins:
   - {region: box, lower: [-0.05, -1, -1], upper: [0.05, 2, 1], translate: [0, 0, 0.1]}
 energies: [neo_hookean, gravity]
 methods: {newton: {}}
-schedule:
-  steps: 10
-  keys:
-    - {parameter: pins.1.lower.0, times: [0, 1], values: [-0.05, 0.95]}
-    - {parameter: pins.1.upper.0, times: [0, 1], values: [0.05, 1.05]}
-)");
-  const LoadSchedule schedule(s.experiment, *s.scene);
-  const auto model = [&](double time) {
-    return schedule.model(*schedule.at(schedule.keys().values_at(time)), 0, *s.scene->models[0]);
-  };
-  CHECK(model(0.4)->dirichlet().size() == 22);
-  CHECK_THROWS_WITH(model(0.5), Catch::Contains("pin 1 and pin 0 both select vertex"));
+schedule: {steps: 10, keys: [)" +
+                           key("pins.1.lower.0", "0, 1", "-0.05, 0.95") +
+                           key("pins.1.upper.0", "0, 1", "0.05, 1.05") + "]}\n");
+  CHECK(crossing.model_at(0.4)->dirichlet().size() == 22);
+  CHECK_THROWS_WITH(crossing.model_at(0.5), Contains("pin 1 and pin 0 both select vertex"));
 }
