@@ -15,9 +15,10 @@ using namespace drape;
 namespace {
 
 constexpr double none = std::numeric_limits<double>::quiet_NaN();
+const ViewDocument::Obstacles no_obstacles;  // documents refer to theirs
 
 template <class T>
-T at(const std::string& bytes, std::size_t place) {
+T number_at(const std::string& bytes, std::size_t place) {
   T value;
   std::memcpy(&value, bytes.data() + place, sizeof value);
   return value;
@@ -27,10 +28,10 @@ T at(const std::string& bytes, std::size_t place) {
 Positions decoded(const std::string& bytes, Eigen::Index n) {
   Positions x(n, 3);
   for (int k = 0; k < 3; ++k) {
-    const double lower = at<float>(bytes, 4 * k), size = at<float>(bytes, 12 + 4 * k);
+    const double lower = number_at<float>(bytes, 4 * k), size = number_at<float>(bytes, 12 + 4 * k);
     unsigned q = 0;
     for (Eigen::Index i = 0; i < n; ++i) {
-      q = (q + at<std::uint16_t>(bytes, 24 + 2 * (k * n + i))) & 65535u;
+      q = (q + number_at<std::uint16_t>(bytes, 24 + 2 * (k * n + i))) & 65535u;
       x(i, k) = lower + size * q / 65535;
     }
   }
@@ -53,36 +54,30 @@ TEST_CASE("positions come back within the rounding that is stated") {
     CHECK(error > 0);
     CHECK(error <= size.maxCoeff() / 65535 / 2 + std::ldexp(largest, -23));
   }
-
   x(3, 1) = none;
   CHECK(decoded(encode_positions(x), 64).allFinite());
   CHECK(decoded(encode_positions(Positions::Zero(2, 3)), 2).isZero(0));
 }
 
-TEST_CASE("triangles are differences, and pack well") {
+TEST_CASE("triangles are differences, and pack well; scalars include their range's ends, 255 is missing") {
   const Level level = square(40);
-  const std::string bytes = encode_triangles(level.rest.triangles);
+  const std::string triangles = encode_triangles(level.rest.triangles);
   const Eigen::Index m = level.triangle_count();
-  REQUIRE(bytes.size() == static_cast<std::size_t>(12 * m));
+  REQUIRE(triangles.size() == static_cast<std::size_t>(12 * m));
   for (int k = 0; k < 3; ++k) {
     int v = 0;
     for (Eigen::Index t = 0; t < m; ++t) {
-      v += at<std::int32_t>(bytes, 4 * (k * m + t));
+      v += number_at<std::int32_t>(triangles, 4 * (k * m + t));
       REQUIRE(v == level.rest.triangles(t, k));
     }
   }
-  CHECK(deflated(bytes).size() < bytes.size() / 10);
-}
+  CHECK(deflated(triangles).size() < triangles.size() / 10);
 
-TEST_CASE("scalars include their range's ends, and 255 is missing") {
-  const std::string bytes = encode_scalars(Eigen::Vector4d(-9, 1, none, 99), 0, 2);
-  REQUIRE(bytes.size() == 12);
-  CHECK(at<float>(bytes, 0) == 0);
-  CHECK(at<float>(bytes, 4) == 2);
-  CHECK(at<std::uint8_t>(bytes, 8) == 0);
-  CHECK(at<std::uint8_t>(bytes, 9) == 127);
-  CHECK(at<std::uint8_t>(bytes, 10) == 255);
-  CHECK(at<std::uint8_t>(bytes, 11) == 254);
+  const std::string scalars = encode_scalars(Eigen::Vector4d(-9, 1, none, 99), 0, 2);
+  REQUIRE(scalars.size() == 12);
+  CHECK(number_at<float>(scalars, 0) == 0);
+  CHECK(number_at<float>(scalars, 4) == 2);
+  CHECK(scalars.substr(8) == std::string("\0\x7f\xff\xfe", 4));
 }
 
 TEST_CASE("the gap is the distance to an obstacle, or to the cloth folded over itself") {
@@ -117,29 +112,23 @@ TEST_CASE("nearly all magnitudes lie in a field's range, and what is not finite 
   CHECK(range("force", {}) == std::pair(0.0, 0.0));
 }
 
-TEST_CASE("the document names what can be coloured, and blocks of every state") {
-  const std::vector<Level> levels = {square(4)};
+TEST_CASE("contact forces are coloured from zero, and not where there are none") {
+  const std::vector<Level> levels = {square(1)};
   std::map<std::string, std::string> blocks;
-  ViewDocument view(levels, {}, false,
-                    [&](const std::string& name, std::string bytes) { blocks[name] = std::move(bytes); });
-  Positions x = levels[0].rest.vertices * 1.1;
-  x.col(2) = x.col(0).array().square();
-  const SurfaceFields fields = view.fields(0, x);
+  ViewDocument view(levels, no_obstacles, true,
+                    [&](const std::string& name, const std::string& bytes) { blocks[name] = bytes; });
+  SurfaceFields fields = view.fields(0, levels[0].rest.vertices);
+  add_contact_pressure(fields, Eigen::Vector4d(0, 2, 4, 4));
   view.set_ranges({&fields});
-  const auto state = view.state("s", x, fields);
-  const auto document = view.document("a title", {});
-  REQUIRE(document["fields"].size() == 2);  // no contact, no difference from a finest level
-  CHECK(document["fields"][0]["low"].get<double>() == -document["fields"][0]["high"].get<double>());
-  CHECK(document["fields"][1]["low"] == 1.0);
-  CHECK(blocks.at(state["x"]).size() == 24 + 6 * 25);
-  CHECK(blocks.at(state["fields"]["stretch"]).size() == 8 + 25);
-  CHECK(blocks.at(document["levels"][0]["block"]).size() == 12 * 32);
+  const Json state = view.state("s", levels[0].rest.vertices, fields),
+             document = view.document("a title", {}), last = document["fields"].back();
+  CHECK((last["name"] == "contact_pressure" && last["low"] == 0.0 && last["high"] == 4.0));
+  CHECK(blocks.at(state["fields"]["contact_pressure"]).substr(8) == "\xff\x7f\xfe\xfe");
 }
 
 TEST_CASE("a field's colours range over the states that are shown") {
   const std::vector<Level> levels = {square(1)};
-  const ViewDocument::Obstacles none_at_all;
-  ViewDocument view(levels, none_at_all, false, [](const std::string&, const std::string&) {});
+  ViewDocument view(levels, no_obstacles, false, [](const std::string&, const std::string&) {});
   const auto stretched = [](double largest) {
     return SurfaceFields{{"stretch", Eigen::VectorXd(Eigen::VectorXd::LinSpaced(4, 1, largest))}};
   };
@@ -151,23 +140,6 @@ TEST_CASE("a field's colours range over the states that are shown") {
   CHECK(view.document("a title", {})["fields"][0]["high"] == 1.25);
   CHECK_FALSE(view.set_ranges({}));
   CHECK(view.document("a title", {})["fields"][0]["high"] == 1.25);
-}
-
-TEST_CASE("contact forces are coloured from zero, and not where there are none") {
-  const std::vector<Level> levels = {square(1)};
-  std::map<std::string, std::string> blocks;
-  ViewDocument view(levels, {}, true,
-                    [&](const std::string& name, std::string bytes) { blocks[name] = std::move(bytes); });
-  SurfaceFields fields = view.fields(0, levels[0].rest.vertices);
-  add_contact_pressure(fields, Eigen::Vector4d(0, 2, 4, 4));
-  view.set_ranges({&fields});
-  const auto state = view.state("s", levels[0].rest.vertices, fields);
-  const auto document = view.document("a title", {});
-  REQUIRE(document["fields"].back()["name"] == "contact_pressure");
-  CHECK(document["fields"].back()["low"] == 0.0);
-  CHECK(document["fields"].back()["high"] == 4.0);
-  const std::string bytes = blocks.at(state["fields"]["contact_pressure"]).substr(8);
-  CHECK(bytes == "\xff\x7f\xfe\xfe");
 }
 
 TEST_CASE("a page of one state holds its blocks and names no other file") {
