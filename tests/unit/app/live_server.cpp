@@ -48,41 +48,21 @@ struct Served {
 
 }  // namespace
 
-TEST_CASE("slow peers delay neither the page nor the shutdown") {
+TEST_CASE("peers that are slow, or read none of their answer, delay neither the page nor the shutdown") {
   Served served(for_ever);
   REQUIRE(served.serves_page());
-  std::vector<std::unique_ptr<LiveClient>> slow;
-  for (int k = 0; k < 10; ++k) {
-    slow.push_back(std::make_unique<LiveClient>(served.address.port));
-    slow.back()->send("GET / HTTP/1.1\r\n");
-  }
+  std::vector<std::unique_ptr<LiveClient>> slow, deaf;
+  const auto connected = [&] { return std::make_unique<LiveClient>(served.address.port); };
+  for (int k = 0; k < 10; ++k) slow.emplace_back(connected())->send("GET / HTTP/1.1\r\n");
   for (int page = 0; page < 5; ++page) {
     for (const std::unique_ptr<LiveClient>& client : slow) CHECK(client->send("X-A: b\r\n"));
     REQUIRE(served.serves_page());
   }
-  served.server.reset();
-}
-
-TEST_CASE("a peer that reads none of its answer does not delay the shutdown") {
-  Served served(for_ever);
   served.body = std::string(50000000, 'p');
-  std::vector<std::unique_ptr<LiveClient>> deaf;
-  for (int k = 0; k < 4; ++k) {
-    deaf.push_back(std::make_unique<LiveClient>(served.address.port));
-    deaf.back()->send(served.address.request("GET", served.address.path + "block/b"));
-  }
+  for (int k = 0; k < 4; ++k)
+    deaf.emplace_back(connected())->send(served.address.request("GET", served.address.path + "block/b"));
   CHECK(served.status("GET", "/") == 404);
   served.server.reset();
-}
-
-TEST_CASE("a request through another port is told which one must be forwarded") {
-  const Served served(for_ever);
-  LiveAddress forwarded = served.address;
-  forwarded.host = "localhost:1";
-  const std::string refusal = served.answer(forwarded.request("GET", forwarded.path));
-  CHECK(refusal.starts_with("HTTP/1.1 403"));
-  CHECK(refusal.ends_with("A port that is forwarded to it must be " + std::to_string(served.address.port) +
-                          " too.\n"));
 }
 
 TEST_CASE("a request that does not arrive in time is given up") {
