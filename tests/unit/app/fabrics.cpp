@@ -4,10 +4,8 @@
 
 #include <catch2/catch.hpp>
 
-#include "core/app/files/yaml_file.h"
 #include "core/app/report/compare.h"
 #include "core/numerics/elements/orthotropic_stiffness.h"
-#include "tests/support/command.h"
 #include "tests/support/solve.h"
 
 using namespace drape;
@@ -15,18 +13,27 @@ using Catch::Contains;
 
 namespace {
 
-std::string experiment(const std::string& material) {
+std::string with_material(const std::string& material) {
   return "name: fabric\nmaterial: {" + material +
          "}\nenergies: [woven, midedge_bending, gravity]\nmethods: {newton: {}}\n";
 }
 
 Material material_of(const std::string& material) {
-  return experiment_from(experiment(material)).parameters.material;
+  return experiment_from(with_material(material)).parameters.material;
 }
 
-void check_refused(const std::string& material, const std::string& message) {
-  INFO(material);
-  CHECK_THROWS_WITH(material_of(material), Contains(message));
+/// Each material is refused with its message.
+void check_refused(const std::vector<std::pair<std::string, std::string>>& materials) {
+  for (const auto& [material, message] : materials) {
+    INFO(material);
+    CHECK_THROWS_WITH(material_of(material), Contains(message));
+  }
+}
+
+/// The keys of a saved material, without the braces.
+std::string saved_numbers(const ConfigNode& saved, const std::string& from, const std::string& to) {
+  const std::string numbers = replaced(saved.find("material")->one_line(), from, to);
+  return numbers.substr(1, numbers.size() - 2);
 }
 
 /// A file with fabrics of one's own.
@@ -40,7 +47,7 @@ struct OwnFabrics : Scratch {
 
 }  // namespace
 
-TEST_CASE("fabrics: every fabric of the table is a material with a source") {
+TEST_CASE("every fabric of the table is a material with a source") {
   CHECK(fabric_names().size() >= 10);
   for (const std::string& name : fabric_names()) {
     INFO(name);
@@ -58,8 +65,8 @@ TEST_CASE("fabrics: every fabric of the table is a material with a source") {
   }
 }
 
-TEST_CASE("fabrics: what is written beside a fabric takes precedence, and the numbers are saved") {
-  const Experiment e = experiment_from(experiment("fabric: gray-interlock, warp_bending: 3e-5"));
+TEST_CASE("what is written beside a fabric takes precedence, and the numbers are saved") {
+  const Experiment e = experiment_from(with_material("fabric: gray-interlock, warp_bending: 3e-5"));
   const Material m = e.parameters.material;
   CHECK(m.area_density() == Approx(0.187));
   CHECK(m.warp_bending == 3e-5);
@@ -74,28 +81,23 @@ TEST_CASE("fabrics: what is written beside a fabric takes precedence, and the nu
   CHECK(to_yaml(again.resolved) == to_yaml(e.resolved));
 }
 
-TEST_CASE("fabrics: a fabric beside the numbers that a run has saved gives nothing and is refused") {
-  const ConfigNode saved = experiment_from(experiment("fabric: cotton")).resolved;
-  const std::string numbers =
-      replaced(saved.find("material")->one_line(), "fabric: null", "fabric: wool-lycra");
-  CHECK_THROWS_WITH(material_of(numbers.substr(1, numbers.size() - 2)),
-                    Contains("\"fabric\" gives nothing: every number of wool-lycra is written beside it; "
-                             "leave out those that it is to give"));
-  const Experiment e = experiment_from(experiment("from_fabric: cotton, fabric: wool-lycra"));
+TEST_CASE("a fabric beside the numbers that a run has saved gives nothing and is refused") {
+  const ConfigNode saved = experiment_from(with_material("fabric: cotton")).resolved;
+  check_refused(
+      {{saved_numbers(saved, "fabric: null", "fabric: wool-lycra"),
+        "\"fabric\" gives nothing: every number of wool-lycra is written beside it; leave out those "
+        "that it is to give"}});
+  const Experiment e = experiment_from(with_material("from_fabric: cotton, fabric: wool-lycra"));
   CHECK(e.resolved.find("material")->find("from_fabric")->scalar == "wool-lycra");
-}
-
-TEST_CASE("fabrics: a name is no difference between two models") {
-  const ConfigNode named = experiment_from(experiment("fabric: gray-interlock")).resolved;
-  std::string numbers = named.find("material")->one_line();
-  numbers =
-      replaced(numbers.substr(1, numbers.size() - 2), "from_fabric: gray-interlock", "from_fabric: null");
-  const ConfigNode plain = experiment_from(experiment(numbers)).resolved;
+  // A name is no difference between two models.
+  const ConfigNode named = experiment_from(with_material("fabric: gray-interlock")).resolved;
+  const std::string numbers = saved_numbers(named, "from_fabric: gray-interlock", "from_fabric: null");
+  const ConfigNode plain = experiment_from(with_material(numbers)).resolved;
   CHECK(differing_model_keys(named, plain).empty());
   CHECK(model_of(named) == model_of(plain));
 }
 
-TEST_CASE("fabrics: a thickness beside a fabric keeps the sheet's mass and stiffness") {
+TEST_CASE("a thickness beside a fabric keeps the sheet's mass and stiffness") {
   const OwnFabrics own(
       "name, density, thickness, membrane_modulus, bending_modulus, warp_stiffness, warp_bending\n"
       "measured, 500, 4e-4, 1e6, 2e6, , \nper volume, 500, , 1e6, 2e6, , \n"
@@ -114,19 +116,17 @@ TEST_CASE("fabrics: a thickness beside a fabric keeps the sheet's mass and stiff
     CHECK(bending_stiffness(thick) == Approx(bending_stiffness(usual)));
   }
   // Numbers of the bulk whose thickness the source does not give, and what is written beside the fabric.
-  const Material bulk = material_of(own.row("per volume") + ", thickness: 6e-4");
-  CHECK(bulk.density == 500);
-  CHECK(bulk.membrane_modulus == 1e6);
-  CHECK(bulk.bending_modulus == 2e6);
-  const Material written = material_of(
-      "fabric: cotton, thickness: 6e-4, density: 400, membrane_modulus: 7e4, bending_modulus: 9e4");
-  CHECK(written.density == 400);
-  CHECK(written.membrane_modulus == 7e4);
-  CHECK(written.bending_modulus == 9e4);
-  check_refused("fabric: cotton, thickness: 0", "\"thickness\" must be at least ");
+  const auto numbers = [](const std::string& material) {
+    const Material m = material_of(material + ", thickness: 6e-4");
+    return Eigen::Vector3d(m.density, m.membrane_modulus, m.bending_modulus);
+  };
+  CHECK(numbers(own.row("per volume")) == Eigen::Vector3d(500, 1e6, 2e6));
+  CHECK(numbers("fabric: cotton, density: 400, membrane_modulus: 7e4, bending_modulus: 9e4") ==
+        Eigen::Vector3d(400, 7e4, 9e4));
+  check_refused({{"fabric: cotton, thickness: 0", "\"thickness\" must be at least "}});
 }
 
-TEST_CASE("fabrics: a modulus beside a fabric replaces its stiffness by direction, and the other way round") {
+TEST_CASE("a modulus beside a fabric replaces its stiffness by direction, and the other way round") {
   const OwnFabrics own(
       "name, mass, warp_stiffness, weft_stiffness, shear_stiffness, warp_bending, weft_bending\n"
       "twill, 0.3, 300, 200, 40, 2e-5, 9e-6\n");
@@ -145,12 +145,12 @@ TEST_CASE("fabrics: a modulus beside a fabric replaces its stiffness by directio
   CHECK(directed.warp_stiffness == 50);
   CHECK(directed.bending_modulus == Material().bending_modulus);
   CHECK(directed.membrane_modulus == Material().membrane_modulus);
-  check_refused(row + ", bending_modulus: 9e4, weft_bending: 1e-5",
-                "\"weft_bending\" needs \"warp_bending\"");
-  check_refused(row + ", bending_modulus: 9e4, warp_bending: 1e-5", "\"bending_modulus\" is not read beside");
+  check_refused(
+      {{row + ", bending_modulus: 9e4, weft_bending: 1e-5", "\"weft_bending\" needs \"warp_bending\""},
+       {row + ", bending_modulus: 9e4, warp_bending: 1e-5", "\"bending_modulus\" is not read beside"}});
 }
 
-TEST_CASE("fabrics: isotropic energies take the mean of warp and weft") {
+TEST_CASE("isotropic energies take the mean of warp and weft") {
   Material m;
   m.thickness = 1e-3;
   m.warp_stiffness = 100, m.weft_stiffness = 400, m.warp_bending = 1e-6, m.weft_bending = 4e-6;
@@ -158,21 +158,31 @@ TEST_CASE("fabrics: isotropic energies take the mean of warp and weft") {
   CHECK(m.mean_bending_modulus() == Approx(12 * 2e-6 / 1e-9));
 }
 
-TEST_CASE("fabrics: a name that the table does not have is refused with the nearest one") {
-  check_refused("fabric: gray_interlok",
-                "unknown fabric \"gray_interlok\"; did you mean \"gray-interlock\"?");
-  // A part of one name, too short to be near it, and one of two names.
-  check_refused("fabric: white-dots", "unknown fabric \"white-dots\"; did you mean \"white-dots-on-blk\"?");
-  check_refused("fabric: Denim", "did you mean \"11oz-black-denim\"?");
-  check_refused("fabric: polyester", "unknown fabric \"polyester\"; it has cotton, ");
-  check_refused("fabric: [a, b]", "\"fabric\" is a name, or {file: fabrics.csv, row: NAME}");
+TEST_CASE("unknown names, and numbers that hide each other or that no cloth has, are refused") {
+  check_refused({
+      {"fabric: gray_interlok", "unknown fabric \"gray_interlok\"; did you mean \"gray-interlock\"?"},
+      // A part of one name, too short to be near it, and one of two names.
+      {"fabric: white-dots", "unknown fabric \"white-dots\"; did you mean \"white-dots-on-blk\"?"},
+      {"fabric: Denim", "did you mean \"11oz-black-denim\"?"},
+      {"fabric: polyester", "unknown fabric \"polyester\"; it has cotton, "},
+      {"fabric: [a, b]", "\"fabric\" is a name, or {file: fabrics.csv, row: NAME}"},
+      {"warp_bending: 1e-5, bending_modulus: 1e5", "\"bending_modulus\" is not read beside"},
+      {"warp_stiffness: 100, membrane_modulus: 1e5", "\"membrane_modulus\" is not read beside"},
+      {"weft_bending: 1e-5", "\"weft_bending\" needs \"warp_bending\""},
+      {"fabric: cotton, fabric: wool-lycra", "repeated key \"fabric\""},
+      {"warp_bending: 1e-5, bias_bending: 1e-3", "not positive definite: with \"bias_bending\""},
+  });
+  const std::string keys =
+      "schedule: {keys: [{parameter: material.bending_modulus, times: [0, 1], values: [8e4, 8e3]}]}\n";
+  CHECK_THROWS_WITH(experiment_from(with_material("warp_bending: 1e-5") + keys),
+                    Contains("\"bending_modulus\" is not read beside"));
+  CHECK_NOTHROW(experiment_from(with_material("fabric: gray-interlock") + keys));
 }
 
-TEST_CASE("fabrics: a row of a file, whose faults are named") {
+TEST_CASE("a row of a file, whose faults are named") {
   const OwnFabrics own(
-      "name, mass, thickness, warp_bending, weft_bending\n"
-      "twill, 0.3, 5e-4, 2e-5, 9e-6\nlight, , , 1e-6,\nworse, 0.1, 5e-4, stiff, 1e-6\nbare, 0.2, "
-      "5e-4, , 1e-6\nbuoyant, -0.2, 5e-4, 1e-6, 1e-6\n");
+      "name, mass, thickness, warp_bending, weft_bending\ntwill, 0.3, 5e-4, 2e-5, 9e-6\nlight, , , 1e-6,\n"
+      "worse, 0.1, 5e-4, stiff, 1e-6\nbare, 0.2, 5e-4, , 1e-6\nbuoyant, -0.2, 5e-4, 1e-6, 1e-6\n");
   const Material m = material_of(own.row("twill"));
   CHECK(m.density == Approx(600));
   CHECK(m.warp_bending == 2e-5);
@@ -188,52 +198,32 @@ TEST_CASE("fabrics: a row of a file, whose faults are named") {
     CHECK(material_of(own.row("twill")) == m);
     CHECK(drape_ends("fabric --file own.csv", own).out == "twill\nlight\nworse\nbare\nbuoyant\n");
   }
+  check_refused({
+      {own.row("twil"), "own.csv has 5 rows and none named \"twil\"; did you mean \"twill\"?"},
+      {own.row("light"), "row \"light\" lacks column \"mass\" [kg/m²]"},
+      {own.row("worse"), "row \"worse\" has \"stiff\" in column \"warp_bending\", which is not a number"},
+      {own.row("buoyant"), "row \"buoyant\" has \"-0.2\" in column \"mass\", which is not a number above 0"},
+      {own.row("bare"), "row \"bare\" lacks column \"warp_bending\" [N m]"},
+      {"fabric: {file: " + (own / "none.csv").string() + ", row: 1}", "is not a file"},
+  });
+  const Experiment e = experiment_from(with_material(own.row("twill")));
+  CHECK(e.parameters.material.from_fabric == "{file: " + own.file() + ", row: twill}");
+  CHECK(to_yaml(experiment_from(to_yaml(e.resolved)).resolved) == to_yaml(e.resolved));
+  // The mass is that of the sheet, and a density beside it is not read.
   own.write("own.csv",
             "\"name\",use,\"mass\",density,thickness,warp_bending,weft_bending\n"
             "twill,\"shirt, \"\"fine\"\"\",0.3,\"700\",5e-4,2e-5,9e-6\n");
-  CHECK(material_of(own.row("twill")) ==
-        m);  // the mass is that of the sheet, and a density beside it is not read
-  own.write("own.csv", saved);
-  const Experiment e = experiment_from(experiment(own.row("twill")));
-  CHECK(e.parameters.material.from_fabric == "{file: " + own.file() + ", row: twill}");
-  CHECK(to_yaml(experiment_from(to_yaml(e.resolved)).resolved) == to_yaml(e.resolved));
-  check_refused(own.row("twil"), "own.csv has 5 rows and none named \"twil\"; did you mean \"twill\"?");
-  check_refused(own.row("light"), "row \"light\" lacks column \"mass\" [kg/m²]");
-  check_refused(own.row("worse"),
-                "row \"worse\" has \"stiff\" in column \"warp_bending\", which is not a number");
-  check_refused(own.row("buoyant"),
-                "row \"buoyant\" has \"-0.2\" in column \"mass\", which is not a number above 0");
-  check_refused(own.row("bare"), "row \"bare\" lacks column \"warp_bending\" [N m]");
-  check_refused("fabric: {file: " + (own / "none.csv").string() + ", row: 1}", "is not a file");
-}
-
-TEST_CASE("fabrics: rows of ClothDrapeTester's table are read by number") {
-  const OwnFabrics own(
-      "density[kg.m-2], linear warp[SI*1e9], linear weft[SI*1e9], linear diag[SI*1e9], nonlinear "
-      "warp[SI*1e12]\n"
-      "0.2, 9000, 7000, 4000, -44000\n");
+  CHECK(material_of(own.row("twill")) == m);
+  // Rows of ClothDrapeTester's table are read by number.
+  own.write("own.csv",
+            "density[kg.m-2], linear warp[SI*1e9], linear weft[SI*1e9], linear diag[SI*1e9], nonlinear "
+            "warp[SI*1e12]\n0.2, 9000, 7000, 4000, -44000\n");
   CHECK(fabric_names(own / "own.csv") == std::vector<std::string>{"1"});
-  const Material m = material_of(own.row("1"));
-  CHECK(m.area_density() == Approx(0.2));
-  CHECK(*m.warp_bending == Approx(9e-6));
-  CHECK(*m.weft_bending == Approx(7e-6));
-  CHECK(*m.bias_bending == Approx(4e-6));
-}
-
-TEST_CASE("fabrics: numbers that hide each other, or that no cloth has, are refused") {
-  check_refused("warp_bending: 1e-5, bending_modulus: 1e5", "\"bending_modulus\" is not read beside");
-  check_refused("warp_stiffness: 100, membrane_modulus: 1e5", "\"membrane_modulus\" is not read beside");
-  check_refused("weft_bending: 1e-5", "\"weft_bending\" needs \"warp_bending\"");
-  check_refused("fabric: cotton, fabric: wool-lycra", "repeated key \"fabric\"");
-  check_refused("warp_bending: 1e-5, bias_bending: 1e-3", "not positive definite: with \"bias_bending\"");
-}
-
-TEST_CASE("fabrics: a schedule of a modulus that a stiffness by direction hides is refused") {
-  const std::string keys =
-      "schedule: {keys: [{parameter: material.bending_modulus, times: [0, 1], values: [8e4, 8e3]}]}\n";
-  CHECK_THROWS_WITH(experiment_from(experiment("warp_bending: 1e-5") + keys),
-                    Contains("\"bending_modulus\" is not read beside"));
-  CHECK_NOTHROW(experiment_from(experiment("fabric: gray-interlock") + keys));
+  const Material tested = material_of(own.row("1"));
+  CHECK(tested.area_density() == Approx(0.2));
+  CHECK(*tested.warp_bending == Approx(9e-6));
+  CHECK(*tested.weft_bending == Approx(7e-6));
+  CHECK(*tested.bias_bending == Approx(4e-6));
 }
 
 TEST_CASE("drape fabric prints what a laboratory measures, and lists the table") {
@@ -251,9 +241,7 @@ TEST_CASE("drape fabric prints what a laboratory measures, and lists the table")
                  Contains("weft and bias not measured: as of an isotropic cloth\n"));
   CHECK_THAT(shown_by("fabric wool-lycra", folder.path), Contains("N/m\n"));
   CHECK_THAT(refused_by("fabric denim", folder.path), Contains("unknown fabric \"denim\""));
-}
-
-TEST_CASE("drape fabric prints a row's name as YAML has it") {
+  // A row's name is printed as YAML has it.
   const OwnFabrics own("name,mass,thickness,warp_bending\n\"twill, fine\",0.3,5e-4,2e-5\n");
   CHECK_THAT(shown_by("fabric 'twill, fine' --file own.csv", own.path),
              Contains("material: {fabric: {file: own.csv, row: \"twill, fine\"}}"));

@@ -8,14 +8,6 @@ using namespace drape;
 
 namespace {
 
-ClothParameters rectangle(double width, double height, int vertices) {
-  ClothParameters c;
-  c.shape = "rectangle";
-  c.size = {width, height};
-  c.vertices = vertices;
-  return c;
-}
-
 /// Of a square of so many columns and rows.
 Experiment grid_of(int columns, int levels) {
   Experiment e;
@@ -24,7 +16,7 @@ Experiment grid_of(int columns, int levels) {
   return e;
 }
 
-std::string refusal(const Experiment& e, LargeMemory large = LargeMemory::refused) {
+std::string refusal_of_size(const Experiment& e, LargeMemory large) {
   ConfigErrors errors;
   refuse_too_large(e, large, errors);
   REQUIRE(errors.size() <= 1);
@@ -34,27 +26,26 @@ std::string refusal(const Experiment& e, LargeMemory large = LargeMemory::refuse
 }  // namespace
 
 TEST_CASE("A grid has about as many vertices as were asked for, or is refused with both numbers") {
-  CHECK(grid_counts(rectangle(2, 0.5, 1024)) == Eigen::Vector2i(64, 16));
-  CHECK_THROWS_WITH(grid_counts(rectangle(1e6, 1e-6, 1024)),
+  const auto counts = [](double width, double height, int columns, int rows,
+                         const std::string& triangulation = "criss_cross") {
+    ClothParameters c;
+    c.shape = "rectangle";
+    c.size = {width, height};
+    c.vertices = 1024;
+    c.columns = columns, c.rows = rows, c.triangulation = triangulation;
+    return grid_counts(c);
+  };
+  CHECK(counts(2, 0.5, 0, 0) == Eigen::Vector2i(64, 16));
+  CHECK(counts(1e6, 1e-6, 512, 2).x() == 512);
+  CHECK_THROWS_WITH(counts(1e6, 1e-6, 0, 0),
                     "rectangle: about 1024 vertices are asked for, but its grid of even cells has "
                     "3.2e+07 × 2 = 6.4e+07; set columns and rows, or ask for another number of vertices");
-  ClothParameters c = rectangle(1e6, 1e-6, 1024);
-  c.columns = 512;
-  c.rows = 2;
-  CHECK(grid_counts(c).x() == 512);
-  c.triangulation = "equilateral";
-  c.columns = 0;
-  CHECK_THROWS_WITH(grid_counts(c),
-                    "rectangle: a grid of 1e+09 × 2 vertices is too large; a coarsest level has "
-                    "at most 1e+07");
-  c.triangulation = "one_way";
-  c.columns = c.rows = 10000;
-  CHECK_THROWS_WITH(grid_counts(c),
-                    "rectangle: a grid of 10000 × 10000 vertices is too large; a coarsest level has at most "
-                    "1e+07");
+  const std::string most = " vertices is too large; a coarsest level has at most 1e+07";
+  CHECK_THROWS_WITH(counts(1e6, 1e-6, 0, 2, "equilateral"), "rectangle: a grid of 1e+09 × 2" + most);
+  CHECK_THROWS_WITH(counts(1e6, 1e-6, 10000, 10000, "one_way"), "rectangle: a grid of 10000 × 10000" + most);
 }
 
-TEST_CASE("Vertices by level are known before anything is built") {
+TEST_CASE("Vertices by level, and memory within what was measured, are known before anything is built") {
   CHECK((estimated_vertices(grid_of(6, 3).parameters) == std::vector<double>{36, 121, 441}));
   ExperimentParameters disc;
   disc.cloth.shape = "disc";
@@ -63,9 +54,6 @@ TEST_CASE("Vertices by level are known before anything is built") {
   CHECK((estimated_vertices(disc) == std::vector<double>{100, 400}));
   disc.cloth.shape = "file";
   CHECK(estimated_vertices(disc).empty());
-}
-
-TEST_CASE("Memory is estimated within what was measured") {
   // Peaks of benchmarks/results: the sphere and the cube on 98K vertices, the bunny's cloth on 187K.
   CHECK(estimated_memory(97969) > 3.34e9);
   CHECK(estimated_memory(97969) < 2 * 2.26e9);
@@ -75,13 +63,13 @@ TEST_CASE("Memory is estimated within what was measured") {
 }
 
 TEST_CASE("More vertices than can be counted are refused, with --allow-memory too") {
-  CHECK(refusal(grid_of(12, 10), LargeMemory::allowed) == "");  // 31.7 million vertices: 1.6 TB
-  CHECK(refusal(grid_of(1000, 10), LargeMemory::allowed) ==
+  CHECK(refusal_of_size(grid_of(12, 10), LargeMemory::allowed) == "");  // 31.7 million vertices: 1.6 TB
+  CHECK(refusal_of_size(grid_of(1000, 10), LargeMemory::allowed) ==
         "level 9 would have about 2.6e+11 vertices, more than the 4e+07 that can be counted; take at most 3 "
         "levels");
   // Memory suffices for fewer than can be counted: both are said.
   CHECK_THAT(
-      refusal(grid_of(24, 10)),
+      refusal_of_size(grid_of(24, 10), LargeMemory::refused),
       Catch::Matches(".* that can be counted; take at most [1-8] levels, for which this machine's memory "
                      "of [0-9.]+ GB suffices, or up to 9 levels with --allow-memory"));
 }
@@ -89,20 +77,18 @@ TEST_CASE("More vertices than can be counted are refused, with --allow-memory to
 TEST_CASE(
     "A container's memory is what its limit leaves, without the files that the kernel drops on demand") {
   const Scratch group;
-  CHECK(ContainerMemory::of(group.path).limit > 1e17);
+  const auto memory = [&] { return ContainerMemory::of(group.path); };
+  CHECK(memory().limit > 1e17);
   group.write("memory.max", "max");  // no limit
-  CHECK(ContainerMemory::of(group.path).available > 1e17);
+  CHECK(memory().available > 1e17);
   group.write("memory.max", "4000");
   group.write("memory.current", "3000");
-  CHECK(ContainerMemory::of(group.path).limit == 4000);
-  CHECK(ContainerMemory::of(group.path).available == 1000);
+  CHECK(memory().limit == 4000);
+  CHECK(memory().available == 1000);
   group.write("memory.stat", "anon 1000\ninactive_file 500\nactive_file 20");
-  CHECK(ContainerMemory::of(group.path).available == 1500);
+  CHECK(memory().available == 1500);
   group.write("memory.current", "9000");
-  CHECK(ContainerMemory::of(group.path).available == 0);
-}
-
-TEST_CASE("This machine's available memory is known") {
-  CHECK(available_memory() > 0);
+  CHECK(memory().available == 0);
+  CHECK(available_memory() > 0);  // of this machine
   CHECK(available_memory() < 1e17);
 }
