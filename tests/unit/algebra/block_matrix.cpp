@@ -1,9 +1,10 @@
 #include "core/numerics/linear_algebra/block_matrix.h"
 
+#include <Eigen/SparseCore>
 #include <catch2/catch.hpp>
-#include <random>
 #include <set>
 
+#include "core/numerics/linear_algebra/galerkin.h"
 #include "tests/support/evaluate.h"
 #include "tests/support/random_block_matrix.h"
 
@@ -22,47 +23,25 @@ TEST_CASE("A block pattern is the union of the elements' pairs") {
 
   const auto pattern = BlockPattern::of(n, stencils);
   REQUIRE(pattern->rows() == n);
-  std::set<std::pair<int, int>> found;
+  REQUIRE(pattern->columns.size() == expected.size());
+  int block = 0;
   for (int i = 0; i < n; ++i) {
-    CHECK(pattern->columns[pattern->row_start[i]] == i);
-    for (int b = pattern->row_start[i]; b < pattern->row_start[i + 1]; ++b) {
-      if (b > pattern->row_start[i]) CHECK(pattern->columns[b - 1] < pattern->columns[b]);
-      CHECK(pattern->find(i, pattern->columns[b]) == b);
-      found.insert({i, pattern->columns[b]});
+    CHECK(pattern->row_start[i] == block);
+    for (int j = i; j < n; ++j) {
+      const bool has = expected.count({i, j});
+      CHECK(pattern->find(i, j) == (has ? block : -1));
+      if (has) CHECK(pattern->columns[block++] == j);
     }
   }
-  CHECK(found == expected);
-  for (int i = 0; i < n; ++i)
-    for (int j = i; j < n; ++j)
-      if (!expected.count({i, j})) CHECK(pattern->find(i, j) == -1);
   CHECK(BlockPattern::of(3, {})->columns == std::vector<int>({0, 1, 2}));
 }
 
-TEST_CASE("Elements' blocks are summed into the right blocks, transposed where their vertices descend") {
-  const int n = 12;
-  const Stencils s = tangle(n, 40, 4).leftCols(3);
-  BlockMatrix matrix(BlockPattern::of(n, {s, tangle(n, 5, 5).leftCols(2)}));
-  const BlockSlots slots(*matrix.pattern, s);
-  BlockSink sink = slots.sink(matrix);
-  Eigen::MatrixXd expected = Eigen::MatrixXd::Zero(3 * n, 3 * n);
-  std::mt19937 random(6);
-  for (int e = 0; e < s.rows(); ++e)
-    for (int b = 0; b < 3; ++b)
-      for (int a = 0; a <= b; ++a) {
-        Eigen::Matrix<double, 3, 3, Eigen::RowMajor> h;
-        for (int i = 0; i < 9; ++i) h.data()[i] = random() / 4294967296.0;
-        if (a == b) h = (h + h.transpose()).eval();
-        sink.add(e, a, b, h.data());
-        expected.block<3, 3>(3 * s(e, a), 3 * s(e, b)) += h;
-        if (a != b) expected.block<3, 3>(3 * s(e, b), 3 * s(e, a)) += h.transpose();
-      }
-  CHECK((dense(matrix) - expected).norm() <= 1e-14 * expected.norm());
-
-  Positions x(n, 3), y;
-  for (int i = 0; i < 3 * n; ++i) x.data()[i] = random() / 4294967296.0 - 0.5;
-  matrix.multiply(x, y);
-  const Eigen::VectorXd product = expected * flat(x);
+TEST_CASE("A block matrix is multiplied as a dense one is, in place too") {
+  BlockMatrix matrix = random_matrix(60, tangle(60, 90, 4), 6);
+  Positions x = Positions::Random(60, 3), y;
+  const Eigen::VectorXd product = dense(matrix) * flat(x);
   REQUIRE(product.norm() > 1);
+  matrix.multiply(x, y);
   CHECK((flat(y) - product).norm() <= 1e-14 * product.norm());
   matrix.multiply(x, x);
   CHECK(x == y);
@@ -71,16 +50,12 @@ TEST_CASE("Elements' blocks are summed into the right blocks, transposed where t
 }
 
 TEST_CASE("Misuse of block matrices is named") {
-  Stencils outside(2, 2), repeated(1, 3);
-  outside << 0, 1, 2, 3;
-  repeated << 0, 2, 0;
-  CHECK_THROWS_WITH(BlockPattern::of(3, {outside}),
+  const Stencils pairs{{0, 1}, {2, 3}}, repeated{{0, 2, 0}}, missing{{3, 0}};
+  CHECK_THROWS_WITH(BlockPattern::of(3, {pairs}),
                     "block pattern: element 1 of 2 vertices has vertex 3, outside 0 … 2");
   CHECK_THROWS_WITH(BlockPattern::of(3, {repeated}),
                     "block pattern: element 0 of 3 vertices repeats vertex 0");
-  const auto pattern = BlockPattern::of(4, {outside});
-  Stencils missing(1, 2);
-  missing << 3, 0;
+  const auto pattern = BlockPattern::of(4, {pairs});
   CHECK_THROWS_WITH(BlockSlots(*pattern, missing),
                     "block pattern has no block for vertices 3 and 0 of element 0");
   CHECK_THROWS_WITH(BlockPattern({0, 1, 3}, {0, 0, 1}),
@@ -88,4 +63,25 @@ TEST_CASE("Misuse of block matrices is named") {
   CHECK_THROWS_WITH(BlockPattern({0, 2}, {0}), Catch::Contains("row starts"));
   Positions x(3, 3), y;
   CHECK_THROWS_WITH(BlockMatrix(pattern).multiply(x, y), "block matrix of 4 rows times 3 vectors");
+}
+
+TEST_CASE("The Galerkin product is the dense triple product") {
+  const int fine = 40, coarse = 13;
+  const BlockMatrix a = random_matrix(fine, 5);
+  std::vector<Eigen::Triplet<double>> weights;
+  for (int i = 0; i < fine; ++i)
+    for (int k = 0; k < 3; ++k)
+      weights.emplace_back(i, (i + 5 * k * (i % 3 + 1)) % coarse, 0.2 + 0.1 * k + 0.01 * i);
+  ProlongationMatrix P(fine, coarse);
+  P.setFromTriplets(weights.begin(), weights.end());
+  const GalerkinProduct product(*a.pattern, P);
+  BlockMatrix c(product.coarse_pattern());
+  product.form(a, c);
+
+  Eigen::MatrixXd P3 = Eigen::MatrixXd::Zero(3 * fine, 3 * coarse);
+  for (const auto& w : weights)
+    P3.block<3, 3>(3 * w.row(), 3 * w.col()) += w.value() * Eigen::Matrix3d::Identity();
+  const Eigen::MatrixXd expected = P3.transpose() * dense(a) * P3;
+  REQUIRE(expected.norm() > 1);
+  REQUIRE((dense(c) - expected).norm() < 1e-12 * expected.norm());
 }
