@@ -34,40 +34,31 @@ struct ChainOfSprings {
 
 /// The Hessian of unit springs between the chain's vertices.
 Eigen::MatrixXd springs_matrix(const PairSprings& springs) {
-  const int n = ChainOfSprings::n;
-  Eigen::MatrixXd h = Eigen::MatrixXd::Zero(3 * n, 3 * n);
-  for (const auto& [a, b, k] : springs.pairs)
-    for (int c = 0; c < 3; ++c) {
-      h(3 * a + c, 3 * a + c) += k;
-      if (b < 0) continue;
-      h(3 * b + c, 3 * b + c) += k;
-      h(3 * a + c, 3 * b + c) -= k;
-      h(3 * b + c, 3 * a + c) -= k;
-    }
+  Eigen::MatrixXd h = Eigen::MatrixXd::Zero(3 * ChainOfSprings::n, 3 * ChainOfSprings::n);
+  const auto add = [&](int a, int b, double k) { h.block<3, 3>(3 * a, 3 * b).diagonal().array() += k; };
+  for (const auto& [a, b, k] : springs.pairs) {
+    add(a, a, k);
+    if (b >= 0) add(b, b, k), add(a, b, -k), add(b, a, -k);
+  }
   return h;
 }
 
 }  // namespace
 
-TEST_CASE("elements whose blocks the pattern has are added in place", "[hessian_assembler]") {
+TEST_CASE("elements whose blocks the pattern has are added in place, others extend it") {
   ChainOfSprings chain;
   const PairSprings near({{3, 4}, {7, 6}, {0, -1}});
+  const Eigen::MatrixXd own = springs_matrix(chain.springs);
   const BlockMatrix& sum = chain.with(near);
   CHECK(&sum == &chain.matrix);
-  CHECK(dense(sum) == springs_matrix(chain.springs) + springs_matrix(near));
-}
+  CHECK(dense(sum) == own + springs_matrix(near));
 
-TEST_CASE("elements with missing blocks extend the pattern", "[hessian_assembler]") {
-  ChainOfSprings chain;
   const PairSprings far({{11, 2}, {5, 0}, {3, 4}}), persistent({{8, 9}, {2, -1}});
-  const Eigen::MatrixXd sum =
-      springs_matrix(chain.springs) + springs_matrix(far) + springs_matrix(persistent);
-  CHECK(dense(chain.with(far, {&persistent})) == sum);
-  CHECK(dense(chain.with(far, {&persistent})) == sum);  // independent of the last call
+  for (int call = 0; call < 2; ++call)  // independent of the last one
+    CHECK(dense(chain.with(far, {&persistent})) == own + springs_matrix(far) + springs_matrix(persistent));
 }
 
-TEST_CASE("the pattern stays while contacts slide, and drops blocks that were long unused",
-          "[hessian_assembler]") {
+TEST_CASE("the pattern stays while contacts slide, and drops blocks that were long unused") {
   ChainOfSprings chain;
   const auto first = chain.with(PairSprings({{2, 9}})).pattern;
   CHECK(first != chain.pattern);
