@@ -6,6 +6,7 @@
 #include "core/numerics/hierarchy/hierarchy.h"
 #include "core/numerics/model/lone_pins.h"
 #include "core/numerics/patterns/generate.h"
+#include "tests/support/meshes.h"
 #include "tests/support/refusal.h"
 #include "tests/support/registry.h"
 #include "tests/support/test_energies.h"
@@ -47,112 +48,95 @@ struct Shell : CopyingEnergy<OriginSprings> {
   }
 };
 
-/// Binds to this, or throws without it.
+using Make = std::unique_ptr<BoundEnergy> (*)();
+
+/// Binds to what a function makes, or throws with it.
 struct Binding : Energy {
-  std::unique_ptr<BoundEnergy> (*make)();
-  explicit Binding(std::unique_ptr<BoundEnergy> (*make)()) : make(make) {}
+  Make make;
+  explicit Binding(Make make) : make(make) {}
   EnergyRole role() const override { return EnergyRole::external; }
   std::unique_ptr<BoundEnergy> bind(const Level&, const Material&) const override { return make(); }
 };
 
+/// The oblong sheet with these energies.
+LevelModel oblong_model(const std::vector<NamedEnergy>& energies, const LevelModel* before = nullptr) {
+  return {oblong, Material(), energies, {}, {}, before};
+}
+
 }  // namespace
 
-TEST_CASE("an energy that cannot be bound, or is not what it says, is refused by name", "[level_model]") {
-  const auto refusal = [&](std::unique_ptr<BoundEnergy> (*make)()) {
+TEST_CASE("an energy that cannot be bound, or is not what it says, is refused by name") {
+  const auto refusal = [](Make make) {
     return refusal_of([&] {
-      LevelModel(oblong, Material(), {{"slope", slope(oblong, 2)}, {"wind", std::make_shared<Binding>(make)}},
-                 {});
+      oblong_model({{"slope", slope(oblong, 2)}, {"wind", std::make_shared<Binding>(make)}});
     });
   };
   CHECK(refusal([]() -> std::unique_ptr<BoundEnergy> { return nullptr; }) ==
         "energy wind: bind returned null; return an object, which may have no elements");
   CHECK(refusal([]() -> std::unique_ptr<BoundEnergy> { throw std::runtime_error("cannot bind"); }) ==
         "energy wind: cannot bind");
+  CHECK(refusal([]() -> std::unique_ptr<BoundEnergy> { throw 42; }) ==
+        "energy wind: an exception that is no std::exception");
   CHECK_THAT(refusal([]() -> std::unique_ptr<BoundEnergy> {
                return std::make_unique<OriginSprings>(Stencils(0, 1));
              }),
              Catch::StartsWith("energy wind has no elements, so it counts as linear, but"));
-  CHECK(refusal([]() -> std::unique_ptr<BoundEnergy> { throw 42; }) ==
-        "energy wind: an exception that is no std::exception");
 }
 
 TEST_CASE("an energy that replaces the gradient is refused by name, before another one writes to it") {
-  struct Replacing : OriginSprings {
-    using OriginSprings::OriginSprings;
+  struct Replacing : NoEnergy {
     double add_gradient(const Positions&, Positions& g) const override {
       g = Positions::Zero(3, 3);
       return 0;
     }
+    Stencils stencils() const override { return each_vertex(12); }
   };
   for (const EnergyRole role : {EnergyRole::membrane, EnergyRole::limit}) {
-    const LevelModel model(oblong, Material(),
-                           {{"short", energy_of(Replacing(each_vertex(12)), role)},
-                            {"springs", energy_of(OriginSprings(each_vertex(12)))}},
-                           {});
+    const LevelModel model = oblong_model(
+        {{"short", energy_of(Replacing(), role)}, {"springs", energy_of(OriginSprings(each_vertex(12)))}});
     CHECK(refusal_of([&] { model.force_residual(oblong.rest.vertices); }) ==
           "energy short: add_gradient has changed the size of g to 3 rows, not 12; add to its rows");
   }
 }
 
-TEST_CASE("linear energies are evaluated together, and limits apart", "[level_model]") {
+TEST_CASE("linear energies are evaluated together, and limits apart; parts have names of their own") {
   const Level level = Level::of(0, grid({2, 1}, 150, 100, Diagonals::one_way));
   const OriginSprings springs(each_vertex(level.vertex_count()));
-  const LevelModel model(level, Material(),
-                         {{"a", slope(level, 2)},
-                          {"springs", energy_of(springs)},
-                          {"limit", energy_of(springs, EnergyRole::limit)},
-                          {"b", slope(level, -0.5, 3)}},
-                         {});
-  const Positions x = level.rest.vertices.array() + 0.7;
-
-  double expected = 0;
-  for (const auto& [name, energy] : model.energy_parts(x))
-    if (name != "limit") expected += energy;
-  Positions g = Positions::Constant(1, 3, 7);  // of another size, and not zero
-  CHECK(model.gradient(x, g) == Approx(expected).epsilon(1e-12));
-  CHECK(model.value(x) == Approx(expected).epsilon(1e-12));
-  const Positions forces = 1.5 * level.rest.vertices.array().cos();
-  CHECK((g - (x - forces)).norm() < 1e-12 * g.norm());
-  CHECK(model.load_norm(x) == Approx(2.5 / 1.5 * forces.norm()).epsilon(1e-12));
-}
-
-TEST_CASE("the parts of the energy have names of their own and sum to it", "[level_model]") {
-  const std::vector<NamedEnergy> energies = {{"load", slope(oblong, 2)},
-                                             {"load 2", slope(oblong, 5)},
-                                             {"load", slope(oblong, -0.5)},
-                                             {"other", slope(oblong, 1)}};
-  const LevelModel model(oblong, Material(), energies, {});
-  const LevelModel later(oblong, Material(), energies, {}, {}, &model);
-  const Positions x = oblong.rest.vertices.array() + 0.7;
-  for (const LevelModel* own : {&model, &later}) {
+  const std::vector<NamedEnergy> energies = {{"load", slope(level, 2)},
+                                             {"load 2", energy_of(springs)},
+                                             {"limit", energy_of(springs, EnergyRole::limit)},
+                                             {"load", slope(level, -0.5, 3)}};
+  const LevelModel first(level, Material(), energies, {}), later(level, Material(), energies, {}, {}, &first);
+  const Positions x = level.rest.vertices.array() + 0.7, forces = 1.5 * level.rest.vertices.array().cos();
+  for (const LevelModel* model : {&first, &later}) {
     std::vector<std::string> names;
-    double sum = 0;
-    for (const auto& [name, joules] : own->energy_parts(x)) names.push_back(name), sum += joules;
-    CHECK(names == std::vector<std::string>{"load", "load 2", "load 3", "other"});
-    CHECK(sum == Approx(own->energy(x)).epsilon(1e-12));
+    double expected = 0;
+    for (const auto& [name, joules] : model->energy_parts(x)) {
+      names.push_back(name);
+      if (name != "limit") expected += joules;
+    }
+    CHECK(names == std::vector<std::string>{"load", "load 2", "limit", "load 3"});
+    Positions g = Positions::Constant(1, 3, 7);  // of another size, and not zero
+    CHECK(model->gradient(x, g) == Approx(expected).epsilon(1e-12));
+    CHECK(model->value(x) == Approx(expected).epsilon(1e-12));
+    CHECK((g - (x - forces)).norm() < 1e-12 * g.norm());
+    CHECK(model->load_norm(x) == Approx(2.5 / 1.5 * forces.norm()).epsilon(1e-12));
   }
 }
 
-TEST_CASE("A model refuses an energy whose stencils differ from those of the model before", "[level_model]") {
-  const auto model = [&](const Stencils& stencils, const LevelModel* before) {
-    return LevelModel(oblong, Material(), {{"springs", energy_of(OriginSprings(stencils))}}, {}, {}, before);
+TEST_CASE("A model refuses an energy whose stencils differ from those of the model before") {
+  const auto model = [](const Stencils& stencils, const LevelModel* before = nullptr) {
+    return oblong_model({{"springs", energy_of(OriginSprings(stencils))}}, before);
   };
-  const Stencils two{{0}, {1}}, four{{0}, {1}, {2}, {3}}, pairs{{0, 1}, {2, 3}}, others{{0}, {2}};
-  const std::vector<Stencils> kinds = {two, four, pairs, others};
-  for (std::size_t i = 0; i < kinds.size(); ++i)
-    for (std::size_t j = 0; j < kinds.size(); ++j) {
-      CAPTURE(i, j);
-      const LevelModel before = model(kinds[i], nullptr);
-      if (i == j)
-        CHECK_NOTHROW(model(kinds[j], &before));
-      else
-        CHECK_THROWS_WITH(model(kinds[j], &before),
-                          Catch::StartsWith("energy springs changes its stencils with a parameter"));
-    }
+  const Stencils two{{0}, {1}};
+  const LevelModel before = model(two);
+  CHECK_NOTHROW(model(two, &before));
+  for (const Stencils& other : {Stencils{{0}, {2}}, Stencils{{0}, {1}, {2}, {3}}, Stencils{{0, 1}, {2, 3}}})
+    CHECK_THROWS_WITH(model(other, &before),
+                      Catch::StartsWith("energy springs changes its stencils with a parameter"));
 }
 
-TEST_CASE("A pinned vertex is lone if none of its neighbours is pinned, on the coarse level and the finest",
-          "[level_model]") {
+TEST_CASE("A pinned vertex is lone if none of its neighbours is pinned, on the coarse level and the finest") {
   const Hierarchy levels =
       Hierarchy::of(grid({2, 2}, 3, 3, Diagonals::one_way), *make_plugin_from<Refiner>("midpoint"), 2);
   const Level &coarse = levels.levels[0], &finest = levels.levels[1];
@@ -169,34 +153,25 @@ TEST_CASE("A pinned vertex is lone if none of its neighbours is pinned, on the c
   CHECK(lone({0, 8}, {0, finest.topology.vertex_vertices.row(0).front(), 8}) == std::vector<int>{8});
   CHECK(lone_pins(*model(coarse, {0, 1}), []() -> std::shared_ptr<const LevelModel> { throw 0; }).empty());
 
-  const Eigen::VectorXd softening = softening_at_pins(coarse, {0}, 0.3, 1);
-  REQUIRE(softening.size() == 8);
-  for (int t = 0; t < 8; ++t) {
-    const bool at_pin = (coarse.rest.triangles.row(t).array() == 0).any();
-    CHECK((at_pin ? softening[t] < 0.8 && softening[t] > 0.3 : softening[t] == 1));
+  // Cloth softens at the pin, also at the tip of a slit, although a full turn has no axis.
+  TriangleMesh slit = wheel(8);
+  append(slit, {slit.vertices.row(1)}, {});
+  slit.triangles(7, 2) = 9;
+  for (const Level& level : {coarse, Level::of(0, slit)}) {
+    const Eigen::VectorXd softening = softening_at_pins(level, {0}, 0.3, 1);
+    REQUIRE(softening.size() == 8);
+    for (int t = 0; t < 8; ++t) {
+      const bool at_pin = (level.rest.triangles.row(t).array() == 0).any();
+      CHECK((at_pin ? softening[t] < 0.8 && softening[t] > 0.3 : softening[t] == 1));
+    }
   }
 }
 
-TEST_CASE("Cloth at the tip of a slit softens, although a full turn has no axis", "[level_model]") {
-  TriangleMesh slit{Positions::Zero(10, 3), Triangles(8, 3)};
-  for (int i = 0; i < 9; ++i) {
-    const double angle = i * std::acos(-1) / 4;
-    slit.vertices.row(i + 1) << std::cos(angle), std::sin(angle), 0;
-    if (i < 8) slit.triangles.row(i) << 0, i + 1, i + 2;
-  }
-  const Eigen::VectorXd softening = softening_at_pins(Level::of(0, slit), {0}, 0.3, 1);
-  CHECK(softening.minCoeff() > 0.3);
-  CHECK(softening.maxCoeff() < 0.8);
-}
-
-TEST_CASE("Membranes of coarse levels buckle at the stress of a clamped column of the mesh's size",
-          "[level_model]") {
+TEST_CASE("Membranes of coarse levels buckle at the stress of a clamped column of the mesh's size") {
   const auto membrane = std::make_shared<Shell>(EnergyRole::membrane, 0);
-  const LevelModel model(oblong, Material(),
-                         {{"membrane", membrane},
-                          {"bending", std::make_shared<Shell>(EnergyRole::bending, 2)},
-                          {"more bending", std::make_shared<Shell>(EnergyRole::bending, 1)}},
-                         {});
+  const LevelModel model = oblong_model({{"membrane", membrane},
+                                         {"bending", std::make_shared<Shell>(EnergyRole::bending, 2)},
+                                         {"more bending", std::make_shared<Shell>(EnergyRole::bending, 1)}});
   // s = σ d A with σ d = 4 π² D / (h² - h_L²), h² = 2 A, h_L = h 2^-k.
   const double area = 1.0 / 6, h2 = 2 * area, pi = std::acos(-1);
   for (const int k : {1, 2, 3}) {
@@ -205,32 +180,16 @@ TEST_CASE("Membranes of coarse levels buckle at the stress of a clamped column o
     CHECK(buckling.pattern() == model.pattern());
     CHECK(buckling.value(oblong.rest.vertices) == model.value(oblong.rest.vertices));
   }
-  LevelModel(oblong, Material(), {{"membrane", membrane}}, {}).with_effective_membranes(1);
+  oblong_model({{"membrane", membrane}}).with_effective_membranes(1);
   CHECK(membrane->bound == 0);
-}
-
-TEST_CASE("Several membranes keep their laws: each alone would wrinkle where their sum is taut",
-          "[level_model]") {
+  // Several membranes keep their laws: each alone would wrinkle where their sum is taut.
   const auto first = std::make_shared<Shell>(EnergyRole::membrane, 0),
              second = std::make_shared<Shell>(EnergyRole::membrane, 0);
-  LevelModel(oblong, Material(), {{"first", first}, {"second", second}}, {}).with_effective_membranes(1);
+  oblong_model({{"first", first}, {"second", second}}).with_effective_membranes(1);
   CHECK((first->bound == -1 && second->bound == -1));
-
-  const auto formula = [](const std::string& density) {
-    return std::shared_ptr<const Energy>(
-        make_plugin_from<Energy>("{type: formula, density: \"" + density + "\"}"));
-  };
-  const LevelModel halves(oblong, Material(),
-                          {{"shear", formula("thickness*mu*(g11^2 + g22^2 + 2*g12^2)")},
-                           {"area", formula("thickness*lambda/2*(g11 + g22)^2")}},
-                          {});
-  Positions x = oblong.rest.vertices;
-  x.col(0) *= 1.06;
-  x.col(1) *= 0.995;  // less than it contracts freely: taut
-  CHECK(halves.with_effective_membranes(1).value(x) == Approx(halves.value(x)).epsilon(1e-12));
 }
 
-TEST_CASE("A law that reads its triangle's area reads that at rest, also at a lone pin", "[level_model]") {
+TEST_CASE("A law that reads its triangle's area reads that at rest, also at a lone pin") {
   const Level level = Level::of(0, grid({2, 2}, 3, 3, Diagonals::one_way));
   const LevelModel model(
       level, Material(),
