@@ -1,9 +1,8 @@
 #include "core/numerics/linear_algebra/symmetric_eigen.h"
 
 #include <catch2/catch.hpp>
-#include <random>
 
-#include "tests/support/decompositions.h"
+#include "tests/support/kernel_check.h"
 
 using namespace drape;
 
@@ -11,10 +10,8 @@ namespace {
 
 /// V diag(values) Vᵀ with random orthonormal V.
 Eigen::MatrixXd with_eigenvalues(const Eigen::VectorXd& values, unsigned seed) {
-  std::mt19937 random(seed);
-  std::normal_distribution<double> normal;
-  Eigen::MatrixXd a(values.size(), values.size());
-  for (int i = 0; i < a.size(); ++i) a.data()[i] = normal(random);
+  const int n = static_cast<int>(values.size());
+  const Eigen::MatrixXd a = normal_numbers(n * n, seed).reshaped(n, n);
   const Eigen::MatrixXd v = eigenpairs_of(a + a.transpose()).vectors;
   const Eigen::MatrixXd m = v * values.asDiagonal() * v.transpose();
   return (m + m.transpose()) / 2;
@@ -48,21 +45,19 @@ void check_map() {
   const int count = static_cast<int>(all.size());
   for (int m = 0; m < count; ++m) {
     INFO("matrix " << m << " of size " << N);
-    SymmetricMatrix<N, double> one;
+    SymmetricMatrix<N, double> one(all[m]);
     SymmetricMatrix<N, Pack<4>> four;  // this one and those after it
     for (int j = 0; j < N; ++j)
-      for (int i = 0; i <= j; ++i) {
-        one(i, j) = all[m](i, j);
+      for (int i = 0; i <= j; ++i)
         for (int lane = 0; lane < 4; ++lane) four(i, j).v[lane] = all[(m + lane) % count](i, j);
-      }
     keep_positive(one);
     keep_positive(four);
     for (int lane = -1; lane < 4; ++lane) {
       const auto& original = all[(m + std::max(lane, 0)) % count];
-      const Eigen::MatrixXd expected = recomposed(eigenpairs_of(original), Projection::clamp);
-      Eigen::MatrixXd found(N, N);
-      for (int j = 0; j < N; ++j)
-        for (int i = 0; i < N; ++i) found(i, j) = lane < 0 ? one(i, j) : four(i, j)[lane];
+      const Eigen::MatrixXd expected = recomposed(eigenpairs_of(original), Projection::clamp),
+                            found = Eigen::MatrixXd::NullaryExpr(N, N, [&](Eigen::Index i, Eigen::Index j) {
+                              return lane < 0 ? one(i, j) : four(i, j)[lane];
+                            });
       CHECK((found - expected).norm() <= 1e-12 * original.norm());
     }
   }
@@ -75,12 +70,9 @@ TEST_CASE("map_eigenvalues gives V f(Λ) Vᵀ, one matrix or one a lane") {
   check_map<3>();
   check_map<6>();
   check_map<9>();
-}
-
-TEST_CASE("map_eigenvalues ends, whatever it is given") {
+  // It ends, whatever it is given.
   SymmetricMatrix<3, double> a(Eigen::Matrix3d{{1, NAN, 0}, {NAN, 2, 0}, {0, 0, 1}});
   map_eigenvalues(a, [](double e) { return e; });
-  SUCCEED();
 }
 
 TEST_CASE("The certificate of positive semidefiniteness holds for every lane") {
@@ -93,8 +85,7 @@ TEST_CASE("The certificate of positive semidefiniteness holds for every lane") {
       }
     return positive_semidefinite(a);
   };
-  Eigen::VectorXd values(6);
-  values << 1, 2, 3, 0, 0, 0.5;
+  Eigen::VectorXd values{{1, 2, 3, 0, 0, 0.5}};
   CHECK(certified(with_eigenvalues(values, 1), 1));
   CHECK_FALSE(certified(with_eigenvalues(values, 1), -1));
   for (const double negative : {-1e-10, -1e-6, -1.0}) {
