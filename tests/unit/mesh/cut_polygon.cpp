@@ -7,6 +7,8 @@
 #include <random>
 #include <set>
 
+#include "tests/unit/mesh/mesh_files.h"
+
 using namespace drape;
 using CornerPoint = Eigen::Vector3d;
 using CornerList = std::vector<CornerPoint>;
@@ -42,9 +44,8 @@ void check_cut(const CornerList& outline, int without_area = 0) {
 
 /// Calls `visit` for the outline from each of its corners, in a tilted plane far from the origin.
 void from_every_corner(
-    CornerList outline, const std::function<void(const CornerList&)>& visit = [](const CornerList& turned) {
-      check_cut(turned);
-    }) {
+    CornerList outline,
+    const std::function<void(const CornerList&)>& visit = [](const CornerList& o) { check_cut(o); }) {
   const Eigen::Matrix3d tilt = Eigen::AngleAxisd(0.7, CornerPoint(1, 2, 3).normalized()).toRotationMatrix();
   for (CornerPoint& p : outline) p = tilt * p + CornerPoint(30, -20, 10);
   for (std::size_t k = 0; k < outline.size(); ++k) {
@@ -56,30 +57,29 @@ void from_every_corner(
 }  // namespace
 
 TEST_CASE("a convex polygon is cut as a fan around its first corner") {
+  CornerList outline;
+  std::vector<std::array<int, 3>> fan;
   for (int n = 3; n < 12; ++n) {
-    CornerList outline;
+    outline.clear();
     for (int k = 0; k < n; ++k)
       outline.emplace_back(std::cos(2 * M_PI * k / n), std::sin(2 * M_PI * k / n), 0.02 * (k % 2));
-    const CutPolygon cut = cut_polygon(outline);
-    REQUIRE(cut.fault == "");
-    REQUIRE(static_cast<int>(cut.triangles.size()) == n - 2);
-    for (int k = 0; k < n - 2; ++k) CHECK(cut.triangles[k] == std::array<int, 3>{0, k + 1, k + 2});
+    fan.push_back({0, n - 2, n - 1});
+    CHECK(cut_polygon(outline).fault == "");
+    CHECK(cut_polygon(outline).triangles == fan);
   }
 }
 
 TEST_CASE("concave polygons are cut into what they cover") {
-  from_every_corner({{0, 0, 0}, {1, 0, 0}, {1, 0.4, 0}, {0.4, 0.4, 0}, {0.4, 1, 0}, {0, 1, 0}});
   from_every_corner({{0, 0, 0}, {1, 0.8, 0}, {2, 0, 0}, {1, 2, 0}});  // an arrow head
   from_every_corner({{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {2, 2, 0}, {1, 2, 0}, {0, 2, 0}, {0, 1, 0}});
-  CornerList comb{{0, -1, 0}, {20, -1, 0}};  // with corners on one line
+  CornerList comb{{0, -1, 0}, {20, -1, 0}}, spiral;  // a comb with corners on one line
   for (int k = 20; k >= 0; --k) comb.emplace_back(k, k % 2, 0);
   from_every_corner(comb);
-  CornerList spiral;
-  for (int k = 0; k <= 40; ++k)
-    spiral.emplace_back((1 + 0.1 * k) * std::cos(0.3 * k), (1 + 0.1 * k) * std::sin(0.3 * k), 0);
-  for (int k = 40; k >= 0; --k)
-    spiral.emplace_back((1.8 + 0.1 * k) * std::cos(0.3 * k), (1.8 + 0.1 * k) * std::sin(0.3 * k), 0);
-  std::reverse(spiral.begin(), spiral.end());
+  for (int k = 0; k <= 40; ++k) {
+    const CornerPoint ray(std::cos(0.3 * k), std::sin(0.3 * k), 0);
+    spiral.insert(spiral.begin(), (1 + 0.1 * k) * ray);
+    spiral.push_back((1.8 + 0.1 * k) * ray);
+  }
   check_cut(spiral);
 }
 
@@ -101,18 +101,17 @@ TEST_CASE("random stars are cut, at any scale") {
 }
 
 TEST_CASE("polygons that cross or touch themselves, or are not planar, are refused with the reason") {
-  CHECK_THAT(cut_polygon({{0, 0, 0}, {1, 1, 0}, {1, 0, 0}, {0, 1.1, 0}}).fault,
-             Contains("crosses or touches itself"));
+  const auto check_fault = [](const CornerList& outline, const std::string& reason) {
+    CHECK_THAT(cut_polygon(outline).fault, Contains(reason));
+  };
+  check_fault({{0, 0, 0}, {1, 1, 0}, {1, 0, 0}, {0, 1.1, 0}}, "crosses or touches itself: its sides 0 and 2");
   CornerList star;  // five corners, two turns
   for (int k = 0; k < 5; ++k) star.emplace_back(std::cos(4 * M_PI * k / 5), std::sin(4 * M_PI * k / 5), 0);
-  CHECK_THAT(cut_polygon(star).fault, Contains("crosses or touches itself"));
+  check_fault(star, "crosses or touches itself");
   // A corner on another side, and a side that runs back.
-  CHECK_THAT(cut_polygon({{0, 0, 0}, {4, 0, 0}, {4, 2, 0}, {2, 0, 0}, {0, 2, 0}}).fault,
-             Contains("touches itself"));
-  CHECK_THAT(cut_polygon({{0, 0, 0}, {4, 0, 0}, {2, 0, 0}, {0, 2, 0}, {-1, 1, 0}}).fault,
-             Contains("touches itself"));
-  CHECK_THAT(cut_polygon({{0, 0, 0}, {1, 0, 0}, {1, 1, 1}, {0, 1, 0}}).fault,
-             Contains("is not planar") && Contains("cut it into triangles"));
+  check_fault({{0, 0, 0}, {4, 0, 0}, {4, 2, 0}, {2, 0, 0}, {0, 2, 0}}, "touches itself");
+  check_fault({{0, 0, 0}, {4, 0, 0}, {2, 0, 0}, {0, 2, 0}, {-1, 1, 0}}, "touches itself");
+  check_fault({{0, 0, 0}, {1, 0, 0}, {1, 1, 1}, {0, 1, 0}}, "is not planar");
   // Bent as the quads of a curved surface are, and without an area, which check_mesh says.
   CHECK(cut_polygon({{0, 0, 0}, {1, 0, 0.1}, {1, 1, 0}, {0, 1, 0.1}}).fault == "");
   CHECK(cut_polygon({{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {3, 0, 0}}).fault == "");
@@ -128,12 +127,34 @@ TEST_CASE("corners at one place, as at the poles of a sphere of quads, get trian
   for (const CornerList& pole : {CornerList{{0, 0, 0}, {1, 0, 0}, {1, 0, 0}, {0, 1, 0}},
                                  CornerList{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 0}}})
     CHECK(cut_polygon(pole).triangles.size() == 2);
-}
-
-TEST_CASE("a face all of whose corners but one coincide to round-off is a fan without area") {
-  const CornerList spike = {{0, 0, 0},     {1, 0, 0},     {1, 2.4, 777777777777},
-                            {0.4, 0.4, 0}, {0.4, 0.4, 0}, {0, 1, 0}};
-  const CutPolygon cut = cut_polygon(spike);
+  // All corners but one coincide to round-off.
+  const CutPolygon cut =
+      cut_polygon({{0, 0, 0}, {1, 0, 0}, {1, 2.4, 777777777777}, {0.4, 0.4, 0}, {0.4, 0.4, 0}, {0, 1, 0}});
   CHECK(cut.fault == "");
   CHECK(cut.triangles.size() == 4);
+}
+
+TEST_CASE("a concave face is cut in every format, and one that crosses itself is refused") {
+  const std::string name = GENERATE("m.obj", "m.off", "m.ply");
+  const auto mesh_of_face = [&](const std::vector<std::string>& points) {
+    const bool obj = name == "m.obj";
+    const std::string n = std::to_string(points.size());
+    std::string vertices, face = obj ? "f" : n;
+    for (std::size_t k = 0; k < points.size(); ++k) {
+      vertices += (obj ? "v " : "") + points[k] + "\n";
+      face += " " + std::to_string(obj ? k + 1 : k);
+    }
+    if (obj) return mesh_in(name, vertices + face + "\n");
+    if (name == "m.off") return mesh_in(name, "OFF\n" + n + " 1 0\n" + vertices + face + "\n");
+    return mesh_in(name, "ply\nformat ascii 1.0\n" + faces_head(1) + "element vertex " + n +
+                             "\nproperty float x\nproperty float y\nproperty float z\nend_header\n" + face +
+                             "\n" + vertices);  // the face before its vertices
+  };
+  const TriangleMesh mesh = mesh_of_face({"0 1 0", "0 1 0.4", "0 0.4 0.4", "0 0.4 1", "0 0 1", "0 0 0"});
+  REQUIRE(mesh.triangles.rows() == 4);
+  const Positions areas = area_vectors(mesh);
+  CHECK(areas.col(0).minCoeff() > 1e-3);
+  CHECK(areas.rowwise().norm().sum() / 2 == Approx(0.64));
+  CHECK_THROWS_WITH(mesh_of_face({"0 0 0", "1 1 0", "1 0 0", "0 1.1 0"}),
+                    Contains("face 0 (counted from 0) crosses or touches itself: its sides 0 and 2"));
 }
