@@ -1,6 +1,5 @@
 #pragma once
 
-#include <fcntl.h>
 #include <signal.h>
 #include <stdlib.h>
 #include <sys/prctl.h>
@@ -53,16 +52,14 @@ inline std::string text_of(const std::filesystem::path& file) {
   std::ifstream stream(file, std::ios::binary);
   INFO(file);
   REQUIRE(stream);
-  std::ostringstream text;
-  text << stream.rdbuf();
-  return text.str();
+  return {std::istreambuf_iterator<char>(stream), {}};
 }
 
 inline nlohmann::json json_in(const std::filesystem::path& file) {
   return nlohmann::json::parse(text_of(file));
 }
 
-/// Waits until the condition holds; fails the test case after ten minutes, many times what any takes.
+/// Waits until the condition holds; fails the test case after ten minutes.
 inline void wait_until(const std::string& what, const std::function<bool()>& condition) {
   INFO("waiting until " << what);
   const auto deadline = std::chrono::steady_clock::now() + std::chrono::minutes(10);
@@ -83,18 +80,16 @@ struct Ended {
 class Command {
  public:
   Command(const std::string& line, const std::filesystem::path& folder) : line_(line) {
-    for (const char* stream : {"out", "err"})
-      output_.write(stream, "");  // it may be killed before it opens them
+    const std::string out = (output_ / "out").string(), err = (output_ / "err").string();
+    for (const char* stream : {"out", "err"}) output_.write(stream, "");  // the command may be killed before
+    const std::string redirected = "exec </dev/null >" + out + " 2>" + err + "\n" + line;
     pid_ = fork();
     REQUIRE(pid_ >= 0);
     if (pid_ == 0) {
       setpgid(0, 0);
       prctl(PR_SET_PDEATHSIG, SIGKILL);  // when the test itself is killed
       unsetenv("DRAPE_PLUGIN_PATH");
-      const bool ready = chdir(folder.c_str()) == 0 && redirect("/dev/null", O_RDONLY, 0) &&
-                         redirect(output_.path / "out", O_WRONLY | O_CREAT, 1) &&
-                         redirect(output_.path / "err", O_WRONLY | O_CREAT, 2);
-      if (ready) execl("/bin/sh", "sh", "-c", line.c_str(), nullptr);
+      if (chdir(folder.c_str()) == 0) execl("/bin/sh", "sh", "-c", redirected.c_str(), nullptr);
       _exit(126);
     }
     setpgid(pid_, pid_);  // whoever of the two comes first
@@ -111,8 +106,7 @@ class Command {
   void send_alone(int signal) const { kill(pid_, signal); }
   /// Whether a signal that was sent has still to be delivered: until then another of its kind would be lost.
   bool has_pending(int signal) const {
-    const std::string status = text_of("/proc/" + std::to_string(pid_) + "/status");
-    const std::string mask = "ShdPnd:\t";
+    const std::string status = text_of("/proc/" + std::to_string(pid_) + "/status"), mask = "ShdPnd:\t";
     return std::stoull(status.substr(status.find(mask) + mask.size(), 16), nullptr, 16) >> (signal - 1) & 1;
   }
   /// Processor time of the command's process so far, in seconds: how far it has come, on a busy machine too.
@@ -123,7 +117,6 @@ class Command {
     return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
   }
 
-  /// Waits for its end.
   Ended wait() {
     ::wait_until("this has ended: " + line_, [&] { return has_ended(); });
     const int code = ended_.si_code == CLD_EXITED ? ended_.si_status : 128 + ended_.si_status;
@@ -149,11 +142,6 @@ class Command {
   }
 
  private:
-  static bool redirect(const std::filesystem::path& file, int flags, int to) {
-    const int from = open(file.c_str(), flags, 0600);
-    return from >= 0 && dup2(from, to) == to;
-  }
-
   /// The ended command stays a zombie, so that its number, which is the group's, is given to no other.
   bool has_ended() {
     return waitid(P_PID, id_t(pid_), &ended_, WEXITED | WNOHANG | WNOWAIT) == 0 && ended_.si_pid;
