@@ -22,16 +22,15 @@ inline drape::TriangleMesh cushion_mesh(double radius, int meridians, int rings,
   drape::TriangleMesh mesh;
   mesh.vertices.resize(all + inner, 3);
   mesh.triangles.resize(2 * meridians * (2 * rings - 1), 3);
-  mesh.vertices.row(0) << 0, 0, bulge;
-  for (int k = 1; k <= rings; ++k)
+  const auto at = [&](int k, int j) { return k == 0 ? 0 : 1 + j % meridians + meridians * (k - 1); };
+  for (int k = 0; k <= rings; ++k)
     for (int j = 0; j < meridians; ++j) {
       const double r = static_cast<double>(k) / rings, angle = 2 * M_PI * j / meridians;
-      mesh.vertices.row(1 + j + meridians * (k - 1)) << radius * r * std::cos(angle),
-          radius * r * std::sin(angle), bulge * (1 - r * r);
+      mesh.vertices.row(at(k, j)) << radius * r * std::cos(angle), radius * r * std::sin(angle),
+          bulge * (1 - r * r);
     }
-  for (int v = 0; v < inner; ++v)
-    mesh.vertices.row(all + v) = mesh.vertices.row(v).cwiseProduct(Eigen::RowVector3d(1, 1, -1));
-  const auto at = [&](int k, int j) { return k == 0 ? 0 : 1 + j % meridians + meridians * (k - 1); };
+  mesh.vertices.bottomRows(inner) = mesh.vertices.topRows(inner);
+  mesh.vertices.bottomRows(inner).col(2) *= -1;
   const auto below = [&](int v) { return v < inner ? all + v : v; };
   Eigen::Index next = 0;
   const auto add = [&](int a, int b, int c) {
@@ -42,13 +41,8 @@ inline drape::TriangleMesh cushion_mesh(double radius, int meridians, int rings,
     add(0, at(1, j), at(1, j + 1));
     for (int k = 1; k < rings; ++k) {
       const int in = at(k, j), in_next = at(k, j + 1), out = at(k + 1, j), out_next = at(k + 1, j + 1);
-      if (j % 2 == 0) {
-        add(in, out, in_next);
-        add(in_next, out, out_next);
-      } else {
-        add(in, out, out_next);
-        add(in, out_next, in_next);
-      }
+      add(in, out, j % 2 ? out_next : in_next);
+      add(j % 2 ? in : out, out_next, in_next);
     }
   }
   return mesh;

@@ -28,9 +28,7 @@ energies: [neo_hookean, hinge, gravity]
 contact: [ipc, shapes]
 obstacles: [{name: ball, shape: sphere, radius: 0.02}]
 friction: 0.1
-levels: )" +
-         levels + "\ncloth: {shape: square, side: 0.2, columns: " + columns + ", rows: " + columns + "}\n" +
-         "material: {density: " + density +
-         ", thickness: 3e-4, membrane_modulus: 1e5, bending_modulus: 1e5}\n" + "methods: {" + method +
-         ": {}}\n";
+material: {thickness: 3e-4, membrane_modulus: 1e5, bending_modulus: 1e5, density: )" +
+         density + "}\nlevels: " + levels + "\ncloth: {shape: square, side: 0.2, columns: " + columns +
+         ", rows: " + columns + "}\nmethods: {" + method + ": {}}\n";
 }

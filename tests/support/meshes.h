@@ -71,10 +71,7 @@ inline drape::TriangleMesh tetrahedron() {
 /// Within a closed mesh; positive if its triangles face outwards.
 inline double volume_of(const drape::TriangleMesh& mesh) {
   double volume = 0;
-  for (const auto& t : mesh.triangles.rowwise()) {
-    const Eigen::Vector3d a = mesh.vertices.row(t[0]), b = mesh.vertices.row(t[1]),
-                          c = mesh.vertices.row(t[2]);
-    volume += a.dot(b.cross(c)) / 6;
-  }
+  for (const auto& t : mesh.triangles.rowwise())
+    volume += Eigen::Matrix3d(mesh.vertices({t[0], t[1], t[2]}, Eigen::all)).determinant() / 6;
   return volume;
 }

@@ -11,14 +11,13 @@
 
 /// A random symmetric positive semidefinite block matrix: a random 12×12 one for every element.
 inline drape::BlockMatrix random_matrix(int vertices, const drape::Stencils& stencils, unsigned seed) {
-  const auto pattern = drape::BlockPattern::of(vertices, {stencils});
-  drape::BlockMatrix matrix(pattern);
-  const drape::BlockSlots slots(*pattern, stencils);
+  using Element = Eigen::Matrix<double, 12, 12>;
+  drape::BlockMatrix matrix(drape::BlockPattern::of(vertices, {stencils}));
+  const drape::BlockSlots slots(*matrix.pattern, stencils);
   drape::BlockSink sink = slots.sink(matrix);
   std::srand(seed);
   for (int e = 0; e < stencils.rows(); ++e) {
-    const Eigen::Matrix<double, 12, 12> r = Eigen::Matrix<double, 12, 12>::Random();
-    const Eigen::Matrix<double, 12, 12> h = r * r.transpose();
+    const Element r = Element::Random(), h = r * r.transpose();
     for (int b = 0; b < 4; ++b)
       for (int a = 0; a <= b; ++a) {
         const Eigen::Matrix<double, 3, 3, Eigen::RowMajor> block = h.block<3, 3>(3 * a, 3 * b);

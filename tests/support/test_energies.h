@@ -37,9 +37,7 @@ std::shared_ptr<drape::Energy> energy_of(Bound bound, drape::EnergyRole role = d
 }
 
 /// An element for each of n vertices.
-inline drape::Stencils each_vertex(Eigen::Index n) {
-  return Eigen::VectorXi::LinSpaced(n, 0, static_cast<int>(n) - 1);
-}
+inline drape::Stencils each_vertex(Eigen::Index n) { return Eigen::VectorXi::LinSpaced(n, 0, int(n) - 1); }
 
 /// ¼ Σ k (|x_i − a_i|² − w²)²: a bowl for w = 0, with a hump at a_i (an indefinite Hessian) otherwise.
 class Wells : public NoEnergy {
@@ -88,12 +86,11 @@ struct PairSprings : NoEnergy {
   }
   void add_hessian(const drape::Positions&, drape::Projection, drape::BlockSink& sink) const override {
     for (std::size_t e = 0; e < pairs.size(); ++e)
-      for (int b = 0; b < 2; ++b)
-        for (int a = 0; a <= b; ++a) {
-          const double k = a == b ? pairs[e].stiffness : -pairs[e].stiffness;
-          const double h[9] = {k, 0, 0, 0, k, 0, 0, 0, k};
-          sink.add(e, a, b, h);
-        }
+      for (const auto& [a, b] : {std::pair(0, 0), std::pair(0, 1), std::pair(1, 1)}) {
+        const double k = a == b ? pairs[e].stiffness : -pairs[e].stiffness;
+        const double h[9] = {k, 0, 0, 0, k, 0, 0, 0, k};
+        sink.add(e, a, b, h);
+      }
   }
 };
 
