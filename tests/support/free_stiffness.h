@@ -17,6 +17,13 @@ struct FreeVertices {
     for (int v = 0; v < level.vertex_count(); ++v)
       if (!held(Eigen::Vector2d(level.rest.vertices.row(v).head<2>().transpose()))) number[v] = count++;
   }
+
+  /// Calls visit(v, number) for each of them.
+  template <class Visit>
+  void each(const Visit& visit) const {
+    for (int v = 0; v < static_cast<int>(number.size()); ++v)
+      if (number[v] >= 0) visit(v, number[v]);
+  }
 };
 
 /// Stiffness by displacements of the free vertices along these axes.
