@@ -2,6 +2,7 @@
 
 #include <catch2/catch.hpp>
 
+#include "tests/support/evaluate.h"
 #include "tests/support/newton_problem.h"
 #include "tests/support/test_energies.h"
 
@@ -9,20 +10,17 @@ using namespace drape;
 
 namespace {
 
-/// Wells on top of a large constant, against which changes of the energy are round-off.
-struct HighWells : Wells {
-  using Wells::Wells;
-  double value(const Positions& x) const override { return 1e6 + Wells::value(x); }
-};
-
-/// Forces that push uphill.
-struct WrongForces : Wells {
-  using Wells::Wells;
+/// Wells on top of a constant, whose forces are multiplied by a factor.
+struct FalseWells : Wells {
+  double constant, factor;
+  FalseWells(const Wells& wells, double constant, double factor)
+      : Wells(wells), constant(constant), factor(factor) {}
+  double value(const Positions& x) const override { return constant + Wells::value(x); }
   double add_gradient(const Positions& x, Positions& g) const override {
     Positions own = Positions::Zero(g.rows(), 3);
-    const double energy = Wells::add_gradient(x, own);
-    g -= own;
-    return energy;
+    Wells::add_gradient(x, own);
+    g += factor * own;
+    return value(x);
   }
 };
 
@@ -47,23 +45,14 @@ struct Search {
 
 }  // namespace
 
-TEST_CASE("A full step that decreases the energy is taken, with the energy and forces at its end") {
-  Search s;
-  const Positions x = s.problem.iterate.x(), direction = 0.5 * s.to_centres();
-  REQUIRE(s.along(direction));
-  CHECK(s.line_search.step_length() == 1);
-  CHECK(s.line_search.slope() < 0);
-  CHECK(s.problem.iterate.x() == x + direction);
-  CHECK(s.problem.iterate.limited_by() == "");
-  Positions g;
-  CHECK(s.problem.iterate.energy() == s.problem.objective.gradient(x + direction, g));
-  CHECK(s.problem.iterate.gradient() == g);
-}
-
-TEST_CASE("A step that overshoots is halved until the decrease is sufficient, inertia counted") {
+TEST_CASE("A step is full, or halved until the decrease is sufficient, inertia counted") {
   const auto step_length = [](double factor, double inverse_h2 = 0) {
     Search s;
     REQUIRE(s.along(factor * s.to_centres(), inverse_h2));
+    CHECK(s.line_search.slope() < 0);
+    Positions g;
+    CHECK(s.problem.iterate.energy() == s.problem.objective.gradient(s.problem.iterate.x(), g));
+    CHECK(s.problem.iterate.gradient() == g);
     return s.line_search.step_length();
   };
   CHECK(step_length(3.9) == 0.5);
@@ -73,20 +62,16 @@ TEST_CASE("A step that overshoots is halved until the decrease is sufficient, in
 }
 
 TEST_CASE("No step is taken uphill, or where no step length decreases the energy") {
-  Search uphill;
-  const Positions x = uphill.problem.iterate.x();
-  const double energy = uphill.problem.iterate.energy();
-  REQUIRE(!uphill.along(-uphill.to_centres()));
-  CHECK(uphill.line_search.slope() > 0);
-  CHECK(uphill.line_search.step_length() == 1);
-  CHECK(uphill.problem.iterate.x() == x);
-
-  Search wrong({energy_of(WrongForces(centres(), 10, 0))});
-  REQUIRE(!wrong.along(-0.1 * wrong.problem.iterate.gradient()));
-  CHECK(wrong.line_search.slope() < 0);
-  CHECK(wrong.line_search.step_length() < LineSearch::min_step_length);
-  CHECK(wrong.problem.iterate.x() == x);
-  CHECK(wrong.problem.iterate.energy() == energy);
+  for (const bool uphill : {true, false}) {
+    Search s({energy_of(FalseWells({centres(), 10, 0}, 0, uphill ? 1 : -1))});
+    const Positions x = s.problem.iterate.x();
+    const double energy = s.problem.iterate.energy();
+    REQUIRE(!s.along(-0.1 * s.to_centres()));
+    CHECK((s.line_search.slope() > 0) == uphill);
+    CHECK((s.line_search.step_length() < LineSearch::min_step_length) == !uphill);
+    CHECK(s.problem.iterate.x() == x);
+    CHECK(s.problem.iterate.energy() == energy);
+  }
 }
 
 TEST_CASE("The search starts from the largest step that a limit allows, and names the limit") {
@@ -102,18 +87,39 @@ TEST_CASE("The search starts from the largest step that a limit allows, and name
 
 TEST_CASE("Where the energy changes by round-off only, the gradient's norm decides") {
   const double width = 0.1, off = 1e-9;
-  Positions x = centres();
-  x.col(2).array() += width + off;
-  Positions towards = Positions::Zero(x.rows(), 3);
-  towards.col(2).setConstant(-off);
+  const Eigen::RowVector3d up(0, 0, 1);
   for (const double overshoot : {1.0, 3.0}) {
-    Search s({energy_of(HighWells(centres(), 1, width))});
-    s.problem.move_to(x);
+    Search s({energy_of(FalseWells({centres(), 1, width}, 1e6, 1))});
+    s.problem.move_to(centres().rowwise() + (width + off) * up);
     const double energy = s.problem.iterate.energy(), norm = s.problem.iterate.gradient().norm();
     REQUIRE(norm > 0);
-    REQUIRE(s.along(overshoot * towards));
+    REQUIRE(s.along((-overshoot * off * up).replicate(16, 1)));
     CHECK(s.line_search.step_length() == (overshoot == 1 ? 1 : 0.5));
     CHECK(s.problem.iterate.energy() == energy);
     CHECK(s.problem.iterate.gradient().norm() < norm);
   }
+}
+
+TEST_CASE("The gradient of an implicit step is that of its energy, without fixed vertices") {
+  const Positions rest = NewtonProblem::rest();
+  NewtonProblem problem({energy_of(Wells(rest.array() + 0.3, 10, 0.1))}, {{0, rest.row(0), 0}});
+  ImplicitStep step;
+  step.begin(rest, 4);
+  CHECK(step.max_iterations() == 4);
+  Positions x = rest;
+  x.bottomRows(15) += 0.1 * Positions::Random(15, 3);
+  problem.move_to(x);
+  step.evaluate(problem.iterate, 100);
+
+  const Eigen::VectorXd& masses = problem.model.masses();
+  const auto energy = [&](const Positions& y) { return problem.model.value(y) + step.inertia_at(y, masses); };
+  REQUIRE(step.gradient().norm() > 0);
+  CHECK(step.gradient().row(0).norm() == 0);
+  const Eigen::VectorXd slopes = differences(energy, x, 1e-5).transpose();
+  CHECK((slopes - flat(step.gradient())).tail(45).norm() <= 1e-6 * step.gradient().norm());
+  CHECK(step.inertia() > 0);
+  CHECK(step.inertia_at(x, masses) == Approx(step.inertia()));
+  CHECK(step.inertia_at(rest, masses) == 0);
+  CHECK(step.gradient_norm_at(x, problem.iterate.gradient(), problem.iterate) ==
+        Approx(step.gradient().norm()));
 }
