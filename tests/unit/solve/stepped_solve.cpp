@@ -18,12 +18,6 @@ struct Stepped : Solved {
   SteppedSolve solve;
 };
 
-/// What Solver::solve gives.
-std::vector<LevelResult> solved(const std::string& method, KeepingObserver& observer) {
-  const Solved fresh = scene_from(small_experiment());
-  return fresh.experiment.solver_of(method).solve(*fresh.scene, observer);
-}
-
 /// A solver that fails in its second iteration and cannot be resumed.
 struct Failing : Solver {
   std::vector<LevelResult> solve(const Problem& problem, Observer& observer) const override {
@@ -35,51 +29,44 @@ struct Failing : Solver {
 
 }  // namespace
 
-TEST_CASE("a stepped solve shows every iteration and ends with the bits of a plain one") {
-  for (const char* method : {"pcs", "newton"}) {
-    KeepingObserver plain;
-    const std::vector<LevelResult> expected = solved(method, plain);
-    Stepped stepped(method);
-    SteppedSolve& solve = stepped.solve;
-    std::size_t k = 0;
-    for (; solve.advance(); ++k) {
-      CHECK(solve.row().force_residual == plain.rows.at(k).force_residual);
-      CHECK(solve.x().rows() == stepped.scene->hierarchy.levels[solve.row().level].vertex_count());
-    }
-    CHECK(solve.ended());
-    CHECK_FALSE(solve.advance());
-    CHECK(k == plain.rows.size());
-    REQUIRE(solve.finished().size() == expected.size());
-    for (std::size_t l = 0; l < expected.size(); ++l) {
-      CHECK(solve.finished()[l].outcome == expected[l].outcome);
-      CHECK(solve.finished()[l].x == expected[l].x);
-    }
+TEST_CASE("a stepped solve shows every iteration and ends with the bits of a plain one, resumed too") {
+  const Solved plain = scene_from(small_experiment());
+  KeepingObserver observer;
+  const std::vector<LevelResult> expected = plain.experiment.solver_of("pcs").solve(*plain.scene, observer);
+  Stepped whole("pcs");
+  std::vector<MethodState> checkpoints;
+  std::size_t k = 0;
+  for (; whole.solve.advance(); ++k) {
+    CHECK(whole.solve.row().force_residual == observer.rows.at(k).force_residual);
+    CHECK(whole.solve.x().rows() == whole.scene->hierarchy.levels[whole.solve.row().level].vertex_count());
+    if (k == 2 || k + 2 == observer.rows.size()) checkpoints.push_back(whole.solve.checkpoint());
   }
-}
-
-TEST_CASE("a checkpoint of a stepped solve is resumed to the same bits") {
-  KeepingObserver plain;
-  const std::vector<LevelResult> expected = solved("pcs", plain);
-  for (const int steps : {1, 3, static_cast<int>(plain.rows.size()) - 1}) {
-    Stepped first("pcs");
-    for (int k = 0; k < steps; ++k) REQUIRE(first.solve.advance());
-    const MethodState checkpoint = first.solve.checkpoint();
+  CHECK(whole.solve.ended());
+  CHECK_FALSE(whole.solve.advance());
+  CHECK(k == observer.rows.size());
+  const auto check_results = [&](const std::vector<LevelResult>& results) {
+    REQUIRE(results.size() == expected.size());
+    for (std::size_t l = 0; l < expected.size(); ++l) {
+      CHECK(results[l].outcome == expected[l].outcome);
+      CHECK(results[l].x == expected[l].x);
+    }
+  };
+  check_results(whole.solve.finished());
+  for (const MethodState& checkpoint : checkpoints) {
     Stepped resumed("pcs", checkpoint);
     while (resumed.solve.advance()) continue;
-    REQUIRE(resumed.solve.finished().size() == expected.size());
-    CHECK(resumed.solve.finished().back().x == expected.back().x);
+    check_results(resumed.solve.finished());
   }
 }
 
 TEST_CASE("a stepped solve is stopped, refined or left at any iteration") {
-  Stepped stopped("newton");
+  Stepped stopped("newton"), refined("pcs");
   REQUIRE(stopped.solve.advance());
   stopped.solve.stop();
   CHECK_FALSE(stopped.solve.advance());
   REQUIRE(stopped.solve.finished().size() == 1);
   CHECK(stopped.solve.finished()[0].outcome == Outcome::cancelled);
 
-  Stepped refined("pcs");
   REQUIRE(refined.solve.advance());
   refined.solve.refine();
   REQUIRE(refined.solve.advance());
