@@ -1,13 +1,10 @@
 #include "core/numerics/collision_detection/closest.h"
 
-#include <Eigen/Geometry>
 #include <algorithm>
-#include <catch2/catch.hpp>
-#include <random>
 #include <set>
 #include <vector>
 
-#include "core/numerics/contact/pair_geometry.h"
+#include "tests/unit/contact/pairs.h"
 
 using namespace drape;
 using Eigen::Vector3d;
@@ -24,7 +21,7 @@ double height_left_out(const PairPositions& x) {
 
 /// The weights are those of a point on either side, and no other pair of points is nearer: by convexity that
 /// holds when no vertex lies on the near side of its side's point, seen along r.
-void check_optimal(PairKind kind, const PairPositions& x, double tolerance = 4e-15) {
+void check_optimal(PairKind kind, const PairPositions& x) {
   const Closest found = closest(kind, x);
   const int first = first_primitive_size(kind);
   CAPTURE(x, found.c.transpose());
@@ -41,32 +38,8 @@ void check_optimal(PairKind kind, const PairPositions& x, double tolerance = 4e-
   for (int k = 0; k < 4; ++k) {
     const Vector3d from_own = x.col(k) - x.col(0) - (k < first ? a : b);
     const double ahead = r.dot(from_own) * (k < first ? 1 : -1);
-    CHECK(ahead >= -tolerance * size * (from_own.norm() + r.norm()) - left_out * r.norm());
+    CHECK(ahead >= -4e-15 * size * (from_own.norm() + r.norm()) - left_out * r.norm());
   }
-}
-
-/// The free directions leave the sides' sums alone, touch free vertices only, and r is at right angles to the
-/// motion along them.
-void check_directions(PairKind kind, const PairPositions& x) {
-  const Closest found = closest(kind, x);
-  const int first = first_primitive_size(kind);
-  CAPTURE(x, found.c.transpose(), found.direction, found.free);
-  for (int m = 0; m < found.free; ++m) {
-    const auto d = found.direction.col(m);
-    CHECK(d.head(first).sum() == 0);
-    CHECK(d.tail(4 - first).sum() == 0);
-    CHECK(d.norm() > 0);
-    for (int k = 0; k < 4; ++k)
-      if (found.c[k] == 0) CHECK(d[k] == 0);
-    const Vector3d motion = x * d;
-    CHECK(std::abs(connection(x, found).dot(motion)) <= 1e-13 * x.norm() * motion.norm());
-  }
-  for (int m = found.free; m < 2; ++m) CHECK(found.direction.col(m).norm() == 0);
-}
-
-PairPositions random_positions(std::mt19937& random) {
-  std::normal_distribution<double> normal;
-  return PairPositions::NullaryExpr([&] { return normal(random); });
 }
 
 }  // namespace
@@ -76,9 +49,8 @@ TEST_CASE("no other points of a random pair are closer") {
   for (const auto kind : {PairKind::point_triangle, PairKind::edge_edge}) {
     std::set<std::vector<bool>> regions;
     for (int i = 0; i < 3000; ++i) {
-      const PairPositions x = random_positions(random);
+      const PairPositions x = random_pair(random);
       check_optimal(kind, x);
-      check_directions(kind, x);
       const Closest found = closest(kind, x);
       std::vector<bool> zeros;
       for (int k = 0; k < 4; ++k) zeros.push_back(found.c[k] == 0);
@@ -94,7 +66,7 @@ TEST_CASE("near-degenerate pairs keep an exact distance") {
   std::uniform_real_distribution<double> unit(0, 1);
   const auto small = [&] { return std::pow(10, -16 * unit(random)); };
   for (int i = 0; i < 40000; ++i) {
-    PairPositions x = random_positions(random);
+    PairPositions x = random_pair(random);
     const double size = small();
     switch (i % 7) {
       case 0:  // nearly parallel edges, or a needle
@@ -126,35 +98,31 @@ TEST_CASE("near-degenerate pairs keep an exact distance") {
 }
 
 TEST_CASE("exactly degenerate pairs") {
-  const auto columns = [](Vector3d a, Vector3d b, Vector3d c, Vector3d d) {
-    PairPositions x;
-    x << a, b, c, d;
-    return x;
-  };
-  const Vector3d o(0, 0, 0), e1(1, 0, 0), e2(0, 1, 0), e3(0, 0, 1);
-  const auto distance = [](PairKind kind, const PairPositions& x) {
-    check_optimal(kind, x);
-    check_directions(kind, x);
-    return connection(x, closest(kind, x)).norm();
-  };
   using enum PairKind;
+  const Vector3d o(0, 0, 0), e1(1, 0, 0), e2(0, 1, 0), e3(0, 0, 1);
+  const auto expect = [](PairKind kind, const PairPositions& x, double distance) {
+    check_optimal(kind, x);
+    CHECK(connection(x, closest(kind, x)).norm() == distance);
+  };
   // Parallel edges: side by side, one behind the other, of opposite directions, on one line.
-  CHECK(distance(edge_edge, columns(o, e1, e2, e1 + e2)) == 1);
-  CHECK(distance(edge_edge, columns(o, e1, 3 * e1, 4 * e1)) == 2);
-  CHECK(distance(edge_edge, columns(o, e1, 0.5 * e1 + e2, -2 * e1 + e2)) == 1);
-  CHECK(distance(edge_edge, columns(o, e1, -2 * e1 + e2, -3 * e1 + e2)) == Approx(std::sqrt(5)));
-  CHECK(distance(edge_edge, columns(o, e1, 0.5 * e1, 2 * e1)) == 0);
-  CHECK(distance(edge_edge, columns(o, o, -e1, e1)) == 0);
-  CHECK(distance(edge_edge, columns(-e1, e1, e3, e3)) == 1);
-  CHECK(distance(edge_edge, columns(o, o, e3, e3)) == 1);
-  CHECK(distance(edge_edge, columns(-e1, e1, e3 - e2, e3 + e2)) == 1);
+  expect(edge_edge, pair_at(o, e1, e2, e1 + e2), 1);
+  expect(edge_edge, pair_at(o, e1, 3 * e1, 4 * e1), 2);
+  expect(edge_edge, pair_at(o, e1, 0.5 * e1 + e2, -2 * e1 + e2), 1);
+  expect(edge_edge, pair_at(o, e1, -3 * e1 + 4 * e2, -4 * e1 + 4 * e2), 5);
+  expect(edge_edge, pair_at(o, e1, 0.5 * e1, 2 * e1), 0);
+  // Edges without length, and edges that cross at right angles.
+  expect(edge_edge, pair_at(o, o, -e1, e1), 0);
+  expect(edge_edge, pair_at(-e1, e1, e3, e3), 1);
+  expect(edge_edge, pair_at(o, o, e3, e3), 1);
+  expect(edge_edge, pair_at(-e1, e1, e3 - e2, e3 + e2), 1);
   // Triangles without area: a line, a point.
-  CHECK(distance(point_triangle, columns(e2, o, e1, 2 * e1)) == 1);
-  CHECK(distance(point_triangle, columns(e2 + 1.5 * e1, o, 2 * e1, e1)) == 1);
-  CHECK(distance(point_triangle, columns(e2 + 1.5 * e1, e1, o, 2 * e1)) == 1);
-  CHECK(distance(point_triangle, columns(e2, o, o, o)) == 1);
-  CHECK(distance(point_triangle, columns(e2, o, o, e1)) == 1);
-  CHECK(distance(point_triangle, columns(e3, o, e1, e2)) == 1);
+  expect(point_triangle, pair_at(e2, o, e1, 2 * e1), 1);
+  expect(point_triangle, pair_at(e2 + 1.5 * e1, o, 2 * e1, e1), 1);
+  expect(point_triangle, pair_at(e2 + 1.5 * e1, e1, o, 2 * e1), 1);
+  expect(point_triangle, pair_at(e2, o, o, o), 1);
+  expect(point_triangle, pair_at(e2, o, o, e1), 1);
+  // Over a corner, an edge and the inside of a triangle.
+  expect(point_triangle, pair_at(e3, o, e1, e2), 1);
   CHECK(closest_point_triangle(e3, o, e1, e2).free == 0);
   CHECK(closest_point_triangle(e3 + 0.5 * e1, o, e1, e2).free == 1);
   CHECK(closest_point_triangle(e3 + 0.3 * (e1 + e2), o, e1, e2).free == 2);

@@ -1,8 +1,7 @@
 #include "core/numerics/contact_forces/friction.h"
 
-#include <random>
-
 #include "tests/support/kernel_check.h"
+#include "tests/unit/contact/pairs.h"
 
 using namespace drape;
 using Eigen::Vector3d;
@@ -15,7 +14,7 @@ struct Sliding {
   std::vector<FrictionContact> contacts;
   Positions reference;
 
-  explicit Sliding(int count, unsigned seed = 1) {
+  explicit Sliding(int count, unsigned seed) {
     std::mt19937 random(seed);
     std::normal_distribution<double> normal;
     const int n = 5 * count;
@@ -32,8 +31,6 @@ struct Sliding {
       contacts.push_back(contact);
     }
   }
-  Positions moved(double by, unsigned seed) const { return shaken(reference, by, seed); }
-  LaggedFriction energy() const { return LaggedFriction({contacts}, reference, {}, smoothing); }
 };
 
 }  // namespace
@@ -41,16 +38,12 @@ struct Sliding {
 TEST_CASE("friction's derivatives, sticking and sliding") {
   for (int i = 0; i < 30; ++i) {
     const Sliding sliding(1 + i % 5, i);
-    const LaggedFriction energy = sliding.energy();
+    const LaggedFriction energy({sliding.contacts}, sliding.reference, {}, smoothing);
     for (const double by : {0.01, 0.3, 3.0}) {
-      const Positions x = sliding.moved(by * smoothing, 100 + i);
-      const Positions g = gradient_of(energy, x);
-      const Eigen::MatrixXd h = dense(hessian_of(energy, x, Projection::none));
-      REQUIRE(g.norm() > 0);
-      REQUIRE(h.norm() > 0);
+      const Positions x = shaken(sliding.reference, by * smoothing, 100 + i);
       // The third derivative jumps at |u| = 0 and ε.
-      CHECK((gradient_by_differences(energy, x, 1e-8) - flat(g)).norm() <= 2e-6 * g.norm());
-      CHECK((hessian_by_differences(energy, x, 1e-8) - h).norm() <= 1e-4 * h.norm());
+      check_energy_derivatives([&](const Positions&) { return &energy; }, x, 1e-8, 2e-6, 1e-4);
+      const Eigen::MatrixXd h = dense(hessian_of(energy, x, Projection::none));
       CHECK(eigenvalues_of(h)[0] >= -1e-13 * h.norm());
       CHECK(dense(hessian_of(energy, x, Projection::clamp)) == h);
     }
@@ -63,20 +56,18 @@ TEST_CASE("friction of a single point: zero at rest, full force above the smooth
   contact.c = {1, -1, 0, 0};
   contact.normal = {0, 0, 1};
   contact.force = 0.25;
-  const Positions reference = Positions::Zero(1, 3);
-  const LaggedFriction energy({{contact}}, reference, {}, smoothing);
-  const auto at = [&](double x, double y, double z) {
-    return Positions(reference + Positions(Eigen::RowVector3d(x, y, z)));
-  };
-  CHECK(energy.value(reference) == 0);
-  CHECK(gradient_of(energy, reference).norm() == 0);
+  const auto at = [](double x, double y, double z) { return Positions(Eigen::RowVector3d(x, y, z)); };
+  const Positions rest = at(0, 0, 0);
+  const LaggedFriction energy({{contact}}, rest, {}, smoothing);
+  CHECK(energy.value(rest) == 0);
+  CHECK(gradient_of(energy, rest).norm() == 0);
   CHECK(energy.value(at(0, 0, 1)) == 0);
   const Eigen::Matrix3d expected = Vector3d(1, 1, 0).asDiagonal() * (2 * 0.25 / smoothing);
-  CHECK((dense(hessian_of(energy, reference, Projection::none)) - expected).norm() <= 1e-10);
+  CHECK((dense(hessian_of(energy, rest, Projection::none)) - expected).norm() <= 1e-10);
   for (const double part : {1e-6, 0.1, 0.5, 0.999}) {
-    const Positions g = gradient_of(energy, at(0.6 * part * smoothing, 0.8 * part * smoothing, 2));
     const double f = 0.25 * part * (2 - part);
-    CHECK((g - Eigen::RowVector3d(0.6 * f, 0.8 * f, 0)).norm() <= 1e-9 * f);
+    const Positions g = gradient_of(energy, at(0.6 * part * smoothing, 0.8 * part * smoothing, 2));
+    CHECK((g - at(0.6 * f, 0.8 * f, 0)).norm() <= 1e-9 * f);
   }
   for (const double part : {1.0, 1.001, 10.0, 1e4}) {
     const Positions x = at(0, part * smoothing, 0);
@@ -85,23 +76,8 @@ TEST_CASE("friction of a single point: zero at rest, full force above the smooth
   }
 }
 
-TEST_CASE("friction's groups are summed apart, to the bits of each") {
-  const Sliding all(5000);
-  const std::vector<FrictionContact> first(all.contacts.begin(), all.contacts.begin() + 1500),
-      rest(all.contacts.begin() + 1500, all.contacts.end());
-  const Positions x = all.moved(smoothing, 3);
-  const auto value = [&](const FrictionContacts& groups) {
-    return LaggedFriction(groups, all.reference, {}, smoothing).value(x);
-  };
-  REQUIRE(value({first}) > 0);
-  CHECK(value({first, rest}) == value({first}) + value({rest}));
-  const LaggedFriction both({first, rest}, all.reference, {}, smoothing);
-  CHECK(gradient_of(both, x) == gradient_of(all.energy(), x));
-  CHECK(both.stencils() == all.energy().stencils());
-}
-
 TEST_CASE("under-relaxed friction contacts are means, and those that have ended fade") {
-  const Sliding sliding(3);
+  const Sliding sliding(3, 1);
   std::vector<FrictionContact> before = sliding.contacts, now = sliding.contacts;
   before.pop_back();       // contact 2 is new,
   now.erase(now.begin());  // contact 0 has ended
