@@ -21,8 +21,8 @@ std::size_t count(const TriangleMesh& mesh) { return self_intersections(mesh).si
 
 /// Two triangles without a common vertex: (0,0,0) (1,0,0) (0,1,0), and this one.
 std::size_t count_against_unit(const Vector& a, const Vector& b, const Vector& c) {
-  const TriangleMesh unit = mesh_of({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}});
-  const TriangleMesh other = mesh_of({a, b, c}, {{0, 1, 2}});
+  const TriangleMesh unit = mesh_of({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}}),
+                     other = mesh_of({a, b, c}, {{0, 1, 2}});
   const std::size_t between = intersections(unit, other).size();
   CHECK(intersections(other, unit).size() == between);
   CHECK(count(both_of(unit, other, {0, 0, 0})) == between);
@@ -31,15 +31,12 @@ std::size_t count_against_unit(const Vector& a, const Vector& b, const Vector& c
 
 std::vector<std::pair<int, int>> by_cgal(const TriangleMesh& mesh) {
   using Point = CGAL::Exact_predicates_inexact_constructions_kernel::Point_3;
-  CGAL::Surface_mesh<Point> surface;
-  using Vertex = CGAL::Surface_mesh<Point>::Vertex_index;
-  using Face = CGAL::Surface_mesh<Point>::Face_index;
-  for (int v = 0; v < mesh.vertices.rows(); ++v)
-    surface.add_vertex(Point(mesh.vertices(v, 0), mesh.vertices(v, 1), mesh.vertices(v, 2)));
-  for (int t = 0; t < mesh.triangles.rows(); ++t)
-    surface.add_face(Vertex(mesh.triangles(t, 0)), Vertex(mesh.triangles(t, 1)),
-                     Vertex(mesh.triangles(t, 2)));
-  std::vector<std::pair<Face, Face>> faces;
+  using Surface = CGAL::Surface_mesh<Point>;
+  Surface surface;
+  for (const auto& x : mesh.vertices.rowwise()) surface.add_vertex(Point(x[0], x[1], x[2]));
+  for (const auto& t : mesh.triangles.rowwise())
+    surface.add_face(Surface::Vertex_index(t[0]), Surface::Vertex_index(t[1]), Surface::Vertex_index(t[2]));
+  std::vector<std::pair<Surface::Face_index, Surface::Face_index>> faces;
   CGAL::Polygon_mesh_processing::self_intersections(surface, std::back_inserter(faces));
   std::vector<std::pair<int, int>> pairs;
   for (const auto& [s, t] : faces) {
@@ -69,14 +66,13 @@ TEST_CASE("intersections: two triangles without a common vertex") {
 TEST_CASE("intersections: neighbours") {
   const Vector a(0, 0, 0), b(1, 0, 0), c(.3, 1, 0);
   // Sharing the edge ab, with the angle between them from flat to folded flat.
+  const auto hinge = [&](const Vector& d) { return count(mesh_of({a, b, c, d}, {{0, 1, 2}, {1, 0, 3}})); };
   for (const double degrees : {180.0, 150.0, 90.0, 60.0, 1.0, 1e-7}) {
     const double t = degrees * M_PI / 180;
-    const TriangleMesh hinge =
-        mesh_of({a, b, c, {.6, std::cos(t), degrees == 180 ? 0 : std::sin(t)}}, {{0, 1, 2}, {1, 0, 3}});
-    CHECK(count(hinge) == 0);
+    CHECK(hinge({.6, std::cos(t), degrees == 180 ? 0 : std::sin(t)}) == 0);
   }
-  CHECK(count(mesh_of({a, b, c, {.6, .8, 0}}, {{0, 1, 2}, {1, 0, 3}})) == 1);
-  CHECK(count(mesh_of({a, b, c, {.6, .8, 1e-15}}, {{0, 1, 2}, {1, 0, 3}})) == 0);
+  CHECK(hinge({.6, .8, 0}) == 1);
+  CHECK(hinge({.6, .8, 1e-15}) == 0);
   // Sharing the vertex a.
   const auto fan = [&](const Vector& d, const Vector& e) {
     return count(mesh_of({a, b, c, d, e}, {{0, 1, 2}, {0, 3, 4}}));
@@ -113,11 +109,8 @@ TEST_CASE("intersections: the same as CGAL's on crumpled cloths") {
   for (const double noise : {0.0, 0.003, 0.02, 0.2}) {
     TriangleMesh mesh = grid({1, 1}, 30, 30, Diagonals::criss_cross);
     std::uniform_real_distribution<double> move(-noise, noise);
-    const Eigen::Matrix3d turn = Eigen::AngleAxisd(0.7, Vector(1, 2, 3).normalized()).toRotationMatrix();
-    for (int v = 0; v < mesh.vertices.rows(); ++v) {
-      const Vector p = mesh.vertices.row(v).transpose() + Vector(move(random), move(random), move(random));
-      mesh.vertices.row(v) = (turn * p).transpose();
-    }
+    for (Eigen::Index i = 0; i < mesh.vertices.size(); ++i) mesh.vertices.data()[i] += move(random);
+    mesh.vertices *= Eigen::AngleAxisd(-0.7, Vector(1, 2, 3).normalized()).toRotationMatrix();
     std::vector<std::pair<int, int>> found;
     for (const TrianglePair& pair : self_intersections(mesh)) found.emplace_back(pair.first, pair.second);
     CHECK(found == by_cgal(mesh));
@@ -127,14 +120,10 @@ TEST_CASE("intersections: the same as CGAL's on crumpled cloths") {
 }
 
 TEST_CASE("intersections: triangles without area touch their neighbours") {
-  TriangleMesh mesh = grid({1, 1}, 4, 4, Diagonals::one_way);
-  const Positions flat = mesh.vertices;
-  mesh.vertices.rowwise() = flat.row(5);  // all in one point
-  CHECK(count(mesh) > 0);
-  mesh.vertices = flat;
-  mesh.vertices.col(1).setZero();  // all in one line
-  CHECK(count(mesh) > 0);
-  mesh.vertices = flat;
-  mesh.vertices.row(5) = flat.row(6);  // two vertices in one place
-  CHECK(count(mesh) > 0);
+  TriangleMesh one_point = grid({1, 1}, 4, 4, Diagonals::one_way), one_line = one_point,
+               two_vertices_in_one_place = one_point;
+  one_point.vertices.rowwise() = one_line.vertices.row(5);
+  one_line.vertices.col(1).setZero();
+  two_vertices_in_one_place.vertices.row(5) = two_vertices_in_one_place.vertices.row(6);
+  for (const TriangleMesh& mesh : {one_point, one_line, two_vertices_in_one_place}) CHECK(count(mesh) > 0);
 }
