@@ -1,9 +1,14 @@
-// What the command says to a cloth from a bad mesh file: the file, and the line or the element.
+// What the command says to a bad mesh file of a cloth or an obstacle: the file, and the line or the element.
+// And what it keeps of a good one.
 
 #include <algorithm>
-#include <catch2/catch.hpp>
 
-#include "tests/support/command.h"
+#include "core/numerics/mesh_files/io.h"
+#include "core/numerics/patterns/generate.h"
+#include "tests/configs/runs.h"
+#include "tests/support/glb.h"
+
+using namespace drape;
 
 namespace {
 
@@ -12,77 +17,130 @@ const std::string sheet =
     "v 0 0 0\nv 1 0 0\nv 2 0 0\nv 0 1 0\nv 1 1 0\nv 2 1 0\nv 0 2 0\nv 1 2 0\nv 2 2 0\n"
     "f 1 2 5\nf 1 5 4\nf 2 3 6\nf 2 6 5\nf 4 5 8\nf 4 8 7\nf 5 6 9\nf 5 9 8\n";
 
-std::string experiment_with(const std::string& mesh_name) {
+std::string experiment_with(const std::string& mesh) {
   return replaced(small_experiment(), "{shape: square, side: 1, columns: 6, rows: 6}",
-                  "{shape: file, file: " + mesh_name + "}");
+                  "{shape: file, file: " + mesh + "}");
 }
 
-/// Standard error of a run, and of a check, of the experiment in a subfolder with this mesh beside it.
-std::string said_of_mesh(const std::string& mesh, const std::string& mesh_name = "cloth.obj",
-                         const std::string& arguments = "") {
-  const Scratch folder;
-  std::filesystem::create_directory(folder / "in");
-  folder.write("in/e.yaml", experiment_with(mesh_name));
-  folder.write("in/" + mesh_name, mesh);
-  const std::string said = refused_by("run in/e.yaml --out out " + arguments, folder.path);
-  CHECK(!std::filesystem::exists(folder / "out"));
-  CHECK(refused_by("check in/e.yaml " + arguments, folder.path) == said);
-  return said;
+/// Standard error of a run, and of a check, of the experiment with this mesh beside it.
+std::string said_of_mesh(const std::string& mesh, const std::string& options = "") {
+  const Scratch folder(experiment_with("cloth.obj"));
+  folder.write("cloth.obj", mesh);
+  return refused_alike(folder, options);
 }
+
+const std::string place = "e.yaml:2:8: cloth.obj: ";
 
 }  // namespace
 
 TEST_CASE("a valid mesh file runs, and its results can be run again from their own config") {
   // Coordinates are converted once, though both results folders name a file.
-  for (const std::string coordinates : {"", ", unit: inch, up: y, scale: 20, rotate: [0, 0, 90]"}) {
-    const Scratch folder;
+  const std::pair<std::string, std::string> cases[] = {
+      {"cloth.obj", "start: {scale: [0.9, 0.9, 1]"},
+      {"cloth.obj, unit: inch, up: y, scale: 20, rotate: [0, 0, 90]",
+       "start: {file: cloth.obj, scale: [19, 20, 19]"}};
+  for (const auto& [cloth, start] : cases) {
+    const Scratch folder(replaced(experiment_with(cloth), cases[0].second, start));
     folder.write("cloth.obj", sheet);
-    folder.write("e.yaml",
-                 replaced(replaced(experiment_with("cloth.obj"), "cloth.obj", "cloth.obj" + coordinates),
-                          "start: {scale: [0.9, 0.9, 1]",
-                          coordinates.empty() ? "start: {scale: [0.9, 0.9, 1]"
-                                              : "start: {file: cloth.obj, scale: [19, 20, 19]"));
-    const std::string options = " --quiet --no-report --threads 1 --method pcs --out ";
-    drape_ends("run e.yaml" + options + "first", folder);
-    std::filesystem::remove(folder / "cloth.obj");
-    drape_ends("run first/config.yaml" + options + "second", folder);
-    for (const std::string file : {"config.yaml", "rest/l0.ply", "levels/pcs_l0.ply", "levels/pcs_l1.ply"})
-      CHECK((text_of(folder / ("first/" + file)) == text_of(folder / ("second/" + file))));
+    run_into("first", folder, "--threads 1 --method pcs");
+    fs::remove(folder / "cloth.obj");
+    drape_ends("run first/config.yaml --quiet --no-report --threads 1 --method pcs --out second", folder);
+    check_same_files(folder / "first", folder / "second",
+                     {"config.yaml", "rest/l0.ply", "levels/pcs_l0.ply", "levels/pcs_l1.ply"});
   }
 }
 
 TEST_CASE("a malformed mesh file is named with its line, a shape without what it needs with its key") {
-  CHECK(said_of_mesh(replaced(sheet, "v 1 1 0\n", "v 1 one 0\n")) ==
+  const Scratch folder;  // a file is found beside its config
+  fs::create_directory(folder / "in");
+  folder.write("in/e.yaml", experiment_with("cloth.obj"));
+  folder.write("in/cloth.obj", replaced(sheet, "v 1 1 0\n", "v 1 one 0\n"));
+  CHECK(refused(folder, "check in/e.yaml") ==
         "error: in/e.yaml:2:8: in/cloth.obj:5: 'one' is not a number\n");
-  CHECK(said_of_mesh(sheet, "cloth.obj", "--set 'cloth={shape: file}'") ==
-        "error: --set cloth: \"shape: file\" needs \"file\", the mesh to read\n");
-  CHECK(said_of_mesh(sheet, "cloth.obj", "--set 'cloth={shape: polygon}'") ==
-        "error: --set cloth: \"shape: polygon\" needs \"loops\", its outline and holes\n");
-}
-
-TEST_CASE("a mesh file without a mesh is refused") {
-  const std::string file = "error: in/e.yaml:2:8: in/cloth.obj: ";
-  CHECK(said_of_mesh("") == file + "is empty\n");
-  CHECK(said_of_mesh("v 0 0 0\n") ==
-        file + "the mesh has no triangles\n" + file +
-            "the mesh is 0 m across; at least 1e-09 m can be computed with\n" + file +
-            "1 vertex belongs to no triangle: 0 (counted from 0); remove them\n");
+  check_error(said_of_mesh(sheet, "--set 'cloth={shape: file}'"),
+              "--set cloth: \"shape: file\" needs \"file\", the mesh to read");
+  check_error(said_of_mesh(sheet, "--set 'cloth={shape: polygon}'"),
+              "--set cloth: \"shape: polygon\" needs \"loops\", ");
+  CHECK(said_of_mesh("") == "error: " + place + "is empty\n");
 }
 
 TEST_CASE("all faults of a mesh are listed at once") {
   const std::string said =
       said_of_mesh(sheet + "v 5 5 5\nf 1 2 5\nf 1 1 2\nv 0 0 1\nf 1 11 5\nv 0 0 2\nv 1 0 2\nf 9 12 13\n");
-  for (const std::string fault :
-       {"1 vertex belongs to no triangle: 9", "1 triangle repeats a vertex: 9",
-        "1 triangle has the same vertices as another: 8 ", "1 edge has more than two triangles: (0, 4)",
-        "1 vertex joins separate fans of triangles: 8 of 2 fans"})
-    CHECK_THAT(said, Catch::Contains(fault));
+  CHECK_THAT(said, Contains(place + "1 vertex belongs to no triangle: 9") &&
+                       Contains(place + "1 vertex joins separate fans of triangles: 8 of 2 fans"));
   CHECK(std::count(said.begin(), said.end(), '\n') == 5);
 }
 
-TEST_CASE("bending for flat rest shapes names where a mesh file is curved") {
-  const std::string bent = replaced(sheet, "v 1 1 0\n", "v 1 1 0.5\n");
-  CHECK(said_of_mesh(bent, "cloth.obj", "--set 'energies=[neo_hookean, quadratic_bending, gravity]'") ==
-        "error: --set energies: quadratic_bending: the rest shape of level 0 is not flat (angle 0.420534 at "
-        "the edge of vertices 1 and 4); use hinge\n");
+TEST_CASE(
+    "an obstacle with coordinates beyond what can be computed with, or missing from data/, is refused") {
+  const Scratch folder(
+      replaced(small_experiment(), "levels: 2\n", "levels: 2\ncontact: ipc\nobstacles: [{mesh: far.obj}]\n"));
+  folder.write("far.obj", "v 0 0 0\nv 1 0 0\nv 0 1e30 0\nf 1 2 3\n");
+  CHECK_THAT(
+      refused_alike(folder),
+      Contains(
+          "far.obj: 1 vertex has too large a coordinate: 2 with 1e+30 m (counted from 0); at most 1e+09 m"));
+  CHECK_THAT(refused_alike(folder, "--set obstacles.0.mesh=data/bunny.ply"),
+             Contains("bunny.ply: No such file or directory") && EndsWith("; `make data` makes it\n"));
+}
+
+TEST_CASE("texture coordinates of the cloth's file reach every export, seams included") {
+  const Scratch folder;
+  // Upright, in the plane y = 0, with a seam in the middle and a mirrored right half.
+  const double side = 0.4;
+  const auto expected = [&](const TriangleMesh& rest, Eigen::Index t, int k) {
+    const auto corner = [&](int i) { return rest.vertices.row(rest.triangles(t, i)); };
+    const bool left = (corner(0).x() + corner(1).x() + corner(2).x()) / 3 < side / 2;
+    const double x = corner(k).x(), z = corner(k).z();
+    return Eigen::RowVector2d((left ? x : side - x) / side, z / side + (left ? 0 : 0.25));
+  };
+  TriangleMesh cloth = grid({side, side}, 9, 9, Diagonals::one_way);
+  cloth.vertices.col(1).swap(cloth.vertices.col(2));
+  cloth.uv.resize(cloth.triangles.rows(), 6);
+  for (Eigen::Index t = 0; t < cloth.triangles.rows(); ++t)
+    for (int k = 0; k < 3; ++k) cloth.uv.block<1, 2>(t, 2 * k) = expected(cloth, t, k);
+  write_mesh(folder / "upright.obj", cloth);
+  folder.write("e.yaml",
+               "name: banner\ncloth: {shape: file, file: upright.obj}\nlevels: 3\n"
+               "pins: [{region: box, lower: [-1, -1, 0.399], upper: [1, 1, 1]}]\n"
+               "energies: [neo_hookean, hinge, gravity]\nrefiner: midpoint\n"
+               "newton: {force_tolerance: 1}\nmethods: {pcs: {}}\n");
+  run_into("out", folder, "-j 1");
+  const auto exported_to = [&](const std::string& name) {
+    drape_ends("export out --to " + name, folder);
+    return folder / name;
+  };
+  const TriangleMesh rest = read_mesh(folder / "out/rest/l2.ply");
+  const Positions state = read_mesh(folder / "out/levels/pcs_l2.ply").vertices;
+  double most = 0;
+  for (const std::string name : {"out.obj", "out.ply"}) {
+    const TriangleMesh mesh = read_mesh(exported_to(name));
+    CHECK((mesh.vertices == state));
+    REQUIRE(mesh.uv.rows() == rest.triangles.rows());
+    for (Eigen::Index t = 0; t < mesh.uv.rows(); ++t)
+      for (int k = 0; k < 3; ++k)
+        most = std::max(most, (mesh.uv.block<1, 2>(t, 2 * k) - expected(rest, t, k)).norm());
+  }
+  const Glb glb(text_of(exported_to("out.glb")));
+  const auto& primitive = glb.json["meshes"][2]["primitives"][0];
+  CHECK(glb.json["meshes"][2]["name"] == "banner level 2");
+  const std::vector<float> uv = glb.floats(primitive["attributes"]["TEXCOORD_0"]),
+                           x = glb.floats(primitive["attributes"]["POSITION"]);
+  const std::vector<std::uint32_t> corners = glb.indices(primitive["indices"]);
+  CHECK(x.size() == static_cast<std::size_t>(state.size()) + 3 * 33);  // a seam of 32 edges
+  REQUIRE(corners.size() == static_cast<std::size_t>(rest.triangles.size()));
+  for (Eigen::Index t = 0; t < rest.triangles.rows(); ++t)
+    for (int k = 0; k < 3; ++k) {
+      const std::size_t c = corners[3 * t + k];
+      const Eigen::RowVector2d here(uv[2 * c], 1 - uv[2 * c + 1]);
+      most = std::max(most, (here - expected(rest, t, k)).norm());
+      const auto p = state.row(rest.triangles(t, k));
+      most = std::max({most, std::abs(x[3 * c] - p.x()), std::abs(x[3 * c + 1] - p.z())});
+    }
+  CHECK(most < 2e-6);
+
+  // The results folder's experiment reads rest/l0.ply: the same again.
+  drape_ends("run out/config.yaml -o again -j 1 -q --no-report", folder);
+  check_same_files(folder / "again", folder / "out", {"rest/l0.ply", "rest/l2.ply", "levels/pcs_l2.ply"});
 }
