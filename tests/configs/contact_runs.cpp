@@ -1,100 +1,86 @@
 // What runs with contact refuse, and what they write down.
 
-#include <catch2/catch.hpp>
-#include <nlohmann/json.hpp>
-
 #include "core/app/files/csv.h"
 #include "core/kernel/interfaces/level.h"
 #include "core/numerics/mesh_files/io.h"
 #include "core/numerics/patterns/generate.h"
-#include "tests/support/command.h"
-#include "tests/support/folders.h"
-
-namespace fs = std::filesystem;
-using Catch::Contains;
+#include "tests/configs/runs.h"
 
 namespace {
 
-std::string contact_experiment() { return experiment_of_tests("contact"); }
-
-/// Standard error of a run that is refused, as a check is.
-std::string said_of_contact(const std::string& experiment, const std::string& arguments = "") {
-  const Scratch folder(experiment);
-  const std::string said = refused_by("run e.yaml --out out " + arguments, folder.path);
-  CHECK(!fs::exists(folder / "out"));
-  CHECK(refused_by("check e.yaml " + arguments, folder.path) == said);
-  return said;
+/// Standard error of a run of the experiment that is refused, as a check is.
+std::string said_of_contact(const std::string& options) {
+  return refused_alike(Scratch(experiment_of_tests("contact")), options);
 }
 
-const std::string quiet = " --quiet --no-report --threads 1 ";
+const std::string touches = "e.yaml:4:8: the start of level 0 touches";
+
+const std::string caged = R"({name: caged, cloth: {shape: square, side: 0.4, columns: 9, rows: 9}, levels: 3,
+ start: {translate: [-0.2, -0.2, 0.15], perturbation: 1e-3}, check_intersections: every_step,
+ energies: [neo_hookean, hinge, {type: strain_limit, limit: 1.06}, gravity],
+ contact: {type: ipc, self_contact: false}, friction: 0.1, obstacles: [
+   {name: ball, meshed_shape: sphere, radius: 0.1, subdivisions: 2,
+    cages: {count: 2, alpha: 0.05, offset: 0.03}}],
+ newton: {force_tolerance: 1e-2, step_size: 0.05}, methods: {pcs: {}, cascadic: {}}})";
 
 }  // namespace
 
 TEST_CASE("a start that touches an obstacle is refused, with the pairs and the location") {
-  const std::string text = contact_experiment(), place = "error: e.yaml:4:8: the start of level 0 touches: ";
-  CHECK(said_of_contact(text, "--set start.translate=[-0.2,-0.2,0.099] --set start.perturbation=0") ==
+  const std::string place = "error: " + touches + ": ";
+  CHECK(said_of_contact("--set start.translate=[-0.2,-0.2,0.099] --set start.perturbation=0") ==
         place + "cloth triangle 54 and ball: sphere at (-0.01667, -0.03333, 0.099)\n" + place +
             "cloth triangle 55 and ball: sphere at (-0.03333, -0.01667, 0.099)\n" + place +
             "cloth triangle 57 and ball: sphere at (0.01667, -0.01667, 0.099)\n"
             "error: e.yaml:4:8: … and 3 more pairs; move the start and the obstacle apart, or let "
             "--allow-start-repair do it\n");
-  const std::string table =
-      "[{name: table, meshed_shape: box, size: [0.01, 0.01, 0.2], translate: [0.135, 0.12, 0.02]}]";
-  CHECK_THAT(said_of_contact(text, "--set start.perturbation=0 --set 'obstacles=" + table + "'"),
-             Catch::StartsWith(place + "cloth triangle 108 and table triangle 4 at (0.135, 0.115, 0.11)\n"));
-  CHECK_THAT(
-      said_of_contact(text, "--set 'pins=[{point: [0.2, 0.2, 0], translate: [-0.2, -0.2, 0]}]'"),
-      Catch::StartsWith("error: e.yaml:4:8: the start of level 0 touches (pinned vertices begin at their "
-                        "targets): cloth triangle "));
-}
-
-TEST_CASE("a start is checked on every level") {
+  CHECK_THAT(said_of_contact("--set start.perturbation=0 --set 'obstacles=[{name: table, meshed_shape: box, "
+                             "size: [0.01, 0.01, 0.2], translate: [0.135, 0.12, 0.02]}]'"),
+             StartsWith(place + "cloth triangle 108 and table triangle 4 at (0.135, 0.115, 0.11)\n"));
+  CHECK_THAT(said_of_contact("--set 'pins=[{point: [0.2, 0.2, 0], translate: [-0.2, -0.2, 0]}]'"),
+             StartsWith("error: " + touches + " (pinned vertices begin at their targets): cloth triangle "));
   // Noise whose valleys only the finer level is fine enough for.
-  const std::string said = said_of_contact(
-      replaced(contact_experiment(), "{type: strain_limit, limit: 1.06}, ", ""),
-      "--set contact=shapes --set 'obstacles=[{name: floor, shape: half_space}]' --set "
-      "start.perturbation=5e-3 --set start.perturbation_wavelength=0.06 --set start.translate=[0,0,0.0075]");
-  CHECK_THAT(said, Catch::StartsWith("error: e.yaml:4:8: the start of level 1 touches: cloth triangle ") &&
-                       Contains(" and floor: half_space at ("));
+  CHECK_THAT(
+      said_of_contact("--set 'energies=[neo_hookean, hinge, gravity]' --set contact=shapes "
+                      "--set 'obstacles=[{name: floor, shape: half_space}]' --set start.perturbation=5e-3 "
+                      "--set start.perturbation_wavelength=0.06 --set start.translate=[0,0,0.0075]"),
+      StartsWith("error: e.yaml:4:8: the start of level 1 touches: cloth triangle ") &&
+          Contains(" and floor: half_space at ("));
+  CHECK_THAT(
+      refused_alike(Scratch(replaced(caged, "0.15], perturbation", "0.11], perturbation"))),
+      Contains("the start of level 0 touches: cloth triangle ") && Contains(" and ball (cage 0) triangle "));
 }
 
 TEST_CASE("a cloth that crosses itself is refused") {
-  const Scratch folder;
-  folder.write("cloth.obj",
-               "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0.2 0.2 -0.5\nv 0.3 0.2 -0.5\nv 0.25 0.25 0.5\n"
-               "f 1 2 3\nf 4 5 6\n");
-  folder.write("e.yaml",
-               "name: crossed\ncloth: {shape: file, file: cloth.obj}\nlevels: 1\n"
-               "energies: [neo_hookean, gravity]\ncontact: ipc\nmethods: {newton: {}}\n");
-  CHECK_THAT(refused_by("check e.yaml", folder.path),
-             Catch::StartsWith("error: e.yaml:1:1: the start of level 0 touches: cloth triangle 0 and cloth "
-                               "triangle 1 at (0.2"));
-  CHECK_THAT(refused_by("check e.yaml --allow-start-repair", folder.path),
-             Catch::StartsWith("error: e.yaml:1:1: moving the start by up to ") &&
-                 Contains(" does not part cloth triangle 0 and cloth triangle 1 at (0.2") &&
-                 Catch::EndsWith(" on level 0; change the start's shape or the obstacle\n"));
+  const Scratch folder(
+      "name: crossed\ncloth: {shape: file, file: cloth.obj}\nlevels: 1\nenergies: [neo_hookean, gravity]\n"
+      "contact: ipc\nmethods: {newton: {}}\n");
+  folder.write(
+      "cloth.obj",
+      "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0.2 0.2 -0.5\nv 0.3 0.2 -0.5\nv 0.25 0.25 0.5\nf 1 2 3\nf 4 5 6\n");
+  const std::string pair = "cloth triangle 0 and cloth triangle 1 at (0.2";
+  CHECK_THAT(refused_alike(folder), StartsWith("error: e.yaml:1:1: the start of level 0 touches: " + pair));
+  CHECK_THAT(refused_alike(folder, "--allow-start-repair"),
+             StartsWith("error: e.yaml:1:1: moving the start by up to ") &&
+                 Contains(" does not part " + pair) &&
+                 EndsWith(" on level 0; change the start's shape or the obstacle\n"));
 }
 
 TEST_CASE("a run with contact has contacts, gaps and intersections in its results") {
-  const Scratch folder(contact_experiment());
-  drape_ends(
-      "run e.yaml --out out --method all --set check_intersections=every_step --set "
-      "start.translate=[-0.2,-0.2,0.12] "
-      "--set newton.step_size=0.02" +
-          quiet,
-      folder);
-  const nlohmann::json all = json_in(folder / "out/results.json");
+  const Scratch folder(experiment_of_tests("contact"));
+  run_into("out", folder,
+           "--method all --threads 1 --set check_intersections=every_step --set newton.step_size=0.02 "
+           "--set start.translate=[-0.2,-0.2,0.12]");
+  const nlohmann::json all = results_in(folder / "out");
   REQUIRE(all["obstacles"].size() == 1);
   CHECK(all["obstacles"][0]["mesh"] == "obstacles/0.ply");
   CHECK(drape::read_mesh(folder / "out/obstacles/0.ply").vertices.rowwise().norm().maxCoeff() ==
         Approx(0.1).epsilon(0.01));
   for (const auto& [name, method] : all["methods"].items()) {
     INFO(name);
-    CHECK(method["status"] == "converged");
-    REQUIRE(method["levels"].size() == 2);
+    REQUIRE(outcome_of_method(method) == "converged: converged converged");
     for (const nlohmann::json& level : method["levels"]) {
       CHECK(level["intersections"] == 0);
-      CHECK(level["smallest_gap"].get<double>() > 0);
+      CHECK(level["smallest_gap"] > 0);
       CHECK(level["smallest_gap"].get<double>() < 1e-3);
       CHECK(level["largest_stretch"].get<double>() < 1.06);
     }
@@ -114,82 +100,58 @@ TEST_CASE("a run with contact has contacts, gaps and intersections in its result
 }
 
 TEST_CASE("a state has its contact forces, which carry the weight of a cloth that lies on a floor") {
-  const Scratch folder(contact_experiment());
-  drape_ends(
-      "run e.yaml --out out --method pcs --set 'obstacles=[{name: floor, shape: half_space}]' --set "
-      "start.translate=[0,0,0.001] --set start.perturbation=0 --set material.density=1000 --set "
-      "material.thickness=1e-3 --set newton.force_tolerance=1e-4" +
-          quiet,
-      folder);
-  for (const char* level : {"l0", "l1"}) {
+  const Scratch folder(experiment_of_tests("contact"));
+  run_into(
+      "out", folder,
+      "--method pcs --set 'obstacles=[{name: floor, shape: half_space}]' --set start.translate=[0,0,0.001] "
+      "--set start.perturbation=0 --set material.density=1000 --set material.thickness=1e-3 "
+      "--set newton.force_tolerance=1e-4");
+  for (const std::string level : {"l0", "l1"}) {
     INFO(level);
-    const fs::path state = folder / ("out/levels/pcs_" + std::string(level) + ".ply");
+    const fs::path state = folder / ("out/levels/pcs_" + level + ".ply");
     const drape::VertexFields fields = drape::read_ply_fields(state);
     REQUIRE(fields.size() == 1);
     CHECK(fields[0].name == "contact_pressure");
-    const auto rest =
-        drape::Level::of(0, drape::read_mesh(folder / ("out/rest/" + std::string(level) + ".ply")));
+    const auto rest = drape::Level::of(0, drape::read_mesh(folder / ("out/rest/" + level + ".ply")));
     CHECK(fields[0].values.dot(rest.vertex_area) == Approx(9.81 * 0.4 * 0.4).epsilon(1e-4));
     CHECK_THAT(text_of(fs::path(state).replace_extension(".vtp")), Contains("Name=\"contact_pressure\""));
   }
-}
-
-TEST_CASE("intersections are counted at the end of each level alone, unless every step is asked for") {
-  const Scratch folder(contact_experiment());
-  drape_ends("run e.yaml --out out --method newton --levels 1" + quiet, folder);
+  // Intersections are counted at the end of each level alone, unless every step is asked for.
   const drape::Csv rows(folder / "out/iterations.csv");
   REQUIRE(rows.size() > 0);
   for (std::size_t k = 0; k < rows.size(); ++k) CHECK(rows.text(k, "intersections") == "");
-  CHECK(json_in(folder / "out/results.json")["methods"]["newton"]["levels"][0]["intersections"] == 0);
+  CHECK(results_in(folder / "out")["methods"]["pcs"]["levels"][0]["intersections"] == 0);
 }
 
-TEST_CASE("obstacle files are found beside the config, and results run again from their own config") {
+TEST_CASE(
+    "obstacle files are found beside the config, through links too, and results run again from their own") {
   const Scratch folder;
-  fs::create_directories(folder / "in/meshes");
-  fs::create_directory(folder / "elsewhere");
-  drape::TriangleMesh slab = drape::grid({1, 1}, 3, 3, drape::Diagonals::criss_cross);
-  slab.vertices.rowwise() -= Eigen::RowVector3d(0.53, 0.52, 0);
-  drape::write_mesh(folder / "in/meshes/slab.obj", slab);
-  folder.write("in/e.yaml", replaced(contact_experiment(), "obstacles: [",
-                                     "obstacles: [{name: slab, mesh: meshes/slab.obj, "
-                                     "translate: [0, 0, -0.03]}, "));
-  const std::string options = quiet + "--method pcs --out ";
-  const Ended first = drape_with("run ../in/e.yaml" + options + "first", folder / "elsewhere");
-  INFO(first.err);
-  REQUIRE(first.exit_code == 0);
-  drape_ends("run elsewhere/first/config.yaml" + options + "second", folder);
-  for (const std::string file :
-       {"config.yaml", "levels/pcs_l0.ply", "levels/pcs_l1.ply", "obstacles/0.ply", "obstacles/1.ply"}) {
-    INFO(file);
-    CHECK((text_of(folder / ("elsewhere/first/" + file)) == text_of(folder / ("second/" + file))));
-  }
-  // It was in the way.
-  const double lowest = drape::read_mesh(folder / "second/levels/pcs_l1.ply").vertices.col(2).minCoeff();
-  CHECK(lowest > -0.03);
-  CHECK(lowest < -0.028);
-  fs::remove(folder / "in/meshes/slab.obj");
-  CHECK_THAT(refused_by("check ../in/e.yaml", folder / "elsewhere"),
-             Contains("\"slab\"") && Contains("meshes/slab.obj"));
-}
-
-TEST_CASE("an obstacle's path may lead up from a folder that is reached by a link") {
-  const Scratch folder;
-  for (const char* made : {"project/configs", "project/data", "links/data"})
+  for (const char* made : {"project/configs", "project/data", "links/data", "elsewhere"})
     fs::create_directories(folder / made);
   fs::create_directory_symlink("../project/configs", folder / "links/configs");
-  drape::write_mesh(folder / "project/data/slab.obj",
-                    drape::grid({1, 1}, 3, 3, drape::Diagonals::criss_cross));
+  drape::TriangleMesh slab = drape::grid({1, 1}, 3, 3, drape::Diagonals::criss_cross);
+  slab.vertices.rowwise() -= Eigen::RowVector3d(0.53, 0.52, 0);
+  drape::write_mesh(folder / "project/data/slab.obj", slab);
   folder.write("links/data/slab.obj", "not the mesh that ../data means\n");
-  folder.write("project/configs/e.yaml", replaced(contact_experiment(), "obstacles: [",
-                                                  "obstacles: [{name: slab, mesh: ../data/slab.obj, "
-                                                  "translate: [0, 0, -0.5]}, "));
-  drape_ends("run links/configs/e.yaml --levels 1 --out out" + quiet, folder);
-  const std::string saved = text_of(folder / "out/config.yaml");
-  CHECK_THAT(saved, Contains(fs::canonical(folder / "project/data/slab.obj").string()));
-  shown_by("check out/config.yaml", folder.path);
+  folder.write("project/configs/e.yaml",
+               replaced(experiment_of_tests("contact"), "obstacles: [",
+                        "obstacles: [{name: slab, mesh: ../data/slab.obj, translate: [0, 0, -0.03]}, "));
+  const std::string options = " --quiet --no-report --threads 1 --method pcs --out ";
+  REQUIRE(drape_with("run ../links/configs/e.yaml" + options + "first", folder / "elsewhere").exit_code == 0);
+  const fs::path first = folder / "elsewhere/first", second = folder / "second";
+  CHECK_THAT(text_of(first / "config.yaml"),
+             Contains(fs::canonical(folder / "project/data/slab.obj").string()));
+  drape_ends("run elsewhere/first/config.yaml" + options + "second", folder);
+  check_same_files(
+      first, second,
+      {"config.yaml", "levels/pcs_l0.ply", "levels/pcs_l1.ply", "obstacles/0.ply", "obstacles/1.ply"});
+  // It was in the way.
+  const double lowest = drape::read_mesh(second / "levels/pcs_l1.ply").vertices.col(2).minCoeff();
+  CHECK(lowest > -0.03);
+  CHECK(lowest < -0.028);
   fs::remove(folder / "project/data/slab.obj");
-  CHECK_THAT(refused_by("check links/configs/e.yaml", folder.path),
-             Contains("links/configs/../data/slab.obj"));
+  CHECK_THAT(refused_by("check ../links/configs/e.yaml", folder / "elsewhere"),
+             Contains("\"slab\"") && Contains("links/configs/../data/slab.obj"));
 }
 
 TEST_CASE("a result with intersections is infeasible, and the run did not succeed") {
@@ -197,19 +159,18 @@ TEST_CASE("a result with intersections is infeasible, and the run did not succee
       replaced(small_experiment(), "levels: 2",
                "levels: 2\ncontact: {type: blind, height: -0.05}\ncheck_intersections: every_step"));
   const Ended ended =
-      drape_with("run e.yaml --out out --method all --set newton.step_size=0.02" + quiet, folder.path,
+      drape_with("run e.yaml --out out --method all --set newton.step_size=0.02 -q --no-report", folder.path,
                  "DRAPE_PLUGIN_PATH=" + (folders::test_plugins() / "blind").string());
   CHECK(ended.exit_code == 1);
   CHECK(ended.err == "");
-  const nlohmann::json all = json_in(folder / "out/results.json");
+  const nlohmann::json all = results_in(folder / "out");
   CHECK(all["complete"] == true);
   REQUIRE(all["methods"].size() == 3);
   for (const auto& [name, method] : all["methods"].items()) {
     INFO(name);
-    CHECK(method["status"] == "infeasible");
+    CHECK(outcome_of_method(method) == "infeasible: infeasible infeasible");
     for (const nlohmann::json& level : method["levels"]) {
       CHECK(level["intersections"] == 1);
-      CHECK(level["status"] == "infeasible");
       CHECK(level["message"] == "the state has intersections; log.jsonl names them");
       CHECK(level["force_residual"].get<double>() <= 1e-2);  // it converged all the same
     }
@@ -217,7 +178,33 @@ TEST_CASE("a result with intersections is infeasible, and the run did not succee
   std::string counts;
   const drape::Csv rows(folder / "out/iterations.csv");
   for (std::size_t k = 0; k < rows.size(); ++k) counts += rows.text(k, "intersections");
-  CHECK_THAT(counts, Catch::StartsWith("0") && Contains("01"));
+  CHECK_THAT(counts, StartsWith("0") && Contains("01"));
   CHECK_THAT(text_of(folder / "out/log.jsonl"),
              Contains("\"event\":\"intersection\"") && Contains(" and floor: plane at ("));
+}
+
+TEST_CASE("a cloth passes from cage to cage without intersection, and ends on the obstacle itself") {
+  const Scratch folder(caged);
+  run_into("out", folder, "--method all");
+  const auto all = results_in(folder / "out");
+  CHECK(drape::read_mesh(folder / "out/obstacles/0.ply").vertices.rows() == 162);  // the ball, no cage
+  // The diagonal of the ball's box is 0.35 m: offsets of 10 and, from that, 21 mm, less what triangles of
+  // 17 and 35 mm cut off.
+  const double nearest[] = {0.126, 0.108, 0.098}, farthest[] = {1, 0.112, 0.1012};
+  for (const std::string method : {"pcs", "cascadic"}) {
+    INFO(method);
+    REQUIRE(outcome_of_method(all["methods"][method]) == "converged: converged converged converged");
+    for (int l = 0; l < 3; ++l) {
+      const auto& level = all["methods"][method]["levels"][l];
+      CHECK(level["intersections"] == 0);
+      CHECK(level["smallest_gap"] > 0);
+      CHECK(level["smallest_gap"].get<double>() < 1e-3);
+      const double distance = drape::read_mesh(folder / ("out/" + level["mesh"].get<std::string>()))
+                                  .vertices.rowwise()
+                                  .norm()
+                                  .minCoeff();
+      CHECK(distance > nearest[l]);
+      CHECK(distance < farthest[l]);
+    }
+  }
 }

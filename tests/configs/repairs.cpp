@@ -1,0 +1,197 @@
+// Repairs: of a start that touches something, by `--allow-start-repair`, and of obstacles' faulty meshes.
+
+#include "core/numerics/mesh_files/io.h"
+#include "core/numerics/patterns/generate.h"
+#include "tests/configs/runs.h"
+#include "tests/support/solve.h"
+
+namespace {
+
+std::string experiment(const std::string& contact, const std::string& translate) {
+  return "name: repair\ncloth: {shape: square, side: 0.4, columns: 9, rows: 9}\nlevels: 2\n"
+         "start: {translate: " +
+         translate +
+         ", perturbation: 1e-3}\nenergies: [neo_hookean, hinge, gravity]\n"
+         "newton: {max_steps: 2}\nmethods: {newton: {}}\ncontact: " +
+         contact + "\n";
+}
+
+const std::string repair = "--allow-start-repair";
+
+std::string ball_at(const std::string& centre) {
+  return "shapes\nobstacles: [{name: ball, shape: sphere, radius: 0.1, translate: " + centre + "}]";
+}
+
+/// The way that the message says, after a check that must succeed.
+Eigen::Vector3d moved(const std::string& text) {
+  const Scratch folder(text);
+  const std::string said = drape_ends("check e.yaml --allow-start-repair", folder).err;
+  Eigen::Vector3d way(0, 0, 0);
+  if (said.empty()) {
+    drape_ends("check e.yaml", folder);
+    return way;
+  }
+  int length = 0;
+  REQUIRE(std::sscanf(said.c_str(), "start moved by (%lf, %lf, %lf) m; it touches nothing now\n%n", &way.x(),
+                      &way.y(), &way.z(), &length) == 3);
+  CHECK(length == static_cast<int>(said.size()));
+  return way;
+}
+
+/// A pyramid of 20 cm without its base; vertices 1 to 4 are its corners, 5 its tip.
+const std::string pyramid =
+    "v -0.1 -0.1 0\nv 0.1 -0.1 0\nv 0.1 0.1 0\nv -0.1 0.1 0\nv 0 0 0.1\nf 1 2 5\nf 2 3 5\nf 3 4 5\nf 4 1 5\n";
+
+const std::string wild = R"(name: wild
+cloth: {shape: square, side: 0.3, columns: 9, rows: 9}
+levels: 1
+start: {translate: [-0.15, -0.15, 0.115], perturbation: 1e-3}
+energies: [neo_hookean, hinge, gravity]
+contact: [ipc, shapes]
+obstacles: [{name: scan, mesh: scan.obj}, {name: floor, shape: half_space, translate: [0, 0, -0.05]}]
+friction: 0.3
+newton: {force_tolerance: 1e-2}
+check_intersections: every_step
+methods: {newton: {}}
+)";
+
+}  // namespace
+
+TEST_CASE("a start in a ball is moved up, no further than needed, and recorded so that it runs again") {
+  const Scratch folder(
+      replaced(experiment(ball_at("[0, 0, 0]"), "[-0.2, -0.2, 0.06]"), "levels: 2", "levels: 3"));
+  refused(folder, "run e.yaml --out out");
+  CHECK_THAT(
+      run_into("first", folder, "--threads 1 --allow-start-repair", 1).err,  // two steps are no equilibrium
+      Catch::Matches("start moved by \\(0, 0, 0\\.04[0-9]*\\) m; it touches nothing now\n"));
+  const std::string config = text_of(folder / "first/config.yaml");
+  CHECK_THAT(config, Contains("translate: [-0.2, -0.2, 0.10"));
+  CHECK(drape_ends("run first/config.yaml --quiet --no-report --threads 1 --out second", folder, 1).err ==
+        "");
+  check_same_files(folder / "first", folder / "second",
+                   {"config.yaml", "levels/newton_l0.ply", "levels/newton_l1.ply", "levels/newton_l2.ply"});
+
+  const Solved s = scene_from(config);
+  double smallest_gap = 1;
+  for (std::size_t l = 0; l < s.scene->starts.size(); ++l) {
+    const drape::Positions& x = s.scene->starts[l];
+    for (const auto& contact : s.scene->models[l]->contacts())
+      CHECK(contact->build_candidates(x, x)->build_collisions(x)->contact_count() == 0);  // none within d̂
+    smallest_gap = std::min(smallest_gap, x.rowwise().norm().minCoeff() - 0.1);
+  }
+  CHECK(smallest_gap >= 1e-3);
+  CHECK(smallest_gap < 5e-3);
+}
+
+TEST_CASE("a start that touches nothing stays where it is, one within a micrometre does not") {
+  const std::string floor = "shapes\nobstacles: [{shape: half_space}]";
+  const auto at = [&](const std::string& height) {
+    return replaced(experiment(floor, "[0, 0, " + height + "]"), "perturbation: 1e-3", "perturbation: 0");
+  };
+  CHECK(moved(at("0.5e-3")).isZero(0));
+  CHECK(moved(at("2e-6")).isZero(0));
+  for (const std::string height : {"1e-7", "0", "-1e-7", "-0.1", "-0.3"}) {
+    INFO(height);
+    const Eigen::Vector3d way = moved(at(height));
+    const double needed = 1e-3 - std::stod(height);
+    CHECK(way.head<2>().isZero(0));
+    CHECK(way.z() >= needed * (1 - 1e-3));  // as printed
+    CHECK(way.z() < 1.03 * needed);
+  }
+}
+
+TEST_CASE("under a ceiling a start is moved to a side") {
+  const std::string ceiling =
+      "shapes\nobstacles: [{shape: half_space, normal: [0, 0, -1], translate: [0, 0, 0.05]}, {name: ball, "
+      "shape: sphere, radius: 0.1, translate: [0, 0, -0.05]}]";
+  const Eigen::Vector3d right = moved(experiment(ceiling, "[-0.1, -0.2, 0]"));
+  CHECK(right.x() > 0.1);
+  CHECK(right.x() < 0.2);
+  CHECK(right.tail<2>().isZero(0));
+  const std::string walled = replaced(ceiling, "obstacles: [",
+                                      "obstacles: [{shape: half_space, normal: [-1, 0, 0], "
+                                      "translate: [0.31, 0, 0]}, ");
+  const Eigen::Vector3d left = moved(experiment(walled, "[-0.1, -0.2, 0]"));
+  CHECK(left.x() < -0.3);
+  CHECK(left.tail<2>().isZero(0));
+}
+
+TEST_CASE("a start is not moved into a closed mesh, nor into one that faces inwards") {
+  const Scratch folder;
+  drape::TriangleMesh inwards = drape::unit_sphere(4);
+  inwards.triangles.col(1).swap(inwards.triangles.col(2));
+  write_mesh(folder / "shell.ply", inwards);
+  for (const std::string& shell :
+       {std::string("meshed_shape: sphere, radius: 1"), "mesh: " + (folder / "shell.ply").string()}) {
+    INFO(shell);
+    // A cloth through the lowest part of a shell: a little further up nothing would touch.
+    const Eigen::Vector3d way =
+        moved(experiment("ipc\nobstacles: [{" + shell + ", translate: [0, 0, 0.98]}]", "[-0.2, -0.2, 0]"));
+    CHECK(way.z() == 0);
+    CHECK(way.head<2>().norm() > 0.1);
+  }
+}
+
+TEST_CASE("a start with pins, or without a free position, is refused, with the pairs") {
+  const std::string pinned =
+      experiment(ball_at("[0, 0, 0]"), "[-0.2, -0.2, 0.06]") + "pins: [{point: [0, 0, 0]}]\n";
+  CHECK_THAT(said_of(pinned, repair),
+             StartsWith("error: e.yaml:4:8: the start of level 0 touches: cloth triangle ") &&
+                 Contains(" and ball: sphere at (") &&
+                 EndsWith("; a cloth with pins is not moved: move the pins or the obstacle\n"));
+  CHECK(moved(replaced(pinned, "0.06]", "0.12]")).isZero(0));
+  const auto between = [](const std::string& top) {
+    return "shapes\nobstacles: [{name: top, shape: half_space, normal: [0, 0, -1], translate: [0, 0, " + top +
+           "]}, {name: bottom, shape: half_space}]";
+  };
+  const std::string ways = "error: e.yaml:4:8: moving the start by up to 0.566 m up or to a side ";
+  // A gap below what the noise needs: the top is met everywhere.
+  CHECK_THAT(said_of(experiment(between("0.001"), "[0, 0, 0]"), repair),
+             StartsWith(ways + "does not part cloth triangle ") && Contains(" and top: half_space at ("));
+  // No gap: low down the bottom is met, high up the top.
+  CHECK_THAT(said_of(experiment(between("-0.005"), "[0, 0, -0.02]"), repair),
+             StartsWith(ways + "finds no position without intersections; at the start these intersect: ") &&
+                 EndsWith(" on level 0\n"));
+}
+
+TEST_CASE("a cloth drapes over an obstacle that is no surface with one side up, or none at all") {
+  const auto [faults, said] = GENERATE(table<std::string, std::string>({
+      {"v 0.02 0 0.05\nf 5 1 6\nf 5 1 4\nv 7 7 7\nf 3 3 2\nf 1 5 3\nv 0.1 0.1 0.05\nv 0.12 0.1 0.05\nf 3 8 "
+       "9\n",
+       "obstacle scan: dropped "},
+      {"v -0.3 0 0\nv -0.2 0 0\nv -0.2 0.1 0.02\nf 6 7 8\n", ""},
+  }));
+  CAPTURE(faults);
+  const Scratch folder(wild);
+  folder.write("scan.obj", pyramid + faults);
+  CHECK_THAT(drape_ends("check e.yaml", folder).out, Contains(said));
+  CHECK_THAT(drape_ends("run e.yaml --out out --no-report --threads 1", folder).err, Contains(said));
+  const auto results = results_in(folder / "out");
+  CHECK(results.contains("remarks") == !said.empty());
+  const auto& level = results["methods"]["newton"]["levels"][0];
+  CHECK(level["status"] == "converged");
+  CHECK(level["intersections"] == 0);
+  CHECK(level["smallest_gap"].get<double>() > 0);
+}
+
+TEST_CASE("cages enclose a repaired obstacle, and its animation moves") {
+  const std::string faults = "v 9 9 9\nv 0 -0.2 0.05\nf 1 2 5\nf 1 2 7\nf 2 2 3\n";
+  const Scratch folder;
+  folder.write("scan.obj", pyramid + faults);
+  folder.write("higher.obj", replaced(pyramid, "v 0 0 0.1\n", "v 0 0 0.13\n") + faults);
+  folder.write("caged.yaml",
+               replaced(replaced(wild, "mesh: scan.obj", "mesh: scan.obj, cages: {count: 1, offset: 0.02}"),
+                        "0.115]", "0.15]"));
+  folder.write(
+      "moving.yaml",
+      replaced(wild, "mesh: scan.obj", "animation: [scan.obj, higher.obj]") +
+          "schedule: {steps: 3, keys: [{parameter: obstacles.scan.frame, times: [0, 1], values: [0, 1]}]}\n");
+  for (const std::string name : {"caged", "moving"}) {
+    CHECK_THAT(drape_ends("run " + name + ".yaml --out " + name + " --no-report --threads 1", folder).err,
+               Contains("remark: obstacle scan: dropped 1 loose vertex, 1 doubled triangle and 1 "
+                        "triangle without area; kept 1 edge between"));
+    const auto level = results_in(folder / name)["methods"]["newton"]["levels"][0];
+    CHECK(level["status"] == "converged");
+    CHECK(level["intersections"] == 0);
+  }
+}
