@@ -2,17 +2,13 @@
 
 #include "core/app/run/errors.h"
 
-#include <catch2/catch.hpp>
-
 #include "core/app/files/csv.h"
 #include "core/app/files/snapshot_file.h"
 #include "core/numerics/mesh_files/io.h"
-#include "tests/support/command.h"
-#include "tests/support/page_data.h"
+#include "tests/configs/runs.h"
 #include "tests/support/solve.h"
 
 using namespace drape;
-namespace fs = std::filesystem;
 
 namespace {
 
@@ -56,55 +52,48 @@ TEST_CASE("a state has no error against itself; a moved one has the shift over t
 
 TEST_CASE("a run writes snapshots and errors, against its own end and a tighter reference") {
   const Scratch folder(small_experiment());
-  const std::string reference = " --set reference.force_tolerance=1e-7";
-  drape_ends("run e.yaml --out out --method all --threads 1 --quiet --no-report" + reference, folder);
-  const nlohmann::json all = json_in(folder / "out/results.json");
+  run_into("out", folder, "--method all --threads 1 --set reference.force_tolerance=1e-7");
+  const nlohmann::json all = results_in(folder / "out");
   CHECK(all["reference"]["status"] == "converged");
   CHECK(all["reference"]["force_residual"].get<double>() <= 1e-7);
   const Csv rows(folder / "out/errors.csv");
   std::size_t row = 0;
   for (const std::string method : {"pcs", "cascadic", "newton"}) {
-    double flops = 0, cost = 0;
-    int iterations = 0;
-    for (int l = 0; l < 2; ++l) {
-      const nlohmann::json& level = all["methods"][method]["levels"][l];
-      INFO(method << " level " << l);
+    double flops = 0, cost = 0, iterations = 0;
+    for (const nlohmann::json& level : all["methods"][method]["levels"]) {
+      INFO(method << " level " << level["level"]);
+      const bool finest = level["level"] == 1;
       const nlohmann::json& snapshots = level["snapshots"];
-      const int vertices = level["vertices"];
       const std::size_t count = snapshots["iterations"].size();
-      const SnapshotFile states(folder / ("out/" + snapshots["file"].get<std::string>()), count, vertices,
-                                snapshots["checksum"].get<std::uint32_t>());
-      REQUIRE(snapshots["seconds"].size() == count);
+      const SnapshotFile states(folder / ("out/" + snapshots["file"].get<std::string>()), count,
+                                level["vertices"], snapshots["checksum"].get<std::uint32_t>());
       CHECK(count <= 8);
-      const TriangleMesh last = read_mesh(folder / ("out/" + level["mesh"].get<std::string>()));
-      CHECK((states.positions(count - 1) - last.vertices).norm() < 1e-5);
+      const Positions last = read_mesh(folder / ("out/" + level["mesh"].get<std::string>())).vertices;
+      CHECK((states.positions(count - 1) - last).norm() < 1e-5);
       CHECK(snapshots["iterations"].back() == level["iterations"]);
-      if (method == "newton") flops = 0, iterations = 0, cost = 0;  // every level begins afresh
+      if (method == "newton") flops = cost = iterations = 0;  // every level begins afresh
       cost += level["seconds"].get<double>();
       flops += level["flops"].get<double>();
-      iterations += level["iterations"].get<int>();
+      iterations += level["iterations"].get<double>();
       double seconds = 0;
       for (std::size_t k = 0; k < count; ++k, ++row) {
         REQUIRE(row < rows.size());
         const auto number = [&](const char* column) { return rows.number(row, column).value(); };
         CHECK(rows.text(row, "method") == method);
-        CHECK(number("level") == l);
+        for (const char* key : {"level", "vertices"}) CHECK(number(key) == level[key]);
         CHECK(number("level_iterations") == snapshots["iterations"][k]);
-        CHECK(number("vertices") == vertices);
         CHECK(number("seconds") >= seconds);
         seconds = number("seconds");
-        CHECK(seconds == Approx(snapshots["seconds"][k].get<double>()).epsilon(1e-7));
+        CHECK(seconds == Approx(snapshots["seconds"].at(k).get<double>()).epsilon(1e-7));
         for (const char* column :
              {"own_rms", "own_hausdorff", "own_d_H_fit", "own_silhouette_mismatch", "own_energy_gap",
               "reference_rms", "reference_hausdorff", "reference_d_H_fit"})
           CHECK(number(column) >= 0);
         if (k + 1 < count) continue;
         CHECK(number("flops") == Approx(flops));
-        CHECK(number("seconds") == Approx(cost));
+        CHECK(seconds == Approx(cost));
         CHECK(number("iterations") == iterations);
-        const bool end = l == 1;
-        CHECK((number("own_rms") == 0) == end);
-        CHECK((number("own_energy_gap") == 0) == end);
+        for (const char* own : {"own_rms", "own_energy_gap"}) CHECK((number(own) == 0) == finest);
         CHECK(number("reference_rms") > 0);
       }
     }
@@ -113,19 +102,14 @@ TEST_CASE("a run writes snapshots and errors, against its own end and a tighter 
   // The last state of the reference's method is on the way to the reference.
   CHECK(rows.number(row - 1, "reference_rms").value() < 1e-2);
 
-  SECTION("and another run takes the reference from its folder") {
-    drape_ends(
-        "run e.yaml --out next --method all --threads 1 --quiet --no-report --set "
-        "reference='{file: out}'",
-        folder);
-    CHECK(text_of(folder / "next/reference.ply") == text_of(folder / "out/reference.ply"));
-    const Csv again(folder / "next/errors.csv");
-    REQUIRE(again.size() == rows.size());
-    for (std::size_t k = 0; k < rows.size(); ++k)
-      CHECK(again.text(k, "reference_rms") == rows.text(k, "reference_rms"));
-    // Its saved config names the copy in its own folder.
-    drape_ends("check next/config.yaml", folder);
-  }
+  // Another run takes the reference from this one's folder, and its saved config names a copy in its own.
+  run_into("next", folder, "--method all --threads 1 --set 'reference={file: out}'");
+  check_same_files(folder / "out", folder / "next", {"reference.ply"});
+  const Csv again(folder / "next/errors.csv");
+  REQUIRE(again.size() == rows.size());
+  for (std::size_t k = 0; k < rows.size(); ++k)
+    CHECK(again.text(k, "reference_rms") == rows.text(k, "reference_rms"));
+  drape_ends("check next/config.yaml", folder);
 }
 
 TEST_CASE("every method's own interpolation prolongs its states") {
@@ -136,10 +120,10 @@ TEST_CASE("every method's own interpolation prolongs its states") {
   const Loaded small(changed);
   const Hierarchy& hierarchy = small.scene->hierarchy;
   const Scratch folder(small_experiment());
-  std::string command = "run e.yaml --out out --method all --threads 1 --quiet --no-report";
-  for (const Override& o : changed) command += " --set '" + o.key + "=" + o.value + "'";
-  drape_ends(command, folder);
-  const nlohmann::json all = json_in(folder / "out/results.json")["methods"];
+  std::string options = "--method all --threads 1";
+  for (const Override& o : changed) options += " --set '" + o.key + "=" + o.value + "'";
+  run_into("out", folder, options);
+  const nlohmann::json all = results_in(folder / "out")["methods"];
   const Csv rows(folder / "out/errors.csv");
   const auto value_of = [&](const Positions& x, const Positions& target, const std::string& name) {
     for (const auto& [metric_name, metric] : small.experiment.metrics)
@@ -150,29 +134,25 @@ TEST_CASE("every method's own interpolation prolongs its states") {
     FAIL(name);
     return 0.0;
   };
-  for (const auto& [method, smooth] : std::map<std::string, bool>{
-           {"pcs", false}, {"smooth_pcs", true}, {"cascadic", false}, {"newton", false}, {"smooth", true}}) {
+  for (const std::string method : {"pcs", "smooth_pcs", "cascadic", "newton", "smooth"}) {
     INFO(method);
-    const auto& weights = smooth ? hierarchy.prolongations : hierarchy.midpoints;
-    const auto& others = smooth ? hierarchy.midpoints : hierarchy.prolongations;
     const auto state = [&](int l) {
       return read_mesh(folder / "out/levels" / (method + "_l" + std::to_string(l) + ".ply")).vertices;
     };
-    const Positions prolonged = hierarchy.prolong(state(0), 0, 2, weights), end = state(2);
-    const Positions by_the_other = hierarchy.prolong(state(0), 0, 2, others);
-    REQUIRE((prolonged - by_the_other).norm() > 1e-3);
-    const nlohmann::json& level = all[method]["levels"][0];
-    CHECK(level["energy_on_finest"].get<double>() ==
+    const Positions end = state(2), linear = hierarchy.prolong(state(0), 0, 2, hierarchy.midpoints),
+                    refined = hierarchy.prolong(state(0), 0, 2, hierarchy.prolongations),
+                    prolonged = method.starts_with("smooth") ? refined : linear;
+    REQUIRE((linear - refined).norm() > 1e-3);
+    CHECK(all[method]["levels"][0]["energy_on_finest"].get<double>() ==
           Approx(small.scene->models[2]->value(prolonged)).epsilon(1e-9));
-    for (const nlohmann::json& pair : all[method]["consistency"]) {
-      if (pair["coarse"] != 0 || pair["fine"] != 2) continue;
-      for (const char* name :
-           {"d_H_fit", "d_K_ddg", "distance_rms", "silhouette_overlap", "energy_above_end"}) {
-        INFO(name);
-        CHECK(pair[name].get<double>() == Approx(value_of(prolonged, end, name)).epsilon(1e-6));
-        CHECK(pair["of_start"][name].get<double>() ==
-              Approx(value_of(small.scene->starts[2], end, name)).epsilon(1e-6));
-      }
+    const nlohmann::json& pair = all[method]["consistency"][1];
+    REQUIRE((pair["coarse"] == 0 && pair["fine"] == 2));
+    for (const char* name :
+         {"d_H_fit", "d_K_ddg", "distance_rms", "silhouette_overlap", "energy_above_end"}) {
+      INFO(name);
+      CHECK(pair[name].get<double>() == Approx(value_of(prolonged, end, name)).epsilon(1e-6));
+      CHECK(pair["of_start"][name].get<double>() ==
+            Approx(value_of(small.scene->starts[2], end, name)).epsilon(1e-6));
     }
     for (std::size_t k = 0; k < rows.size(); ++k)
       if (rows.text(k, "method") == method && rows.text(k, "level") == "0")
@@ -185,13 +165,10 @@ TEST_CASE("the lowest of the states that have converged may be the reference, wh
   const Scratch folder(small_experiment());
   const auto run = [&](const std::string& options) {
     const Ended ended = drape_with(
-        "run e.yaml --overwrite --out out --method all --threads 1 --quiet --no-report --set "
-        "reference=lowest " +
-            options,
+        "run e.yaml --out out --overwrite --method all -j 1 -q --no-report --set reference=lowest " + options,
         folder.path);
-    INFO(ended.err);
     REQUIRE(ended.exit_code <= 1);
-    return json_in(folder / "out/results.json");
+    return results_in(folder / "out");
   };
   const nlohmann::json all = run("--set reference.force_tolerance=1e-6");
   std::string lowest;
@@ -205,36 +182,23 @@ TEST_CASE("the lowest of the states that have converged may be the reference, wh
     CHECK(method["reference"]["against"] == lowest);
     CHECK(method["reference"]["energy_above_end"] > 0);  // of the method's state, above the reference
   }
-  drape_ends("report out --width 90", folder);
-  CHECK(page_data(text_of(folder / "out/report.html"))["results"]["reference"]["method"] == lowest);
-
-  // One that has not converged is none, however low it lies; without any there is none.
+  // One that has not converged is none, however low it lies, and has errors against the reference alone.
   const nlohmann::json broken = run("--set methods." + lowest + ".newton.max_steps=2");
   REQUIRE(broken["methods"][lowest]["status"] != "converged");
   CHECK(broken["reference"]["method"] != lowest);
+  const Csv rows(folder / "out/errors.csv");
+  REQUIRE(rows.size() > 0);
+  for (std::size_t k = 0; k < rows.size(); ++k) {
+    CHECK(rows.number(k, "own_rms").has_value() == (rows.text(k, "method") != lowest));
+    CHECK(rows.number(k, "reference_rms").has_value());
+  }
   CHECK_FALSE(run("--set newton.max_steps=1").contains("reference"));
 }
 
 TEST_CASE("without snapshots there are no errors and no files of them") {
   const Scratch folder(small_experiment());
-  drape_ends("run e.yaml --out out --quiet --no-report --set snapshots=0", folder);
+  run_into("out", folder, "--set snapshots=0");
   CHECK(!fs::exists(folder / "out/snapshots"));
   CHECK(!fs::exists(folder / "out/errors.csv"));
-  const nlohmann::json all = json_in(folder / "out/results.json");
-  CHECK(!all["methods"]["pcs"]["levels"][0].contains("snapshots"));
-}
-
-TEST_CASE("a method that does not converge has errors against the reference alone") {
-  const Scratch folder(small_experiment());
-  drape_ends("run e.yaml --out out --method all --quiet --no-report --set methods.pcs.newton.max_steps=3",
-             folder, 1);
-  int pcs = 0;
-  const Csv rows(folder / "out/errors.csv");
-  for (std::size_t k = 0; k < rows.size(); ++k) {
-    const bool is_pcs = rows.text(k, "method") == "pcs";
-    CHECK(rows.number(k, "own_rms").has_value() == !is_pcs);
-    CHECK(rows.number(k, "reference_rms").has_value());
-    pcs += is_pcs;
-  }
-  CHECK(pcs > 0);
+  CHECK(!results_in(folder / "out")["methods"]["pcs"]["levels"][0].contains("snapshots"));
 }
