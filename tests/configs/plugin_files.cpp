@@ -1,12 +1,6 @@
 // --plugin FILE.cpp: a plugin's source is compiled once and loaded.
 
-#include <catch2/catch.hpp>
-
-#include "tests/support/command.h"
-#include "tests/support/folders.h"
-
-using Catch::Contains;
-using Catch::EndsWith;
+#include "tests/configs/runs.h"
 
 namespace {
 
@@ -27,61 +21,55 @@ struct PluginFolder : Scratch {
           "name: rubber\ncloth: {side: 0.2, vertices: 16}\nlevels: 2\npins: [{region: box, lower: [0, 0, 0], "
           "upper: [0, 1, 0]}]\nenergies: [rubber, hinge, gravity]\nmethods: {pcs: {}}\n");
   }
-  std::string environment() const { return "XDG_CACHE_HOME=" + (path / "cache").string(); }
-  Ended with(const std::string& arguments) const { return drape_with(arguments, path, environment()); }
+  Ended with(const std::string& arguments) const {
+    return drape_with(arguments, path, "XDG_CACHE_HOME=" + (path / "cache").string());
+  }
   std::string refused(const std::string& arguments, const std::string& more = "") const {
-    return refused_by(arguments, path, environment() + " " + more);
+    return refused_by(arguments, path, "XDG_CACHE_HOME=" + (path / "cache").string() + " " + more);
   }
 };
+
+const std::string listed = "list energy --plugin ";
 
 }  // namespace
 
 TEST_CASE("A plugin's source is compiled, loaded and run, and kept for the next command") {
   const PluginFolder folder;
   const Ended first = folder.with("run drape.yaml --plugin rubber.cpp -q --no-report -o results");
-  INFO(first.err);
-  CHECK(first.exit_code == 0);
   CHECK_THAT(first.err, Contains("compiling ") && Contains("rubber.cpp: "));
-  CHECK(std::filesystem::exists(folder / "results/results.json"));
+  CHECK(first.exit_code == 0);
+  CHECK(fs::exists(folder / "results/results.json"));
 
-  for (const char* command :
-       {"check drape.yaml", "check-energy rubber", "describe rubber", "list energy", "schema"}) {
+  folder.write("sweep.yaml",
+               "name: sweep\nbase: drape.yaml\nablation: [{name: as it is}, {name: larger, set: {cloth.side: "
+               "0.3}}]\n");
+  for (const char* command : {"check drape.yaml", "check-energy rubber", "describe rubber", "list energy",
+                              "schema", "sweep sweep.yaml -q -o swept"}) {
     const Ended ended = folder.with(std::string(command) + " --plugin rubber.cpp");
     INFO(command << ": " << ended.err);
     CHECK(ended.exit_code == 0);
     CHECK_THAT(ended.err, !Contains("compiling"));
   }
-  CHECK_THAT(folder.with("list energy --plugin rubber.cpp").out, Contains("rubber"));
-
-  folder.write("sweep.yaml",
-               "name: sweep\nbase: drape.yaml\nablation: [{name: as it is}, {name: larger, set: {cloth.side: "
-               "0.3}}]\n");
-  const Ended sweep = folder.with("sweep sweep.yaml --plugin rubber.cpp -q -o swept");
-  INFO(sweep.err << sweep.out);
-  CHECK(sweep.exit_code == 0);
-
-  SECTION("a header of its own that changes is compiled again") {
-    folder.write("stiffness.h", "constexpr double stiffness = 21;\n");
-    CHECK_THAT(folder.with("list energy --plugin rubber.cpp").err, Contains("compiling"));
-    CHECK_THAT(folder.with("list energy --plugin rubber.cpp").err, !Contains("compiling"));
-  }
+  CHECK_THAT(folder.with(listed + "rubber.cpp").out, Contains("rubber"));
+  folder.write("stiffness.h", "constexpr double stiffness = 21;\n");  // a header of its own
+  CHECK_THAT(folder.with(listed + "rubber.cpp").err, Contains("compiling"));
+  CHECK_THAT(folder.with(listed + "rubber.cpp").err, !Contains("compiling"));
 }
 
 TEST_CASE("What the compiler refuses is shown with the file's lines, and nothing is run or kept") {
   const PluginFolder folder;
   folder.write("rubber.cpp", replaced(energy_file, "g22 * g22", "g23 * g22"));
-  for (int time = 0; time < 2; ++time) {
-    const std::string err = folder.refused("run drape.yaml --plugin rubber.cpp");
-    CHECK_THAT(err, Contains("rubber.cpp:5:") && Contains("g23") &&
-                        Contains("return stiffness * (g11 * g11 + g23 * g22") &&
-                        Contains("error: --plugin ") && Contains("rubber.cpp: does not compile"));
-  }
-  CHECK_FALSE(std::filesystem::exists(folder / "results"));
+  for (int time = 0; time < 2; ++time)
+    CHECK_THAT(folder.refused("run drape.yaml --plugin rubber.cpp"),
+               Contains("rubber.cpp:5:") && Contains("g23") &&
+                   Contains("return stiffness * (g11 * g11 + g23 * g22") && Contains("error: --plugin ") &&
+                   Contains("rubber.cpp: does not compile"));
+  CHECK_FALSE(fs::exists(folder / "results"));
   folder.write("fold.cpp", R"(#include "core/numerics/formulas/energy_formula.h"
 DRAPE_PARAMETERS(Crease, (rest, 0.3, "rad", -3, 3, "angle at rest"));
 DRAPE_FOLD(fold, "A crease.", Crease) { return k * square(theta - rest); }
 )");
-  CHECK_THAT(folder.refused("list energy --plugin fold.cpp"),
+  CHECK_THAT(folder.refused(listed + "fold.cpp"),
              Contains("a parameter has the name of a symbol of the formula"));
 }
 
@@ -119,47 +107,34 @@ DRAPE_PLUGIN(registry) {
   };
   const std::string other = "an exception that is no std::exception\n";
   CHECK_THAT(refusal("check-energy nothing"),
-             EndsWith("error: bind returned null; return an object, which may "
-                      "have no elements\n"));
+             EndsWith("error: bind returned null; return an object, which may have no elements\n"));
   CHECK(refusal("check-energy throws") == "error: " + other);
   CHECK(refusal("check-energy refuses") == "error: energy: refuses: " + other);
   CHECK_THAT(refusal("check drape.yaml --set energies=[throws]"), EndsWith(other));
 }
 
-TEST_CASE("A library is no source of a plugin, and a source may have any name") {
+TEST_CASE("What is no plugin's source, or cannot be compiled, is refused") {
   const PluginFolder folder;
-  const std::string library = (folders::test_plugins() / "good/libgood.so").string();
-  CHECK(
-      folder.refused("list energy --plugin " + library) ==
-      "error: --plugin " + library +
-          ": is compiled, and --plugin takes a source; put the folder of the library into DRAPE_PLUGIN_PATH "
-          "instead, as in export DRAPE_PLUGIN_PATH=" +
-          (folders::test_plugins() / "good").string() + "\n");
-  folder.write("text.so", "no C++\n");
-  CHECK_THAT(folder.refused("list energy --plugin text.so"),
+  const std::string good = (folders::test_plugins() / "good").string(), library = good + "/libgood.so";
+  check_error(folder.refused(listed + library),
+              "--plugin " + library +
+                  ": is compiled, and --plugin takes a source; put the folder of the library into "
+                  "DRAPE_PLUGIN_PATH instead, as in export DRAPE_PLUGIN_PATH=" +
+                  good + "\n");
+  folder.write("text.so", "no C++\n");  // a source may have any name
+  CHECK_THAT(folder.refused(listed + "text.so"),
              Contains("text.so:1:") && Contains("text.so: does not compile"));
-}
-
-TEST_CASE("A plugin's source without a compiler, or that is no plugin, is refused") {
-  const PluginFolder folder;
-  CHECK_THAT(
-      folder.refused("list energy --plugin rubber.cpp", "CXX=/nowhere/c++"),
-      Contains(
-          "--plugin: there is no compiler /nowhere/c++; install it (Debian's package g++), or name one"));
-  CHECK_THAT(folder.refused("list energy --plugin none.cpp"),
-             Contains("none.cpp") && Contains("No such file"));
   folder.write("empty.cpp", "int main() {}\n");
-  CHECK_THAT(folder.refused("list energy --plugin empty.cpp"), Contains("is not a drape plugin"));
-}
-
-TEST_CASE("A cache or a folder for temporary files that is not there is named, with its variable") {
-  const PluginFolder folder;
-  const std::string list = "list energy --plugin rubber.cpp";
-  CHECK(folder.refused(list, "TMPDIR=/nonexistent") ==
-        "error: --plugin: the folder for temporary files, TMPDIR=/nonexistent, is not there (No such file or "
-        "directory); make it, or name another in the variable TMPDIR\n");
-  const std::string err = refused_by(list, folder.path, "XDG_CACHE_HOME=/proc/none");
-  CHECK_THAT(err, Contains("error: --plugin: cannot make /proc/none/drape/rubber-") &&
-                      EndsWith("for the library (No such file or directory); name a folder for it in the "
-                               "variable XDG_CACHE_HOME\n"));
+  CHECK_THAT(folder.refused(listed + "empty.cpp"), Contains("is not a drape plugin"));
+  CHECK_THAT(folder.refused(listed + "none.cpp"), Contains("none.cpp") && Contains("No such file"));
+  CHECK_THAT(
+      folder.refused(listed + "rubber.cpp", "CXX=/nowhere/c++"),
+      Contains("--plugin: there is no compiler /nowhere/c++; install it (Debian's package g++), or name "));
+  check_error(folder.refused(listed + "rubber.cpp", "TMPDIR=/nonexistent"),
+              "--plugin: the folder for temporary files, TMPDIR=/nonexistent, is not there (No such file or "
+              "directory); ");
+  CHECK_THAT(folder.refused(listed + "rubber.cpp", "XDG_CACHE_HOME=/proc/none"),
+             Contains("error: --plugin: cannot make /proc/none/drape/rubber-") &&
+                 EndsWith("for the library (No such file or directory); name a folder for it in the variable "
+                          "XDG_CACHE_HOME\n"));
 }

@@ -1,20 +1,13 @@
-// The commands of README.md, docs/start and docs/guide/fabrics.md do what the pages say: each is run, with
-// experiments made small.
+// The commands of README.md, docs/start and docs/guide/fabrics.md run, with experiments made small.
 
-#include <catch2/catch.hpp>
-#include <map>
 #include <regex>
 
-#include "tests/support/command.h"
-#include "tests/support/folders.h"
-
-namespace fs = std::filesystem;
+#include "tests/configs/runs.h"
 
 namespace {
 
 /// What a page has a reader write and type: blocks that name a file (```yaml my_drape.yaml), the lines of its
-/// sh blocks that call the command, continued lines joined, comments cut, and the commands in cells of
-/// tables.
+/// sh blocks that call the command, comments cut, and the commands in cells of tables.
 struct Page {
   std::map<std::string, std::string> files;
   std::vector<std::string> commands;
@@ -38,11 +31,6 @@ Page page_of(const fs::path& file) {
     if (!block && line.starts_with("|"))
       for (std::sregex_iterator it(line.begin(), line.end(), in_cell), end; it != end; ++it)
         page.commands.push_back((*it)[1]);
-    while (shell && line.ends_with("\\")) {
-      std::string more;
-      std::getline(lines, more);
-      line = line.substr(0, line.size() - 1) + more;
-    }
     if (shell && line.starts_with("build/bin/drape "))
       page.commands.push_back(line.substr(0, line.find(" #")));
   }
@@ -72,6 +60,7 @@ bool lacks_meshes(const std::string& command, const fs::path& folder) {
 }
 
 void run_all(const fs::path& file, std::size_t at_least) {
+  INFO(file);
   const fs::path source = folders::source();
   // In a copy, so that what a command writes stays out of the tree.
   const Scratch folder;
@@ -97,12 +86,9 @@ void run_all(const fs::path& file, std::size_t at_least) {
 
 }  // namespace
 
-TEST_CASE("every command of README.md runs") { run_all("README.md", 11); }
-
-TEST_CASE("every command of docs/start/first-drape.md runs") { run_all("docs/start/first-drape.md", 8); }
-
-TEST_CASE("every command of docs/start/own-meshes.md runs, of the experiment that it shows") {
+TEST_CASE("every command of these pages runs, of the experiments that they show") {
+  run_all("README.md", 11);
+  run_all("docs/start/first-drape.md", 8);
   run_all("docs/start/own-meshes.md", 3);
+  run_all("docs/guide/fabrics.md", 10);
 }
-
-TEST_CASE("every command of docs/guide/fabrics.md runs") { run_all("docs/guide/fabrics.md", 10); }
