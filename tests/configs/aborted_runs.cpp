@@ -130,8 +130,7 @@ TEST_CASE("A folder that is deleted during a run aborts it with its own code, an
     CHECK(all["complete"] == false);
     CHECK(all["methods"]["odd"]["status"] == "aborted");
     CHECK(events(folder, "run_aborted").size() == 1);
-    CHECK_THAT(folder.with("table out --columns method,status").out,
-               Contains("| odd | converged, aborted |"));
+    CHECK_THAT(folder.with("table out --columns status").out, Contains("| converged, aborted |"));
     CHECK_THAT(all["aborted"].get<std::string>(), StartsWith("cannot write out/levels/odd_l1.ply"));
     folder.with("report out --width 90", 0);
     folder.with("run --resume out --quiet --no-report", drape::exit_aborted);  // fails at the same

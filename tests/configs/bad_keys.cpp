@@ -52,11 +52,9 @@ TEST_CASE("a reference that there is not, or of two meanings, is refused") {
 TEST_CASE("pins that select no vertex, or one that does not exist") {
   const std::string corner = "{region: nearest, point: [1, 0, 0]}";
   check_refused({
-      {"{region: ball, point: [5, 5, 5]}", "7:5: pin 1 (ball) selects no vertex of the coarsest level; ",
-       corner},
-      {"{region: vertices}", "7:5: pin 1 (vertices) selects no vertex of the coarsest level; list ", corner},
-      {"{region: vertices, vertices: [0, 36]}", "7:5: pin 1 (vertices) names vertex 36, but those of ",
-       corner},
+      {"{region: ball, point: [5, 5, 5]}", "7:5: pin 1 (ball) selects no vertex of the coarsest ", corner},
+      {"{region: vertices}", "7:5: pin 1 (vertices) selects no vertex of the coarsest ", corner},
+      {"{region: vertices, vertices: [0, 36]}", "7:5: pin 1 (vertices) names vertex 36, but those ", corner},
   });
   // Loop moves the rest positions of a round border, on finer levels away from a small region.
   check_error(said_of("name: disc\ncloth: {shape: disc, radius: 0.2, vertices: 40}\nlevels: 3\npins:\n"
@@ -106,19 +104,16 @@ TEST_CASE("what the contact models share stands outside them, and each obstacle 
   const std::string keys = " must be a map with \"mesh\", \"meshed_shape\", \"animation\" or \"shape\"";
   const std::string key = "contact.shapes.ball.centre, times: [0, 1], values: [[0, 0, 0], [0, 0, 1]]";
   check_refused({
-      {"contact: {type: ipc, friction: 0.1}",
-       "3:22: \"friction\" in ipc belongs at the top of the experiment"},
+      {"contact: {type: ipc, friction: 0.1}", "3:22: \"friction\" in ipc belongs at the top of the "},
       {"contact: shapes\nobstacles: [{name: ball, shape: sphere}]\nschedule: {keys: [{parameter: " + key +
            "}]}",
        "5:31: unknown key \"ball\" in shapes; known keys are type, dhat, "},
   });
   const std::tuple<std::string, std::string, std::string> obstacles[] = {
-      {"ipc", "{name: ball, shape: sphere}",
-       "13: obstacles[0] (ball)" + none + "\"shape\"; add shapes to \"contact\""},
+      {"ipc", "{name: ball, shape: sphere}", "13: obstacles[0] (ball)" + none + "\"shape\"; add shapes to "},
       {"[]", "{name: ball, shape: sphere}", "13: obstacles[0] (ball)" + none + "\"shape\"; "},
       {"shapes", "{shape: sphere}, {meshed_shape: box}", "30: obstacles[1]" + none + "\"meshed_shape\"; "},
-      {"ipc", "{shape: sphere, meshed_shape: box}",
-       "13: obstacles[0] has both \"meshed_shape\" and \"shape\"; "},
+      {"ipc", "{shape: sphere, meshed_shape: box}", "13: obstacles[0] has both \"meshed_shape\" and "},
       {"[ipc, shapes]", "{name: ball, radius: 1}", "13: obstacles[0] (ball)" + keys},
       {"[ipc, shapes]", "ball", "13: obstacles[0]" + keys}};
   for (const auto& [contact, list, refusal] : obstacles)
@@ -128,14 +123,12 @@ TEST_CASE("what the contact models share stands outside them, and each obstacle 
 TEST_CASE("keys that the shape or the region does not read, and empty items, are refused") {
   const std::pair<std::string, std::string> refusals[] = {
       {"cloth: {file: skirt.obj}", "5:15: \"file\" in cloth needs \"shape: file\"; here \"shape\" is square"},
-      {"cloth: {vertices: 400, columns: 9, rows: 9}",
-       "5:19: \"vertices\" in cloth is not read beside \"columns\" "},
+      {"cloth: {vertices: 400, columns: 9, rows: 9}", "5:19: \"vertices\" in cloth is not read beside "},
       {"cloth: {shape: disc, seed: 2}", "5:28: \"seed\" in cloth is not read by this cloth; "},
-      {"contact: ipc\nobstacles: [{mesh: ball.ply, radius: 0.3}]",
-       "6:38: \"radius\" in obstacles needs \"meshed_"},
+      {"contact: ipc\nobstacles: [{mesh: ball.ply, radius: 0.3}]", "6:38: \"radius\" in obstacles needs "},
       {"schedule: {steps: 40}", "5:11: \"schedule\" has no \"keys\", so that nothing would change; "},
       {"pins: [{region: border, centre: [1, 0, 0]}]",
-       "5:33: \"centre\" is that of \"rotate\", which is not given; "},
+       "5:33: \"centre\" is that of \"rotate\", which is not "},
       {"pins: [{region: border, follow: {vertices: [7]}}]", "5:33: \"vertices\" in follow are those of its "},
       {"pins: [~]", "5:8: an item of \"pins\" is empty; remove it"}};
   for (const auto& [written, refusal] : refusals)

@@ -123,8 +123,7 @@ TEST_CASE("a state has its contact forces, which carry the weight of a cloth tha
   CHECK(results_in(folder / "out")["methods"]["pcs"]["levels"][0]["intersections"] == 0);
 }
 
-TEST_CASE(
-    "obstacle files are found beside the config, through links too, and results run again from their own") {
+TEST_CASE("obstacle files are found beside the config, through links too; results run again from their own") {
   const Scratch folder;
   for (const char* made : {"project/configs", "project/data", "links/data", "elsewhere"})
     fs::create_directories(folder / made);

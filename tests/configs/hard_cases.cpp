@@ -44,8 +44,7 @@ TEST_CASE("hard cases end as they should") {
   CHECK(rows >= 36);
 }
 
-TEST_CASE(
-    "a mesh of huge and tiny triangles is refined into its strain limit, or begins again with a message") {
+TEST_CASE("huge triangles beside tiny ones are refined into their strain limit, or begin with a message") {
   const auto [solved, options, message] = GENERATE(table<std::string, std::string, std::string>({
       {"pcs",
        "--set methods.pcs.relaxation=none --set 'methods.pcs.interpolation={membrane: refiner, bending: "

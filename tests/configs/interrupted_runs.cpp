@@ -133,8 +133,7 @@ TEST_CASE("SIGKILL at any moment leaves complete files, sufficient for a report"
   CHECK(levels_read >= 8);
 }
 
-TEST_CASE(
-    "a second signal ends a run at once; SIGINT after SIGTERM, as of its sweep, lets it save its state") {
+TEST_CASE("a second signal ends a run at once; SIGINT after SIGTERM, as of a sweep, lets it save its state") {
   EndlessRun twice, swept("--no-report");
   deliver(twice.command, SIGTERM);
   const Ended at_once = twice.command.ended_by(SIGTERM);
@@ -175,8 +174,7 @@ TEST_CASE("before a run has begun the first signal ends the process") {
   }
 }
 
-TEST_CASE(
-    "a stop is heeded while the reference is solved, and a live view that nobody saw knows how a run ended") {
+TEST_CASE("a stop is heeded while the reference is solved, and a live view knows how its run ended") {
   for (const bool stops : {false, true}) {
     const Scratch folder;
     const Solved small =

@@ -40,9 +40,9 @@ TEST_CASE("A plugin's source is compiled, loaded and run, and kept for the next 
   CHECK(first.exit_code == 0);
   CHECK(fs::exists(folder / "results/results.json"));
 
-  folder.write("sweep.yaml",
-               "name: sweep\nbase: drape.yaml\nablation: [{name: as it is}, {name: larger, set: {cloth.side: "
-               "0.3}}]\n");
+  folder.write(
+      "sweep.yaml",
+      "name: sweep\nbase: drape.yaml\nablation: [{name: as it is}, {name: b, set: {cloth.side: 0.3}}]\n");
   for (const char* command : {"check drape.yaml", "check-energy rubber", "describe rubber", "list energy",
                               "schema", "sweep sweep.yaml -q -o swept"}) {
     const Ended ended = folder.with(std::string(command) + " --plugin rubber.cpp");
@@ -69,8 +69,7 @@ TEST_CASE("What the compiler refuses is shown with the file's lines, and nothing
 DRAPE_PARAMETERS(Crease, (rest, 0.3, "rad", -3, 3, "angle at rest"));
 DRAPE_FOLD(fold, "A crease.", Crease) { return k * square(theta - rest); }
 )");
-  CHECK_THAT(folder.refused(listed + "fold.cpp"),
-             Contains("a parameter has the name of a symbol of the formula"));
+  CHECK_THAT(folder.refused(listed + "fold.cpp"), Contains("a parameter has the name of a symbol of "));
 }
 
 TEST_CASE("What a plugin throws or fails to return ends a command with a message") {
@@ -122,8 +121,7 @@ TEST_CASE("What is no plugin's source, or cannot be compiled, is refused") {
                   "DRAPE_PLUGIN_PATH instead, as in export DRAPE_PLUGIN_PATH=" +
                   good + "\n");
   folder.write("text.so", "no C++\n");  // a source may have any name
-  CHECK_THAT(folder.refused(listed + "text.so"),
-             Contains("text.so:1:") && Contains("text.so: does not compile"));
+  CHECK_THAT(folder.refused(listed + "text.so"), Contains("text.so:1:") && Contains("does not compile"));
   folder.write("empty.cpp", "int main() {}\n");
   CHECK_THAT(folder.refused(listed + "empty.cpp"), Contains("is not a drape plugin"));
   CHECK_THAT(folder.refused(listed + "none.cpp"), Contains("none.cpp") && Contains("No such file"));

@@ -22,8 +22,8 @@ TEST_CASE("Checkpoints that cannot be resumed are refused with the reason") {
     CHECK_THAT(refused(folder, "run " + arguments), Contains(expected));
 
   const std::string missing = ": is missing, and the run cannot be resumed without: put it back, or run ";
-  const auto check_refused_without = [&](const std::string& name, const std::string& instead,
-                                         const std::string& expected) {
+  const auto check_refused_with = [&](const std::string& name, const std::string& instead,
+                                      const std::string& expected) {
     const std::string whole = text_of(folder / name);
     if (instead.empty())
       fs::remove(folder / name);
@@ -32,21 +32,21 @@ TEST_CASE("Checkpoints that cannot be resumed are refused with the reason") {
     CHECK_THAT(refused(folder, "run --resume out"), Contains(expected));
     folder.write(name, whole);
   };
-  check_refused_without("out/config.yaml", text_of(folder / "out/config.yaml") + "# \n",
-                        "out/config.yaml: is not the one that the checkpoint was made with");
-  check_refused_without("out/rest/l0.ply", "ply\n", "out/rest/l0.ply: is not what it was when the run began");
-  check_refused_without("out/iterations.csv", "method\n",
-                        "out/iterations.csv: is shorter than when the checkpoint was made");
+  check_refused_with("out/config.yaml", text_of(folder / "out/config.yaml") + "# \n",
+                     "out/config.yaml: is not the one that the checkpoint was made with");
+  check_refused_with("out/rest/l0.ply", "ply\n", "out/rest/l0.ply: is not what it was when the run began");
+  check_refused_with("out/iterations.csv", "method\n",
+                     "out/iterations.csv: is shorter than when the checkpoint was made");
   for (const std::string name : {"out/iterations.csv", "out/log.jsonl"})
-    check_refused_without(name, "", name + missing);
+    check_refused_with(name, "", name + missing);
   {
     FileLock other(folder / "out/checkpoint/lock");
     REQUIRE(other.acquire(0));
     const std::string in_use = "uses this folder; wait for it, or stop it";
     CHECK_THAT(refused(folder, "run --resume out"), Contains(in_use));
     // Before the checkpoint is read, which the other process goes on to replace.
-    check_refused_without("out/config.yaml", "name: other\n", in_use);
-    check_refused_without("out/results.json", "{\"complete\": true}", in_use);
+    check_refused_with("out/config.yaml", "name: other\n", in_use);
+    check_refused_with("out/results.json", "{\"complete\": true}", in_use);
   }
   // It can be resumed all the same, on as many threads as its results tell.
   drape_ends(replaced(go_on, "--threads 1", "--threads 2"), folder, 1);

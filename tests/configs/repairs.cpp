@@ -108,9 +108,9 @@ TEST_CASE("under a ceiling a start is moved to a side") {
   CHECK(right.x() > 0.1);
   CHECK(right.x() < 0.2);
   CHECK(right.tail<2>().isZero(0));
-  const std::string walled = replaced(ceiling, "obstacles: [",
-                                      "obstacles: [{shape: half_space, normal: [-1, 0, 0], "
-                                      "translate: [0.31, 0, 0]}, ");
+  const std::string walled =
+      replaced(ceiling, "obstacles: [",
+               "obstacles: [{shape: half_space, normal: [-1, 0, 0], translate: [0.31, 0, 0]}, ");
   const Eigen::Vector3d left = moved(experiment(walled, "[-0.1, -0.2, 0]"));
   CHECK(left.x() < -0.3);
   CHECK(left.tail<2>().isZero(0));

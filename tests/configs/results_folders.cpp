@@ -7,14 +7,12 @@ TEST_CASE("a results folder that cannot be used") {
   folder.write("file", "text");
   fs::create_symlink("gone", folder / "link");  // which is left there
   const std::string cannot = ": cannot make the results folder (";
-  check_refusals(
-      folder, "run e.yaml --out ",
-      {{"file", "file" + cannot + "Not a directory); name another with --out\n"},
-       {"file/below", "file/below" + cannot + "Not a directory); "},
-       {"/proc/drape", "/proc/drape" + cannot + "No such file or directory); "},
-       {"/proc", "/proc: cannot write to the results folder; name another with --out\n"},
-       {"link",
-        "link: is a link to gone, which does not exist; make that folder, or name another with --out\n"}});
+  check_refusals(folder, "run e.yaml --out ",
+                 {{"file", "file" + cannot + "Not a directory); name another with --out\n"},
+                  {"file/below", "file/below" + cannot + "Not a directory); "},
+                  {"/proc/drape", "/proc/drape" + cannot + "No such file or directory); "},
+                  {"/proc", "/proc: cannot write to the results folder; name another with --out\n"},
+                  {"link", "link: is a link to gone, which does not exist; make that folder, or name "}});
 }
 
 TEST_CASE("names that the file system does not allow are refused before the first write") {
@@ -49,8 +47,7 @@ TEST_CASE("earlier results stay without --overwrite, which removes only a run's 
   for (const std::string& name : added) folder.write("out/" + name, "");
   if (!with_results) fs::remove(folder / "out/results.json");
   const std::string run = "run e.yaml --out out --quiet --no-report --levels 1 --method newton";
-  check_error(refused(folder, run),
-              "out: holds the results of another run; name another folder with --out, ");
+  check_error(refused(folder, run), "out: holds the results of another run; name another folder ");
   drape_ends(run + " --overwrite", folder);
   const auto files = files_in(folder / "out");
   for (const std::string& name : own) CHECK(files.at(name) == "mine");
@@ -81,8 +78,7 @@ TEST_CASE("a folder is a run's only with results or a lock of drape's own") {
   check_error(refused(folder, "run e.yaml --out sweep"), "sweep: is a sweep's folder; ");
 }
 
-TEST_CASE(
-    "--overwrite removes no file that the new run reads, but may repeat a run from its own config.yaml") {
+TEST_CASE("--overwrite removes no file that the new run reads, and may repeat a run from its config.yaml") {
   const Scratch folder(small_experiment());
   const std::string options = "--levels 1 --method pcs ";
   run_into("first", folder, options);

@@ -138,12 +138,10 @@ TEST_CASE("report of a sweep is one page with every row, state and failure") {
 }
 
 TEST_CASE("report of several folders takes a page's name, and groups runs by all but their seed") {
-  const std::string none =
-      ": neither results.json nor sweep.json here; give the folder of a run or a sweep\n";
+  const std::string none = ": neither results.json nor sweep.json here; ";
   check_refusals(
       sweep(), "report ",
-      {{first + " " + second,
-        "several folders: name the page with --out, as in --out results/together.html\n"},
+      {{first + " " + second, "several folders: name the page with --out, as in --out "},
        {first + " runs --out x.html", "runs" + none},
        {first + " --out x.html", "--out is for the page of several runs; a run's own is report.html in "}});
   const Scratch folder;
