@@ -18,7 +18,7 @@ struct FailingExperiment : Scratch {
   }
   Ended with(const std::string& arguments, int exit_code = drape::exit_not_converged) const {
     const Ended ended =
-        drape_with(arguments, path, "DRAPE_PLUGIN_PATH=" + (folders::test_plugins() / "failing").string());
+        drape_with(arguments, path, "DRAPE_PLUGIN_PATH=" + folders::test_plugins().string() + "/failing");
     INFO(ended.err);
     REQUIRE(ended.exit_code == exit_code);
     return ended;
@@ -121,7 +121,7 @@ TEST_CASE("A folder that is deleted during a run aborts it with its own code, an
     INFO(gone);
     const FailingExperiment folder("level: 1, command: rm -r " + gone);
     const std::string said =
-        folder.with("run e.yaml --out out --method all --quiet --no-report", drape::exit_aborted).err;
+        folder.with("run e.yaml --out out --method all -q --no-report", drape::exit_aborted).err;
     check_error(said, "cannot write out/levels/odd_l1.ply: No such file or directory");
     CHECK_THAT(said, Contains("; the run is aborted. "));
     CHECK(fs::exists(folder / "out") == (gone != "out"));

@@ -43,8 +43,7 @@ TEST_CASE("a start that touches an obstacle is refused, with the pairs and the l
       said_of_contact("--set 'energies=[neo_hookean, hinge, gravity]' --set contact=shapes "
                       "--set 'obstacles=[{name: floor, shape: half_space}]' --set start.perturbation=5e-3 "
                       "--set start.perturbation_wavelength=0.06 --set start.translate=[0,0,0.0075]"),
-      StartsWith("error: e.yaml:4:8: the start of level 1 touches: cloth triangle ") &&
-          Contains(" and floor: half_space at ("));
+      StartsWith("error: e.yaml:4:8: the start of level 1 touches: ") && Contains(" and floor: half_space"));
   CHECK_THAT(
       refused_alike(Scratch(replaced(caged, "0.15], perturbation", "0.11], perturbation"))),
       Contains("the start of level 0 touches: cloth triangle ") && Contains(" and ball (cage 0) triangle "));
@@ -59,10 +58,9 @@ TEST_CASE("a cloth that crosses itself is refused") {
       "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0.2 0.2 -0.5\nv 0.3 0.2 -0.5\nv 0.25 0.25 0.5\nf 1 2 3\nf 4 5 6\n");
   const std::string pair = "cloth triangle 0 and cloth triangle 1 at (0.2";
   CHECK_THAT(refused_alike(folder), StartsWith("error: e.yaml:1:1: the start of level 0 touches: " + pair));
-  CHECK_THAT(refused_alike(folder, "--allow-start-repair"),
-             StartsWith("error: e.yaml:1:1: moving the start by up to ") &&
-                 Contains(" does not part " + pair) &&
-                 EndsWith(" on level 0; change the start's shape or the obstacle\n"));
+  CHECK_THAT(
+      refused_alike(folder, "--allow-start-repair"),
+      StartsWith("error: e.yaml:1:1: moving the start by up to ") && Contains(" does not part " + pair));
 }
 
 TEST_CASE("a run with contact has contacts, gaps and intersections in its results") {

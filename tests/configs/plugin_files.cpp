@@ -105,8 +105,7 @@ DRAPE_PLUGIN(registry) {
     return folder.refused(arguments + " --plugin bad.cpp");
   };
   const std::string other = "an exception that is no std::exception\n";
-  CHECK_THAT(refusal("check-energy nothing"),
-             EndsWith("error: bind returned null; return an object, which may have no elements\n"));
+  CHECK_THAT(refusal("check-energy nothing"), Contains("error: bind returned null; "));
   CHECK(refusal("check-energy throws") == "error: " + other);
   CHECK(refusal("check-energy refuses") == "error: energy: refuses: " + other);
   CHECK_THAT(refusal("check drape.yaml --set energies=[throws]"), EndsWith(other));
@@ -129,8 +128,7 @@ TEST_CASE("What is no plugin's source, or cannot be compiled, is refused") {
       folder.refused(listed + "rubber.cpp", "CXX=/nowhere/c++"),
       Contains("--plugin: there is no compiler /nowhere/c++; install it (Debian's package g++), or name "));
   check_error(folder.refused(listed + "rubber.cpp", "TMPDIR=/nonexistent"),
-              "--plugin: the folder for temporary files, TMPDIR=/nonexistent, is not there (No such file or "
-              "directory); ");
+              "--plugin: the folder for temporary files, TMPDIR=/nonexistent, is not there (");
   CHECK_THAT(folder.refused(listed + "rubber.cpp", "XDG_CACHE_HOME=/proc/none"),
              Contains("error: --plugin: cannot make /proc/none/drape/rubber-") &&
                  EndsWith("for the library (No such file or directory); name a folder for it in the variable "

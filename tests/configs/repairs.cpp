@@ -137,8 +137,7 @@ TEST_CASE("a start with pins, or without a free position, is refused, with the p
       experiment(ball_at("[0, 0, 0]"), "[-0.2, -0.2, 0.06]") + "pins: [{point: [0, 0, 0]}]\n";
   CHECK_THAT(said_of(pinned, repair),
              StartsWith("error: e.yaml:4:8: the start of level 0 touches: cloth triangle ") &&
-                 Contains(" and ball: sphere at (") &&
-                 EndsWith("; a cloth with pins is not moved: move the pins or the obstacle\n"));
+                 Contains(" and ball: sphere at (") && Contains("; a cloth with pins is not moved: "));
   CHECK(moved(replaced(pinned, "0.06]", "0.12]")).isZero(0));
   const auto between = [](const std::string& top) {
     return "shapes\nobstacles: [{name: top, shape: half_space, normal: [0, 0, -1], translate: [0, 0, " + top +

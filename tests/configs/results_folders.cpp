@@ -20,7 +20,7 @@ TEST_CASE("names that the file system does not allow are refused before the firs
     return replaced(small_experiment(), "  pcs: {}\n", "  " + method + ": {type: pcs}\n");
   };
   CHECK_THAT(refused_alike(Scratch(experiment(std::string(201, 'm')))),
-             Contains("names files: it has 201 bytes, and may have 200"));
+             Contains("it has 201 bytes, and may have 200"));
   const Scratch folder(small_experiment());
   CHECK_THAT(refused(folder, "run e.yaml --out a/b/" + std::string(300, 'x')),
              Contains("has 300 bytes, and the file system takes 255"));

@@ -198,12 +198,11 @@ TEST_CASE("report replaces drape's own pages and no other file") {
   folder.write("notes.html", "<title>mine</title>");
   for (const std::string& runs : {two, std::string(".")})
     check_refusals(sweep(), "report ",
-                   {{runs + " --out " + notes, notes + ": is there already, and no report of drape; name "}});
+                   {{runs + " --out " + notes, notes + ": is there already, and no report of "}});
   CHECK(text_of(notes) == "<title>mine</title>");
   for (const std::string& own : {second, "./" + first})
-    check_refusals(
-        sweep(), "report ",
-        {{two + " --out " + own + "/report.html", own + "/report.html: is the place of a run's own "}});
+    check_refusals(sweep(), "report ",
+                   {{two + " --out " + own + "/report.html", own + "/report.html: is the place of a "}});
   shown_by("report " + two + " --out " + page, sweep().path);
   shown_by("report . --out " + page, sweep().path);  // its own page is replaced
   CHECK(page_in(page)["runs"].size() == 7);
