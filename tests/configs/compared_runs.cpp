@@ -1,5 +1,6 @@
 // `drape compare`, and what of two runs it compares.
 
+#include "core/app/experiment/experiment.h"
 #include "core/app/files/yaml_file.h"
 #include "core/app/report/compare.h"
 #include "tests/configs/runs.h"
