@@ -2,8 +2,6 @@
 // ever.
 
 #include <catch2/catch.hpp>
-#include <cmath>
-#include <string>
 
 #include "core/app/experiment/experiment.h"
 #include "core/app/sweep/sweep.h"
@@ -14,10 +12,6 @@ using namespace drape;
 
 namespace {
 
-bool is_numeric(const Parameter& p) {
-  return p.type.kind == ValueKind::number || p.type.kind == ValueKind::integer;
-}
-
 /// Calls visit(schema, parameter, default) for every number and list of numbers of a schema and of its
 /// sections.
 template <class Visit>
@@ -25,7 +19,8 @@ void for_each_number(const std::string& name, const Schema& schema, const Visit&
   const ConfigNode defaults = schema.write(schema.fresh().get());
   for (const Parameter& p : schema.parameters) {
     INFO(name << "." << p.name);
-    if (is_numeric(p)) visit(schema, p, *defaults.find(p.name));
+    if (p.type.kind == ValueKind::number || p.type.kind == ValueKind::integer)
+      visit(schema, p, *defaults.find(p.name));
     if (p.section) for_each_number(name + "." + p.name, *p.section, visit);
   }
 }
@@ -61,14 +56,24 @@ std::string refusal(const Schema& schema, const std::string& name, const ConfigN
 
 }  // namespace
 
-TEST_CASE("Every declared number has a finite minimum and maximum, with its default between them",
-          "[conformance]") {
+TEST_CASE("Numbers have bounds with their default between them, and are refused beyond them by name") {
   int numbers = 0;
-  for_each_number([&](const Schema&, const Parameter& p, const ConfigNode& initial) {
+  for_each_number([&](const Schema& schema, const Parameter& p, const ConfigNode& initial) {
     ++numbers;
     CHECK(std::isfinite(p.minimum));
     CHECK(std::isfinite(p.maximum));
     CHECK(p.minimum < p.maximum);
+    const bool whole = p.type.kind == ValueKind::integer;
+    for (const char* number :
+         {whole ? "-2147483648" : "-1e300", whole ? "99999999999" : "1e300", "1e400", ".inf"}) {
+      INFO(number);
+      ConfigNode value = ConfigNode::of(std::string(number)), items;  // each component of a list
+      value.quoted = false;
+      items.kind = ConfigNode::Kind::list;
+      items.items.assign(p.size ? p.size : 1, value);
+      CHECK_THAT(refusal(schema, p.name, p.type.is_list() ? items : value),
+                 Catch::Contains("\"" + p.name + "\" must be "));
+    }
     if (p.required) return;
     for (const double value : numbers_in(initial)) {
       CHECK((p.open_minimum ? value > p.minimum : value >= p.minimum));
@@ -76,21 +81,4 @@ TEST_CASE("Every declared number has a finite minimum and maximum, with its defa
     }
   });
   CHECK(numbers > 70);
-}
-
-TEST_CASE("Numbers beyond the bounds are refused by name, each component of a list too", "[conformance]") {
-  for_each_number([](const Schema& schema, const Parameter& p, const ConfigNode&) {
-    const bool list = p.type.is_list(), whole = p.type.kind == ValueKind::integer;
-    for (const char* number :
-         {whole ? "-2147483648" : "-1e300", whole ? "99999999999" : "1e300", "1e400", ".inf"}) {
-      INFO(number);
-      ConfigNode value = ConfigNode::of(std::string(number));
-      value.quoted = false;
-      ConfigNode items;
-      items.kind = ConfigNode::Kind::list;
-      items.items.assign(p.size ? p.size : 1, value);
-      CHECK_THAT(refusal(schema, p.name, list ? items : value),
-                 Catch::Contains("\"" + p.name + "\" must be "));
-    }
-  });
 }
