@@ -2,7 +2,6 @@
 
 #include <Eigen/Geometry>
 #include <catch2/catch.hpp>
-#include <random>
 
 #include "core/kernel/plugin/refused_parameters.h"
 #include "core/numerics/contact/surface_contacts.h"
@@ -13,9 +12,9 @@
 #include "core/numerics/patterns/generate.h"
 #include "plugins/contact/ipc/ipc.h"
 #include "tests/support/command.h"
-#include "tests/support/evaluate.h"
 #include "tests/support/meshes.h"
 #include "tests/support/near_surface.h"
+#include "tests/support/random.h"
 
 using namespace drape;
 using namespace drape::ipc;
@@ -55,38 +54,29 @@ TriangleMesh cones() {
 
 /// Triangles at random, some of which share vertices or edges.
 TriangleMesh tangle(unsigned seed) {
-  std::mt19937 random(seed);
-  std::uniform_real_distribution<double> at(-0.02, 0.02);
-  std::uniform_int_distribution<int> which(0, 8);
+  RandomNumbers random(seed);
+  const auto which = [&] { return static_cast<int>(random(0, 9)); };
   TriangleMesh mesh;
-  for (int v = 0; v < 9; ++v) append(mesh, {{at(random), at(random), at(random)}}, {});
-  for (int t = 0; t < 14; ++t) append(mesh, {}, {{which(random), which(random), which(random)}});
+  for (int v = 0; v < 9; ++v) append(mesh, {random.vector(0.02)}, {});
+  for (int t = 0; t < 14; ++t) append(mesh, {}, {{which(), which(), which()}});
   return repair_mesh({mesh}).frames[0];
 }
 
 }  // namespace
 
-TEST_CASE("ipc: an obstacle loses what has no surface, and says so once") {
+TEST_CASE("ipc: an obstacle's remark is that of its repair; a strict one is refused by every fault") {
   const Scratch folder;
   TriangleMesh mesh = sheet();
   append(mesh, {{9, 9, 9}, {8, 8, 8}, {7, 7, 7}}, {{0, 6, 1}, {1, 0, 6}, {2, 2, 3}, {0, 1, 2}});
-  append(mesh, {{0, 0, 0.1}, {0.01, 0, 0.1}}, {{12, 28, 29}, {3, 4, 9}});
-  mesh.triangles.bottomRows(1) << 4, 3, 8;  // in the place of a triangle of the sheet, turned over or not
-  const std::string file = (folder / "scan.obj").string();
-  write_mesh(file, mesh);
-  const RepairedMesh repaired = repair_mesh({mesh});
-  CHECK(repaired.frames[0].vertices.rows() == 27);
+  append(mesh, {{0, 0, 0.1}, {0.01, 0, 0.1}}, {{12, 28, 29}, {4, 3, 8}});
   Ipc::Parameters p;
   p.obstacles.resize(1);
   p.obstacles[0].name = "scan";
-  p.obstacles[0].mesh = file;
-  const Ipc model(p);
-  CHECK(model.input_remarks() == std::vector<std::string>{"obstacle scan: " + repaired.remark});
-  CHECK_THAT(repaired.remark, Contains("dropped 3 loose vertices, ") &&
-                                  Contains(" doubled triangles and 2 triangles without area; kept ") &&
-                                  Contains(" with separate fans of triangles"));
-
-  // Strict, every fault has a line of its own.
+  p.obstacles[0].mesh = (folder / "scan.obj").string();
+  write_mesh(p.obstacles[0].mesh, mesh);
+  const RepairedMesh repaired = repair_mesh({mesh});
+  CHECK(repaired.frames[0].vertices.rows() == 27);
+  CHECK(Ipc(p).input_remarks() == std::vector<std::string>{"obstacle scan: " + repaired.remark});
   p.obstacles[0].strict = true;
   try {
     const Ipc refused(p);
@@ -96,7 +86,7 @@ TEST_CASE("ipc: an obstacle loses what has no surface, and says so once") {
     CHECK(refused.faults.size() >= 4);
     for (const ParameterFault& fault : refused.faults) {
       CHECK(fault.path == "obstacles.0");
-      CHECK_THAT(fault.message, Contains("obstacle \"scan\": " + file + ": "));
+      CHECK_THAT(fault.message, Contains("obstacle \"scan\": " + p.obstacles[0].mesh + ": "));
     }
   }
 }
@@ -123,8 +113,7 @@ TEST_CASE("ipc: the frames of an animation are repaired together") {
   CHECK(repaired.frames[0].triangles == repaired.frames[1].triangles);
   CHECK(repaired.frames[0].vertices == sheet().vertices);
   CHECK_THAT(repaired.remark, Contains(" and 1 triangle without area"));
-  second.vertices(26, 0) += 0.01;
-  second.vertices(26, 1) += 0.01;
+  second.vertices.row(26) += Eigen::RowVector3d(0.01, 0.01, 0);
   CHECK_THROWS_WITH(
       repair_mesh({first, second}),
       Contains("triangle 33 (counted from 0) has no area in 1 of 2 frames; give it one in all of them"));
@@ -132,13 +121,15 @@ TEST_CASE("ipc: the frames of an animation are repaired together") {
   const Scratch folder;
   write_mesh(folder / "a.obj", first);
   write_mesh(folder / "b.obj", sheet());
-  ObstacleParameters p;
-  p.animation = {(folder / "a.obj").string(), (folder / "b.obj").string()};
-  CHECK_THROWS_WITH(ObstacleMeshes::of(p, 0), Contains("must have the same triangles"));
   folder.write("c.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n");
   folder.write("d.obj", "v 0 0 0\nv 0.3 0.4 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n");
-  p.animation = {(folder / "c.obj").string(), (folder / "d.obj").string()};
-  CHECK_THROWS_WITH(ObstacleMeshes::of(p, 0), Contains("into triangles before they move"));
+  const auto refused = [&](const char* one, const char* other, const std::string& why) {
+    ObstacleParameters p;
+    p.animation = {(folder / one).string(), (folder / other).string()};
+    CHECK_THROWS_WITH(ObstacleMeshes::of(p, 0), Contains(why));
+  };
+  refused("a.obj", "b.obj", "must have the same triangles");
+  refused("c.obj", "d.obj", "into triangles before they move");
 }
 
 TEST_CASE("ipc: a flat sheet acts as its plane where a wall joins it from below") {
@@ -146,30 +137,28 @@ TEST_CASE("ipc: a flat sheet acts as its plane where a wall joins it from below"
   mesh.vertices *= 10;  // so that its triangles are large against d̂
   REQUIRE_THAT(repair_mesh({mesh}).remark, Contains("kept 4 edges with more than two triangles"));
   const NearSurface near(mesh);
-  std::mt19937 random(3);
-  std::uniform_real_distribution<double> along(-0.6, 0.6), across(-0.015, 0.015), above(1e-6, 1);
+  RandomNumbers random(3);
   for (int i = 0; i < 400; ++i) {
-    const Vector p(along(random), i % 3 == 0 ? 0 : across(random), above(random) * dhat);
+    const Vector p(random(-0.6, 0.6), i % 3 == 0 ? 0 : random(-0.015, 0.015), random(1e-6, 1) * dhat);
     const Vector foot(std::clamp(p.x(), -0.5, 0.5), p.y(), 0);
     CAPTURE(p.transpose());
     CHECK(near.value(p) == Approx(barrier((p - foot).norm() / dhat).value).epsilon(1e-9).margin(1e-13));
   }
   // Between the wall and the sheet both act, less what they share.
   for (int i = 0; i < 100; ++i) {
-    const Vector p(0.5 * along(random), 0.3 * dhat + 0.3 * std::abs(across(random)), -above(random) * dhat);
+    const Vector p(random(-0.3, 0.3), random(0.3, 0.75) * dhat, -random(1e-6, 1) * dhat);
     const double expected =
         barrier(p.y() / dhat).value + barrier(-p.z() / dhat).value - barrier(p.tail<2>().norm() / dhat).value;
     CHECK(near.value(p) == Approx(expected).epsilon(1e-9).margin(1e-13));
   }
 }
 
-TEST_CASE("ipc: a vertex at which two triangles meet that share no edge counts once") {
-  const TriangleMesh mesh =
+TEST_CASE("ipc: a vertex of triangles that share no edge counts once, as do vertices at one place") {
+  const Vector above(0, 0, 0.5 * dhat);
+  const TriangleMesh bow_tie =
       mesh_of({{0, 0, 0}, {1, -0.5, 0}, {1, 0.5, 0}, {-1, 0.5, 0}, {-1, -0.5, 0}}, {{0, 1, 2}, {0, 3, 4}});
-  CHECK(NearSurface(mesh).value({0, 0, 0.5 * dhat}) == Approx(barrier(0.5).value));
-}
+  CHECK(NearSurface(bow_tie).value(above) == Approx(barrier(0.5).value));
 
-TEST_CASE("ipc: triangles with vertices of their own act as those that share them") {
   const TriangleMesh whole = sheet();
   TriangleMesh apart = whole;
   apart.vertices = whole.vertices(whole.triangles.reshaped<Eigen::RowMajor>(), Eigen::all);
@@ -178,14 +167,14 @@ TEST_CASE("ipc: triangles with vertices of their own act as those that share the
   CHECK(repaired.remark == "joined " + std::to_string(apart.vertices.rows() - whole.vertices.rows()) +
                                " vertices at the places of others");
   REQUIRE(repaired.frames[0].vertices.rows() == whole.vertices.rows());
-  CHECK(NearSurface(repaired.frames[0]).value({0, 0, 0.5 * dhat}) == Approx(barrier(0.5).value));
+  CHECK(NearSurface(repaired.frames[0]).value(above) == Approx(barrier(0.5).value));
 
   TriangleMesh parts = whole;  // a second one that touches the first at a vertex
   append(parts, {whole.vertices.row(0), {-1, 0, 0}, {-1, -1, 0}}, {{25, 26, 27}});
   const Scratch folder;
-  write_mesh(folder / "parts.ply", parts);
   ObstacleParameters p;
   p.mesh = (folder / "parts.ply").string();
+  write_mesh(p.mesh, parts);
   CHECK_THAT(ObstacleMeshes::of(p, 0).repair, Contains("joined 1 vertex at the place of another"));
   p.strict = true;
   CHECK_THROWS_WITH(ObstacleMeshes::of(p, 0),
@@ -195,18 +184,15 @@ TEST_CASE("ipc: triangles with vertices of their own act as those that share the
 TEST_CASE("ipc: the nearest feature of any triangles counts at least once, and the barrier has no hole") {
   std::vector<TriangleMesh> meshes = {sheet_with_wall(), cones()};
   for (unsigned seed = 1; seed < 30; ++seed) meshes.push_back(tangle(seed));
-  std::mt19937 random(7);
-  std::normal_distribution<double> off(0, 1);
-  std::uniform_real_distribution<double> part(0, 1);
+  RandomNumbers random(7);
   for (std::size_t k = 0; k < meshes.size(); ++k) {
     const NearSurface near(meshes[k]);
     for (int i = 0; i < 200; ++i) {
       const auto t = meshes[k].triangles.row(i % meshes[k].triangles.rows());
-      const double a = i % 2 ? part(random) : 0, b = i % 3 ? (1 - a) * part(random) : 0;
+      const double a = i % 2 ? random(0, 1) : 0, b = i % 3 ? (1 - a) * random(0, 1) : 0;
       const Vector foot = a * meshes[k].vertices.row(t[0]) + b * meshes[k].vertices.row(t[1]) +
                           (1 - a - b) * meshes[k].vertices.row(t[2]);
-      const Vector p =
-          foot + 0.3 * std::pow(10, -3 * part(random)) * dhat * Vector(off(random), off(random), off(random));
+      const Vector p = foot + 0.5 * std::pow(10, -3 * random(0, 1)) * dhat * random.vector(1);
       const std::vector<NearestFeature> features = near.features(p);
       if (features.empty()) continue;
       const auto nearest = std::ranges::min(features, {}, &NearestFeature::distance);
