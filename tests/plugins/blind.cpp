@@ -9,8 +9,7 @@ namespace {
 
 using drape::Positions;
 
-class NoContacts final : public drape::Collisions {
- public:
+struct NoContacts final : drape::Collisions {
   int contact_count() const override { return 0; }
   double smallest_gap() const override { return std::numeric_limits<double>::infinity(); }
   double value(const Positions&) const override { return 0; }
@@ -19,30 +18,26 @@ class NoContacts final : public drape::Collisions {
   void add_hessian(const Positions&, drape::Projection, drape::BlockSink&) const override {}
 };
 
-class Anywhere final : public drape::CollisionCandidates {
- public:
+struct Anywhere final : drape::CollisionCandidates {
   drape::StepLimit max_step() const override { return {}; }
   std::unique_ptr<drape::Collisions> build_collisions(const Positions&) const override {
     return std::make_unique<NoContacts>();
   }
 };
 
-class BoundBlind final : public drape::BoundContact {
- public:
-  explicit BoundBlind(double height) : height_(height) {}
+struct BoundBlind final : drape::BoundContact {
+  double height = 0;
+  explicit BoundBlind(double height_in) : height(height_in) {}
   std::unique_ptr<drape::CollisionCandidates> build_candidates(const Positions&,
                                                                const Positions&) const override {
     return std::make_unique<Anywhere>();
   }
   std::vector<drape::Intersection> intersections(const Positions& x) const override {
     Eigen::Index lowest = 0;
-    if (x.col(2).minCoeff(&lowest) > height_) return {};
+    if (x.col(2).minCoeff(&lowest) > height) return {};
     return {{"cloth vertex " + std::to_string(lowest), "floor: plane", x.row(lowest).transpose()}};
   }
   std::vector<drape::TriangleMesh> obstacles() const override { return {}; }
-
- private:
-  double height_;
 };
 
 struct Blind final : drape::ContactModel {
