@@ -15,15 +15,11 @@ TEST_CASE("constant_load: forces by area and on the nearest vertex") {
   load.points = {{{2.1, 3.2, 0.5}, {0, 0, 8}}, {{0.55, 0.9, 0}, {3, 0, 0}}, {{2, 3, 0}, {0, 1, 0}}};
   const auto bound = load.bind(level, Material());
   const Positions g = gradient_of(*bound, level.rest.vertices);
-
-  for (int i = 0; i < 20; ++i) {
-    Eigen::RowVector3d expected = -level.vertex_area[i] * load.force_density.transpose();
-    if (i == 19) expected -= Eigen::RowVector3d(0, 1, 8);  // the corner (2, 3)
-    if (i == 6) expected -= Eigen::RowVector3d(3, 0, 0);   // (0.5, 1)
-    CHECK((g.row(i) - expected).norm() <= 1e-14);
-  }
+  Positions expected = -level.vertex_area * load.force_density.transpose();
+  expected.row(19) -= Eigen::RowVector3d(0, 1, 8);  // the corner (2, 3)
+  expected.row(6) -= Eigen::RowVector3d(3, 0, 0);   // (0.5, 1)
+  CHECK((g - expected).rowwise().norm().maxCoeff() <= 1e-14);
   CHECK(bound->value(level.rest.vertices) ==
         Approx(g.cwiseProduct(level.rest.vertices).sum()).epsilon(1e-13));
   CHECK(bound->stencils().rows() == 0);
-  CHECK(load.role() == EnergyRole::external);
 }

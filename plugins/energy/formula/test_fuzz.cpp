@@ -13,26 +13,23 @@ using namespace drape::formula;
 
 namespace {
 
-class Fuzzer {
- public:
-  explicit Fuzzer(unsigned seed) : random_(seed) {}
+struct Fuzzer {
+  std::mt19937 random{1};
+  ElementKind kind = ElementKind::triangle;
 
-  ElementKind kind() { return static_cast<ElementKind>(pick(3)); }
+  int pick(int n) { return static_cast<int>(random() % static_cast<unsigned>(n)); }
+  template <class Items>
+  const auto& one_of(const Items& items) {
+    return items[static_cast<std::size_t>(pick(static_cast<int>(items.size())))];
+  }
 
-  /// An expression, valid but for its types; then some of its bytes may change.
-  std::string formula(ElementKind kind) {
-    kind_ = kind;
+  /// An expression of a kind, valid but for its types; then some of its bytes may change.
+  std::string formula() {
+    kind = static_cast<ElementKind>(pick(3));
     std::string text = expression(1 + pick(7));
     if (pick(4) == 0)
       for (int changes = 1 + pick(3); changes > 0 && !text.empty(); --changes) mutate(text);
     return text;
-  }
-
- private:
-  int pick(int n) { return static_cast<int>(random_() % static_cast<unsigned>(n)); }
-  template <class Items>
-  const auto& one_of(const Items& items) {
-    return items[static_cast<std::size_t>(pick(static_cast<int>(items.size())))];
   }
 
   std::string expression(int depth) {
@@ -40,38 +37,29 @@ class Fuzzer {
                                                      "1e-300", "3.7", "17", "1e17"};
     static const std::vector<std::string> operators = {"+", "-",  "*",  "/",     "^",   "**",
                                                        "<", ">=", "==", " and ", " or "};
-    if (depth == 0) return pick(3) == 0 ? one_of(numbers) : one_of(symbols_of(kind_)).name;
-    switch (pick(6)) {
-      case 0:
-        return "(" + expression(depth - 1) + ")";
-      case 1:
-        return "-" + expression(depth - 1);
-      case 2: {
-        const Function& f = one_of(functions());
-        std::string text = f.name + "(";
-        const int count = f.least + pick(f.most - f.least + 1);
-        for (int i = 0; i < count; ++i) text += (i ? ", " : "") + expression(depth - 1);
-        return text + ")";
-      }
-      case 3:
-        return "if(" + expression(depth - 1) + " < " + expression(depth - 1) + ", " + expression(depth - 1) +
-               ", " + expression(depth - 1) + ")";
-      default:
-        return expression(depth - 1) + one_of(operators) + expression(depth - 1);
+    if (depth == 0) return pick(3) == 0 ? one_of(numbers) : one_of(symbols_of(kind)).name;
+    const auto inner = [&] { return expression(depth - 1); };
+    const int form = pick(6);
+    if (form == 0) return "(" + inner() + ")";
+    if (form == 1) return "-" + inner();
+    if (form == 2) {
+      const Function& f = one_of(functions());
+      std::string arguments = inner();
+      for (int more = f.least + pick(f.most - f.least + 1); more > 1; --more) arguments += ", " + inner();
+      return f.name + "(" + arguments + ")";
     }
+    if (form == 3) return "if(" + inner() + " < " + inner() + ", " + inner() + ", " + inner() + ")";
+    return inner() + one_of(operators) + inner();
   }
 
   void mutate(std::string& text) {
     const auto at = static_cast<std::size_t>(pick(static_cast<int>(text.size())));
-    const int kind = pick(4);
-    if (kind == 0) text.erase(at, static_cast<std::size_t>(1 + pick(5)));
-    if (kind == 1) text[at] = static_cast<char>(pick(256));
-    if (kind == 2) text.insert(at, 1, "()+-*/^,.<>=! eE0x"[pick(18)]);
-    if (kind == 3) text.insert(at, text.substr(at, static_cast<std::size_t>(1 + pick(40))));
+    const int change = pick(4);
+    if (change == 0) text.erase(at, static_cast<std::size_t>(1 + pick(5)));
+    if (change == 1) text[at] = static_cast<char>(pick(256));
+    if (change == 2) text.insert(at, 1, "()+-*/^,.<>=! eE0x"[pick(18)]);
+    if (change == 3) text.insert(at, text.substr(at, static_cast<std::size_t>(1 + pick(40))));
   }
-
-  std::mt19937 random_;
-  ElementKind kind_ = ElementKind::triangle;
 };
 
 Programs compile(const Law& law) {
@@ -92,12 +80,12 @@ void run(const Program& program) {
 TEST_CASE("random formulas are taken or refused with a place in them") {
   const char* wanted = std::getenv("DRAPE_FUZZ_FORMULAS");
   const int count = wanted ? std::atoi(wanted) : 10000;
-  Fuzzer fuzzer(1);
-  int taken = 0, refused = 0, misplaced = 0, too_large = 0;
+  Fuzzer fuzzer;
+  int taken = 0, refused = 0, misplaced = 0;
   for (int i = 0; i < count; ++i) {
+    const std::string text = fuzzer.formula();
     Law law;
-    law.kind = fuzzer.kind();
-    const std::string text = fuzzer.formula(law.kind);
+    law.kind = fuzzer.kind;
     try {
       append_part(law, "energy", text, true);
       const Programs programs = compile(law);
@@ -107,12 +95,10 @@ TEST_CASE("random formulas are taken or refused with a place in them") {
     } catch (const Fault& fault) {
       ++refused;
       misplaced += fault.at > text.size() || with_caret(text, fault).empty();
-    } catch (const std::length_error&) {
-      ++too_large;
+    } catch (const std::length_error&) {  // too large
     }
   }
   CHECK(misplaced == 0);
   CHECK(taken > count / 20);
   CHECK(refused > count / 20);
-  CHECK(taken + refused + too_large == count);
 }

@@ -1,8 +1,7 @@
 // A formula in an experiment: its keys, its errors, its runs.
 
+#include <array>
 #include <catch2/catch.hpp>
-#include <string>
-#include <tuple>
 
 #include "core/app/experiment/describe.h"
 #include "core/app/files/yaml_file.h"
@@ -17,8 +16,7 @@ namespace {
 const std::string experiment_text = R"yaml(name: cloth
 cloth: {side: 0.2, vertices: 25}
 levels: 2
-pins:
-  - {region: box, lower: [0, 0, 0], upper: [0, 0.2, 0]}
+pins: [{region: box, lower: [0, 0, 0], upper: [0, 0.2, 0]}]
 energies:
   - {type: formula, name: orthotropic, constants: {warp: {value: 200, unit: N/m}, nu12: 0.2},
      where: {sum: "g11 + g22"},
@@ -28,13 +26,6 @@ energies:
   - gravity
 methods: {newton: {}}
 )yaml";
-
-ConfigErrors errors_of(const std::string& text) {
-  const Scratch folder(text);
-  ConfigErrors errors;
-  read_experiment(folder / "e.yaml", {}, test_registry(), errors);
-  return errors;
-}
 
 /// The formula's, under the first load.
 double stretched_energy(const Experiment& e) {
@@ -59,68 +50,63 @@ TEST_CASE("a constant is a key of its energy, with and without a unit") {
                     Catch::Contains("unknown key \"wrap\" in formula; did you mean \"warp\"?"));
   CHECK_THROWS_WITH(with("energies.orthotropic.warp", "many"),
                     Catch::Contains("\"warp\" in constants must be a number, not \"many\""));
+  CHECK_THROWS_WITH(experiment_from(replaced(experiment_text, "nu12: 0.2", "nu12: {value: 0.2, value: 0.3}")),
+                    Catch::Contains("repeated key \"value\" of \"nu12\""));
 }
 
-TEST_CASE("results name a formula by its name") {
-  CHECK(experiment_from(experiment_text).energies[0].name == "orthotropic");
-}
-
-TEST_CASE("a schedule changes a constant") {
-  const Experiment e = experiment_from(experiment_text + R"(schedule:
-  steps: 2
-  keys: [{parameter: energies.orthotropic.warp, times: [0, 1], values: [100, 300]}]
-)");
-  CHECK(stretched_energy(e) == Approx(0.5 * stretched_energy(experiment_from(experiment_text))));
-}
-
-TEST_CASE("the saved config reads back as the same energy") {
+TEST_CASE("a schedule changes a constant, and the saved config reads back as the same energy") {
   const Experiment e = experiment_from(experiment_text);
+  CHECK(e.energies[0].name == "orthotropic");
   const Experiment again = experiment_from(to_yaml(e.resolved));
   CHECK(stretched_energy(again) == stretched_energy(e));
   CHECK(again.resolved.one_line() == e.resolved.one_line());
+  const std::string schedule =
+      "schedule: {steps: 2, keys: [{parameter: energies.orthotropic.warp, times: [0, 1], values: [100, "
+      "300]}]}\n";
+  CHECK(stretched_energy(experiment_from(experiment_text + schedule)) == Approx(0.5 * stretched_energy(e)));
 }
 
 TEST_CASE("a constant comes before the material's symbol of its name") {
-  std::string own = replaced(experiment_text, "nu12: 0.2", "nu: 0.2");
-  own = replaced(own, "nu12*sum", "nu*sum");
+  const std::string by_nu = replaced(experiment_text, "nu12*sum", "nu*sum"),
+                    own = replaced(by_nu, "nu12: 0.2", "nu: 0.2"),
+                    material = replaced(by_nu, ", nu12: 0.2", "");
   CHECK(stretched_energy(experiment_from(own)) == stretched_energy(experiment_from(experiment_text)));
-  const std::string material = replaced(replaced(experiment_text, ", nu12: 0.2", ""), "nu12*sum", "nu*sum");
   CHECK(stretched_energy(experiment_from(material)) != stretched_energy(experiment_from(own)));
 }
 
 TEST_CASE("an error has the line and column inside the formula, also of a broken one") {
   const auto first = [](const std::string& from, const std::string& to) {
-    const ConfigErrors errors = errors_of(replaced(experiment_text, from, to));
+    const Scratch folder(replaced(experiment_text, from, to));
+    ConfigErrors errors;
+    read_experiment(folder / "e.yaml", {}, test_registry(), errors);
     REQUIRE(errors.size() == 1);
     return errors[0];
   };
-  ConfigError error = first("g22^2 +", "g23^2 +");
-  CHECK(error.where.line == 10);
-  CHECK(error.where.column == 18);
-  CHECK(error.message == "formula: unknown name \"g23\"; did you mean \"g22\"?");
-  CHECK(error.shown == "    warp*(g11^2 + nu12*sum^2 + g23^2 + g12^2)\n    " + std::string(27, ' ') + "^");
-  error = first("warp*(g11", "wrap*(g11");
-  CHECK(error.where.line == 9);
-  CHECK(error.where.column == 16);
-  error = first("g11 + g22\"", "g11 + density\"");
-  CHECK(error.where.line == 8);
-  CHECK(error.where.column == 26);
-  error = first("sum: \"g11 + g22\"", "sum: \"tail + g22\", tail: g11");
-  CHECK(error.message == "formula: unknown name \"tail\": \"where\" defines it further down: move it up");
-  error = first("sum: \"g11 + g22\"", "sum: \"g11 + sum\"");
-  CHECK(error.message == "formula: unknown name \"sum\": a sub-expression cannot use itself");
-  const std::tuple<const char*, const char*, const char*> others[] = {
-      {"sum: \"g11 + g22\"", "sum: \"sqr(g11)\", half: \"0.5*sum\", more: \"sum + half\"",
-       "unknown function \"sqr\""},
-      {"unit: N/m", "unit: kN/m", "\"kN/m\" is not a unit that formulas know"},
-      {"name: orthotropic", "name: 2x", "must be a letter"},
-      {"name: orthotropic", "name: contact", "\"contact\" is the energy of contact in results"},
-      {"nu12: 0.2", "g11: 0.2, nu12: 0.2", "\"g11\" is a symbol already"},
-      {"nu12: 0.2", "nu12: [0.2]", "\"nu12\" in constants must be a number, not a list"},
-      {"nu12: 0.2", "nu12: {unit: 1}", "\"nu12\" in constants has no \"value\""},
-      {"density:", "energy: \"area*warp*g11^2\", density:",
-       "write either \"density\" or \"energy\", not both"}};
-  for (const auto& [from, to, message] : others)
+  const auto place = [&](const std::string& from, const std::string& to) {
+    const ConfigError error = first(from, to);
+    return std::pair(error.where.line, error.where.column);
+  };
+  CHECK(place("g22^2 +", "g23^2 +") == std::pair(9, 18));
+  CHECK(place("warp*(g11", "wrap*(g11") == std::pair(8, 16));
+  CHECK(place("g11 + g22\"", "g11 + density\"") == std::pair(7, 26));
+  CHECK(first("g22^2 +", "g23^2 +").shown ==
+        "    warp*(g11^2 + nu12*sum^2 + g23^2 + g12^2)\n    " + std::string(27, ' ') + "^");
+  for (const auto& [from, to, message] : std::initializer_list<std::array<const char*, 3>>{
+           {"g22^2 +", "g23^2 +", "formula: unknown name \"g23\"; did you mean \"g22\"?"},
+           {"sum: \"g11 + g22\"", "sum: \"tail + g22\", tail: g11",
+            "unknown name \"tail\": \"where\" defines it further down: move it up"},
+           {"sum: \"g11 + g22\"", "sum: \"g11 + sum\"",
+            "unknown name \"sum\": a sub-expression cannot use itself"},
+           {"sum: \"g11 + g22\"", "sum: \"sqr(g11)\", half: \"0.5*sum\", more: \"sum + half\"",
+            "unknown function \"sqr\""},
+           {"unit: N/m", "unit: kN/m", "\"kN/m\" is not a unit that formulas know"},
+           {"name: orthotropic", "name: 2x", "must be a letter"},
+           {"name: orthotropic", "name: contact", "\"contact\" is the energy of contact in results"},
+           {"nu12: 0.2", "g11: 0.2, nu12: 0.2", "\"g11\" is a symbol already"},
+           {"nu12: 0.2", "nu12: [0.2]", "\"nu12\" in constants must be a number, not a list"},
+           {"nu12: 0.2", "nu12: {unit: 1}", "\"nu12\" in constants has no \"value\""},
+           {"density:", "energy: \"area*warp*g11^2\", density:",
+            "write either \"density\" or \"energy\", not both"}})
     CHECK_THAT(first(from, to).message, Catch::Contains(message));
 }
 
@@ -152,9 +138,4 @@ TEST_CASE("describe lists what formulas may use") {
   for (const char* word : {"per: triangle", "g12", "per: hinge", "bend", "per: vertex", "mass", "E_bend",
                            "expm1", "if(condition, a, b)"})
     CHECK_THAT(page, Catch::Contains(word));
-}
-
-TEST_CASE("A constant's value is given once") {
-  CHECK_THROWS_WITH(experiment_from(replaced(experiment_text, "nu12: 0.2", "nu12: {value: 0.2, value: 0.3}")),
-                    Catch::Contains("repeated key \"value\" of \"nu12\""));
 }

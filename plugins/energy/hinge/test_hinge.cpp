@@ -12,7 +12,7 @@ namespace {
 
 using Kernel = FoldFormulaKernel<formulas::hinge, 5>;
 using Check = KernelCheck<Kernel>;
-constexpr double pi = 3.14159265358979323846, k = 0.7;
+constexpr double k = 0.7;
 
 /// Its k is the one above.
 Material stiff() {
@@ -38,44 +38,34 @@ Kernel::Rest rest_of(const Check::State& x) {
   return rest_hinges(Level::of(0, mesh))[0].head<5>();
 }
 
-const Kernel::Rest flat_rest = rest_of(folded(0)), bent_rest = rest_of(folded(0.6));
-
-double angle_of(const Check::State& x) {
-  const Eigen::Vector3d d[3] = {x.segment<3>(0), x.segment<3>(3), x.segment<3>(6)};
-  return DihedralAngle<double>(d).angle();
-}
-
-/// Random, nearly flat, sharply folded to both sides, and with a nearly degenerate triangle.
-std::vector<Check::State> states() {
-  std::vector<Check::State> all;
-  for (unsigned seed = 1; seed <= 5; ++seed) all.push_back(folded(0.3) + 0.3 * normal_numbers(9, seed));
-  for (const double angle : {1e-3, 3.0, -3.0, 1.6, -0.9}) all.push_back(folded(angle));
-  all.push_back(folded(0.5, 0.4, 0.03));
-  all.push_back(folded(0.5, 3.0, 0.2, -2.0, 0.1));
-  return all;
-}
+const Kernel::Rest bent_rest = rest_of(folded(0.6));
 
 }  // namespace
 
 TEST_CASE("hinge: one that is shut at rest opens to either side alike") {
-  for (const double rest_angle : {pi, -pi, 3.0, -3.0}) {
-    const double rest[] = {rest_angle, 1, 1, 1, 3};
-    for (const double bend : {0.0, 0.1, -0.1, 0.5, -0.5, 3.0, -3.0}) {
-      const Check::State x = folded(rest_angle + bend);
-      const Eigen::Vector3d d[3] = {x.segment<3>(0), x.segment<3>(3), x.segment<3>(6)};
-      CHECK(Check::kernel().value(d, rest) == Approx(k * bend * bend).margin(1e-14));
-    }
+  for (const double rest_angle : {M_PI, -M_PI, 3.0, -3.0}) {
+    Kernel::Rest rest;
+    rest << rest_angle, 1, 1, 1, 3;
+    for (const double bend : {0.0, 0.1, -0.1, 0.5, -0.5, 3.0, -3.0})
+      CHECK(Check::evaluate(folded(rest_angle + bend), rest).value == Approx(k * bend * bend).margin(1e-14));
   }
 }
 
 TEST_CASE("hinge: the angle is signed, positive where the second triangle lies behind the first") {
-  for (const double angle : {-3.1, -1.0, -1e-9, 0.0, 1e-9, 0.5, 2.0, 3.1})
-    CHECK(angle_of(folded(angle)) == Approx(angle).epsilon(1e-14).margin(0));
+  for (const double angle : {-3.1, -1.0, -1e-9, 0.0, 1e-9, 0.5, 2.0, 3.1}) {
+    const Check::State x = folded(angle);
+    const Eigen::Vector3d d[3] = {x.segment<3>(0), x.segment<3>(3), x.segment<3>(6)};
+    CHECK(DihedralAngle<double>(d).angle() == Approx(angle).epsilon(1e-14).margin(0));
+  }
 }
 
 TEST_CASE("hinge: projection is that of the matrix by the axis and the points' distances from it") {
+  // Random, nearly flat, sharply folded to both sides, and with a nearly degenerate triangle.
+  std::vector<Check::State> states = {folded(0.5, 0.4, 0.03), folded(0.5, 3.0, 0.2, -2.0, 0.1)};
+  for (unsigned seed = 1; seed <= 5; ++seed) states.push_back(folded(0.3) + 0.3 * normal_numbers(9, seed));
+  for (const double angle : {1e-3, 3.0, -3.0, 1.6, -0.9}) states.push_back(folded(angle));
   double smallest = 0;
-  for (const auto& x : states()) {
+  for (const auto& x : states) {
     const auto matrix_of = [&](const Check::Hessian& h) {
       Check::Hessian back = Check::Hessian::Identity();  // e, u, v from e, u - s_u e, v - s_v e
       const Eigen::Vector3d e = x.head<3>();
@@ -87,8 +77,8 @@ TEST_CASE("hinge: projection is that of the matrix by the axis and the points' d
     Check::projections<Pack<native_pack_width>>(x, bent_rest, matrix_of);
   }
   REQUIRE(smallest < -1e-3);  // else nothing was projected
-  CHECK(Check::projections<Pack<native_pack_width>>(folded(0), flat_rest) >
-        -1e-12);  // rank one: nothing to project
+  // Flat, the rank is one: nothing to project.
+  CHECK(Check::projections<Pack<native_pack_width>>(folded(0), rest_of(folded(0))) > -1e-12);
 }
 
 TEST_CASE("hinge: a fold in closed form") {
