@@ -1,8 +1,7 @@
-#include <algorithm>
 #include <catch2/catch.hpp>
-#include <cmath>
 
 #include "core/numerics/hierarchy/hierarchy.h"
+#include "core/numerics/model/required.h"
 #include "plugins/solver/pcs/proxy_objective.h"
 #include "tests/support/evaluate.h"
 #include "tests/support/solve.h"
@@ -15,6 +14,7 @@ namespace {
 struct Fixture {
   Solved s;
   const Problem& problem;
+  const LevelModel& coarse;  ///< the plain model of level 0
 
   explicit Fixture(const Overrides& overrides = {})
       : s(scene_from(R"(
@@ -26,14 +26,15 @@ energies: [neo_hookean, hinge, gravity]
 methods: {pcs: {}}
 )",
                      overrides)),
-        problem(*s.scene) {}
+        problem(*s.scene),
+        coarse(*problem.models[0]) {}
 
   /// Bent and stretched.
-  Positions state(int level) const {
+  Positions state(int level = 0) const {
     Positions x = problem.hierarchy.levels[level].rest.vertices;
-    for (Eigen::Index i = 0; i < x.rows(); ++i) {
-      x(i, 2) = 0.1 * std::sin(9 * x(i, 0)) + 0.2 * x(i, 1) * x(i, 1);
-      x(i, 0) *= 1.1 + 0.3 * x(i, 1);
+    for (auto p : x.rowwise()) {
+      p[2] = 0.1 * std::sin(9 * p[0]) + 0.2 * p[1] * p[1];
+      p[0] *= 1.1 + 0.3 * p[1];
     }
     return x;
   }
@@ -48,6 +49,8 @@ constexpr ProxyInterpolation by_refiner{Interpolation::refiner, Interpolation::r
 constexpr ProxyInterpolation by_midpoints;
 constexpr ProxyInterpolation mixed{Interpolation::midpoint, Interpolation::refiner, Interpolation::midpoint,
                                    Interpolation::midpoint};
+const std::string one_way =
+    "{shape: rectangle, size: [0.6, 0.5], triangulation: one_way, columns: 5, rows: 4}";
 
 /// The proxy of a level for the finest one.
 ProxyObjective proxy_of(const Problem& problem, int level, int depth,
@@ -56,28 +59,43 @@ ProxyObjective proxy_of(const Problem& problem, int level, int depth,
   return ProxyObjective(problem, level, {interpolation, matrix, depth, false, false});
 }
 
+Positions gradient_at(Objective& objective, const Positions& x) {
+  Positions g;
+  objective.gradient(x, g);
+  return g;
+}
+
+/// Gradient and exact matrix against differences, each state as the start of its own step.
+void check_derivatives(ProxyObjective& proxy, const Positions& x, double step, double tolerance) {
+  const auto value = [&](const Positions& y) { return proxy.max_step(y, y), value_of(proxy, y); };
+  const auto gradient = [&](const Positions& y) { return proxy.max_step(y, y), gradient_at(proxy, y); };
+  const Eigen::VectorXd g = flat(gradient(x));
+  const Eigen::MatrixXd h = dense(proxy.matrix(x, Projection::none));
+  REQUIRE(g.norm() > 0);
+  REQUIRE(h.norm() > 0);
+  CHECK((differences(value, x, step).transpose() - g).norm() <= tolerance * g.norm());
+  CHECK((differences(gradient, x, step) - h).norm() <= tolerance * h.norm());
+}
+
 }  // namespace
 
-TEST_CASE("The proxy's energy is the finest level's at P x", "[proxy_objective]") {
+TEST_CASE("The proxy's energy is the finest level's at P x") {
   const Fixture f;
   for (int level : {0, 1}) {
     ProxyObjective proxy = proxy_of(f.problem, level, 1);
     const Positions x = f.state(level);
     const double expected = f.finest_value(x, level, f.problem.hierarchy.prolongations);
     REQUIRE(std::abs(expected - f.problem.models[level]->value(x)) > 1e-3 * std::abs(expected));
-    Positions g;
-    CHECK(proxy.gradient(x, g) == Approx(expected).epsilon(1e-13));
+    CHECK(value_of(proxy, x) == Approx(expected).epsilon(1e-13));
     CHECK(proxy.is_proxy());
     CHECK(&proxy.model() == f.problem.models[level].get());
   }
 }
 
-TEST_CASE("By midpoints the proxy's energy is that of the coarse surface on the finest mesh",
-          "[proxy_objective]") {
+TEST_CASE("By midpoints the proxy's energy is that of the coarse surface on the finest mesh") {
   // A grid's rest shapes are the same by Loop and by midpoints, so that the finest model has this surface.
-  const Fixture f(Overrides{
-      {"cloth", "{shape: rectangle, size: [0.6, 0.5], triangulation: one_way, columns: 5, rows: 4}"},
-      {"energies", "[neo_hookean, hinge, gravity, {type: pressure, pressure: 20}]"}});
+  const Fixture f(Overrides{{"cloth", one_way},
+                            {"energies", "[neo_hookean, hinge, gravity, {type: pressure, pressure: 20}]"}});
   for (int level : {0, 1}) {
     const Positions x = f.state(level);
     ProxyObjective proxy = proxy_of(f.problem, level, 1, by_midpoints);
@@ -90,7 +108,7 @@ TEST_CASE("By midpoints the proxy's energy is that of the coarse surface on the 
   }
 }
 
-TEST_CASE("An energy without a factor is evaluated on the finest mesh by midpoints", "[proxy_objective]") {
+TEST_CASE("An energy without a factor is evaluated on the finest mesh by midpoints") {
   const Fixture f(Overrides{{"energies", "[neo_hookean, midedge_bending, gravity]"}});
   const auto parts = proxy_parts(f.problem, 0, {by_midpoints});
   REQUIRE(parts.size() == 2);
@@ -101,149 +119,104 @@ TEST_CASE("An energy without a factor is evaluated on the finest mesh by midpoin
   CHECK_FALSE(parts[1].roles.has(EnergyRole::membrane));
 }
 
-TEST_CASE("The proxy's gradient is that of its value", "[proxy_objective]") {
+TEST_CASE("The proxy's gradient is that of its value, and the finest level's Galerkin matrix its Hessian") {
   const Fixture f;
   const ProxyInterpolation interpolation = GENERATE(by_refiner, by_midpoints, mixed);
   for (int level : {0, 1}) {
-    ProxyObjective proxy = proxy_of(f.problem, level, 1, interpolation);
-    const Positions x = f.state(level);
-    Positions g;
-    proxy.gradient(x, g);
-    const Eigen::VectorXd expected =
-        differences([&](const Positions& y) { return value_of(proxy, y); }, x, 1e-5).transpose();
-    REQUIRE(g.norm() > 0);
-    CHECK((flat(g) - expected).norm() <= 1e-8 * g.norm());
+    // Deeper than there are levels: as deep as there are.
+    ProxyObjective proxy = proxy_of(f.problem, level, 8, interpolation);
+    check_derivatives(proxy, f.state(level), 1e-5, 1e-8);
   }
 }
 
-TEST_CASE("The Galerkin matrix of the finest level is the proxy's Hessian", "[proxy_objective]") {
+TEST_CASE("The coarse matrix is the plain model's") {
   const Fixture f;
-  const ProxyInterpolation interpolation = GENERATE(by_refiner, by_midpoints, mixed);
-  for (int level : {0, 1}) {
-    ProxyObjective proxy =
-        proxy_of(f.problem, level, 8, interpolation);  // deeper than there are levels: as deep as there are
-    const Positions x = f.state(level);
-    const Eigen::MatrixXd h = dense(proxy.matrix(x, Projection::none));
-    const auto gradient = [&](const Positions& y) {
-      Positions g;
-      proxy.gradient(y, g);
-      return g;
-    };
-    REQUIRE(h.norm() > 0);
-    CHECK((h - differences(gradient, x, 1e-5)).norm() <= 1e-8 * h.norm());
-  }
+  ProxyObjective proxy = proxy_of(f.problem, 0, 1, by_refiner, ProxyMatrix::coarse),
+                 galerkin = proxy_of(f.problem, 0, 1);
+  PlainObjective plain(f.coarse);
+  const Positions x = f.state();
+  const BlockMatrix& expected = plain.matrix(x, Projection::clamp);
+  CHECK(proxy.matrix(x, Projection::clamp).values == expected.values);
+  const Eigen::MatrixXd h = dense(expected);
+  REQUIRE((dense(galerkin.matrix(x, Projection::clamp)) - h).norm() > 1e-3 * h.norm());
 }
 
-TEST_CASE("The coarse matrix is the plain model's", "[proxy_objective]") {
-  const Fixture f;
-  ProxyObjective proxy = proxy_of(f.problem, 0, 1, by_refiner, ProxyMatrix::coarse);
-  const Positions x = f.state(0);
-  BlockMatrix plain(f.problem.models[0]->pattern());
-  f.problem.models[0]->hessian(x, Projection::clamp, plain);
-  CHECK(proxy.matrix(x, Projection::clamp).values == plain.values);
-  ProxyObjective galerkin = proxy_of(f.problem, 0, 1);
-  REQUIRE((dense(galerkin.matrix(x, Projection::clamp)) - dense(plain)).norm() > 1e-3 * dense(plain).norm());
-}
-
-TEST_CASE("A proxy that relaxes switches to the plain energy of its level, once", "[proxy_objective]") {
+TEST_CASE("A proxy that relaxes switches to the plain energy of its level, once") {
   const Fixture f;
   const ProxyInterpolation interpolation = GENERATE(by_refiner, by_midpoints);
-  const Positions x = f.state(0);
+  const Positions x = f.state();
   ProxyObjective never = proxy_of(f.problem, 0, 1, interpolation);
   CHECK_FALSE(never.switch_to_plain());
   CHECK(never.is_proxy());
   ProxyObjective proxy(f.problem, 0, {interpolation, ProxyMatrix::galerkin, 1, false, true});
-  PlainObjective plain(*f.problem.models[0]);
-  Positions g, expected;
-  plain.gradient(x, expected);
-  proxy.gradient(x, g);
-  REQUIRE((g - expected).norm() > 1e-3 * expected.norm());
+  PlainObjective plain(f.coarse);
+  const Positions expected = gradient_at(plain, x);
+  REQUIRE((gradient_at(proxy, x) - expected).norm() > 1e-3 * expected.norm());
   proxy.matrix(x, Projection::clamp);
   REQUIRE(proxy.switch_to_plain());
   CHECK_FALSE(proxy.switch_to_plain());
   CHECK_FALSE(proxy.is_proxy());
-  CHECK(proxy.gradient(x, g) == plain.gradient(x, expected));
-  CHECK(g == expected);
+  CHECK(value_of(proxy, x) == value_of(plain, x));
+  CHECK(gradient_at(proxy, x) == expected);
   const BlockMatrix& matrix = proxy.matrix(x, Projection::clamp);
-  CHECK(matrix.pattern == f.problem.models[0]->pattern());
+  CHECK(matrix.pattern == f.coarse.pattern());
   CHECK(matrix.values == plain.matrix(x, Projection::clamp).values);
 }
 
-TEST_CASE("The proxy has the contact and the limits of its own level", "[proxy_objective]") {
+TEST_CASE("The proxy has the contact and the limits of its own level") {
   const Fixture f(Overrides{{"cloth.size", "[0.3, 0.25]"},
                             {"material", "{thickness: 1e-3, membrane_modulus: 1e3, bending_modulus: 1e5}"},
                             {"start", "{translate: [0, 0, 0.01]}"},
                             {"energies", "[neo_hookean, hinge, {type: strain_limit, limit: 1.3}, gravity]"},
                             {"contact", "shapes"},
                             {"obstacles", "[{name: floor, shape: half_space}]"}});
-  const LevelModel& model = *f.problem.models[0];
   ProxyObjective proxy = proxy_of(f.problem, 0, 8);
-  Positions x = model.level().rest.vertices;
-  for (Eigen::Index i = 0; i < x.rows(); ++i) {
-    x(i, 0) *= 1.1;
-    x(i, 2) = 0.5e-3 + 2e-4 * std::sin(30 * x(i, 0) + 20 * x(i, 1));
+  Positions x = f.coarse.level().rest.vertices;
+  for (auto p : x.rowwise()) {
+    p[0] *= 1.1;
+    p[2] = 0.5e-3 + 2e-4 * std::sin(30 * p[0] + 20 * p[1]);
   }
   const double shell = f.finest_value(x, 0, f.problem.hierarchy.prolongations);
-  const double barrier = model.contacts()[0]->build_candidates(x, x)->build_collisions(x)->value(x);
-  const double limit = model.limits()[0]->value(x);
+  const double barrier = collisions_at(*f.coarse.contacts()[0], x)->value(x);
+  const double limit = f.coarse.limits()[0]->value(x);
   REQUIRE(barrier > 0);
   REQUIRE(limit > 0);
-  // Every state of the differences is evaluated as the start of its own step.
-  const auto prepared = [&](const Positions& y) -> ProxyObjective& {
-    proxy.max_step(y, y);
-    return proxy;
-  };
-  CHECK(value_of(prepared(x), x) == Approx(shell + barrier + limit).epsilon(1e-12));
-  Positions g;
-  prepared(x).gradient(x, g);
-  const Eigen::VectorXd expected =
-      differences([&](const Positions& y) { return value_of(prepared(y), y); }, x, 1e-6).transpose();
-  CHECK((flat(g) - expected).norm() <= 1e-6 * g.norm());
-  const Eigen::MatrixXd h = dense(prepared(x).matrix(x, Projection::none));
-  const auto gradient = [&](const Positions& y) {
-    Positions at;
-    prepared(y).gradient(y, at);
-    return at;
-  };
-  CHECK((h - differences(gradient, x, 1e-6)).norm() <= 1e-6 * h.norm());
+  proxy.max_step(x, x);
+  CHECK(value_of(proxy, x) == Approx(shell + barrier + limit).epsilon(1e-12));
+  check_derivatives(proxy, x, 1e-6, 1e-6);
 }
 
-TEST_CASE("Membranes of coarse levels buckle below the mesh, before the proxy relaxes and after",
-          "[proxy_objective]") {
+TEST_CASE("Membranes of coarse levels buckle below the mesh, before the proxy relaxes and after") {
   const Fixture f(Overrides{{"material.bending_modulus", "1e4"}});
-  const LevelModel& plain = *f.problem.models[0];
-  const LevelModel buckling = plain.with_effective_membranes(2);
-  Positions x = f.state(0);
+  const LevelModel buckling = f.coarse.with_effective_membranes(2);
+  Positions x = f.state();
   x.col(0) *= 0.6;
-  REQUIRE(buckling.value(x, {EnergyRole::membrane}) < 0.5 * plain.value(x, {EnergyRole::membrane}));
+  REQUIRE(buckling.value(x, {EnergyRole::membrane}) < 0.5 * f.coarse.value(x, {EnergyRole::membrane}));
   ProxyObjective proxy(f.problem, 0, {by_midpoints, ProxyMatrix::galerkin, 1, true, true});
-  const double bending = plain.value(x, {EnergyRole::bending});
+  const double bending = f.coarse.value(x, {EnergyRole::bending});
   REQUIRE(bending > 1e-4 * std::abs(buckling.value(x)));
   CHECK(value_of(proxy, x) == Approx(buckling.value(x) + 3 * bending).epsilon(1e-12));
   REQUIRE(proxy.switch_to_plain());
   CHECK(proxy.is_proxy());
-  Positions g, expected;
-  CHECK(proxy.gradient(x, g) == buckling.gradient(x, expected));
-  CHECK(g == expected);
-  BlockMatrix h(plain.pattern());
-  buckling.hessian(x, Projection::clamp, h);
-  CHECK(proxy.matrix(x, Projection::clamp).values == h.values);
+  PlainObjective expected(buckling);
+  CHECK(value_of(proxy, x) == value_of(expected, x));
+  CHECK(gradient_at(proxy, x) == gradient_at(expected, x));
+  CHECK(proxy.matrix(x, Projection::clamp).values == expected.matrix(x, Projection::clamp).values);
   // Seen by the refiner, membranes are the finest level's.
-  ProxyObjective by_loop(f.problem, 0, {by_refiner, ProxyMatrix::galerkin, 1, true, false});
-  ProxyObjective expected_by_loop = proxy_of(f.problem, 0, 1);
-  CHECK(value_of(by_loop, x) == value_of(expected_by_loop, x));
+  ProxyObjective by_loop(f.problem, 0, {by_refiner, ProxyMatrix::galerkin, 1, true, false}),
+      plain = proxy_of(f.problem, 0, 1);
+  CHECK(value_of(by_loop, x) == value_of(plain, x));
 }
 
-TEST_CASE("A proxy follows a midpoint factor that a schedule takes away, as a resumed one does",
-          "[proxy_objective]") {
+TEST_CASE("A proxy follows a midpoint factor that a schedule takes away, as a resumed one does") {
   const Fixture f(Overrides{
-      {"cloth", "{shape: rectangle, size: [0.6, 0.5], triangulation: one_way, columns: 5, rows: 4}"},
+      {"cloth", one_way},
       {"energies",
        "[neo_hookean, gravity, {type: formula, name: plastic, per: hinge, constants: {crease: 0}, "
        "energy: \"3*k*length^2/area*(bend - crease)^2\"}]"},
       {"schedule",
        "{steps: 1, keys: [{parameter: energies.plastic.crease, times: [0, 1], values: [0, 0.3]}]}"}});
-  const Positions x = f.state(0);
+  const Positions x = f.state();
   LoadStepping& load = *f.problem.load_stepping;
   load.begin(0, true);
   ProxyObjective proxy(f.problem, 0, ProxyOptions());
