@@ -4,7 +4,7 @@
 #include "tests/support/metric_check.h"
 #include "tests/support/solve.h"
 
-TEST_CASE("cloth at rest on a plate has neither forces nor a decrement", "[residuals]") {
+TEST_CASE("cloth at rest on a plate has neither forces nor a decrement") {
   const Scratch folder(R"(name: resting
 cloth: {shape: square, side: 0.2, columns: 4, rows: 4}
 levels: 1
