@@ -1,5 +1,3 @@
-#include "plugins/contact/ipc/test_moving.h"
-
 #include <catch2/catch.hpp>
 
 #include "core/numerics/collision_detection/intersections.h"
@@ -7,6 +5,7 @@
 #include "core/numerics/patterns/generate.h"
 #include "tests/support/any_threads.h"
 #include "tests/support/command.h"
+#include "tests/support/moving_obstacles.h"
 #include "tests/support/random.h"
 
 using namespace drape;

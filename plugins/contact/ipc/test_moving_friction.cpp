@@ -5,9 +5,9 @@
 #include "core/numerics/mesh_files/io.h"
 #include "core/numerics/model/active_contacts.h"
 #include "core/numerics/patterns/generate.h"
-#include "plugins/contact/ipc/test_moving.h"
 #include "tests/support/command.h"
 #include "tests/support/evaluate.h"
+#include "tests/support/moving_obstacles.h"
 
 using namespace drape;
 using namespace drape::ipc;

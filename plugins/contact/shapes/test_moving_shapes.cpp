@@ -3,9 +3,9 @@
 #include "core/numerics/contact_forces/friction.h"
 #include "core/numerics/model/active_contacts.h"
 #include "core/numerics/model/required.h"
-#include "plugins/contact/shapes/test_solids.h"
 #include "tests/support/meshes.h"
 #include "tests/support/random.h"
+#include "tests/support/solids.h"
 
 using namespace drape;
 using namespace drape::shapes;

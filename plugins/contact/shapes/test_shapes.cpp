@@ -4,10 +4,10 @@
 #include "core/numerics/contact_forces/barrier.h"
 #include "core/numerics/model/required.h"
 #include "plugins/contact/shapes/separation.h"
-#include "plugins/contact/shapes/test_solids.h"
 #include "tests/support/evaluate.h"
 #include "tests/support/meshes.h"
 #include "tests/support/random.h"
+#include "tests/support/solids.h"
 
 using namespace drape;
 using namespace drape::shapes;

@@ -3,9 +3,9 @@
 #include "plugins/contact/shapes/features.h"
 #include "plugins/contact/shapes/separation.h"
 #include "plugins/contact/shapes/solid.h"
-#include "plugins/contact/shapes/test_solids.h"
 #include "tests/support/meshes.h"
 #include "tests/support/random.h"
+#include "tests/support/solids.h"
 
 using namespace drape;
 using namespace drape::shapes;
