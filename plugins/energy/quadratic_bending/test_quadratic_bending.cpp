@@ -1,5 +1,6 @@
 #include <catch2/catch.hpp>
 
+#include "core/numerics/patterns/generate.h"
 #include "tests/support/kernel_check.h"
 #include "tests/support/unregistered.h"
 // After it:
@@ -40,4 +41,12 @@ TEST_CASE("quadratic_bending: an isometric fold has the hinge energy with θ rep
   for (const double angle : {-2.0, 1e-3, 0.3, 3.0})
     CHECK(Check::evaluate(folded(angle), rest).value ==
           Approx(c * std::pow(2 * std::sin(angle / 2), 2)).epsilon(1e-12).margin(0));
+}
+
+TEST_CASE("quadratic_bending: a rest shape that is not flat is refused") {
+  TriangleMesh mesh = grid({1, 1}, 4, 4, Diagonals::one_way);
+  mesh.vertices(5, 2) = 0.01;
+  CHECK_THROWS_WITH(
+      QuadraticBending().bind(Level::of(3, mesh), Material()),
+      Catch::Contains("the rest shape of level 3 is not flat (angle 0.0") && Catch::Contains("use hinge"));
 }
