@@ -20,7 +20,9 @@ using Eigen::RowVector3d;
 namespace {
 
 double centroid_x(const TriangleMesh& mesh, Eigen::Index t) {
-  return mesh.vertices(mesh.triangles.row(t), 0).mean();
+  double sum = 0;
+  for (const int v : mesh.triangles.row(t)) sum += mesh.vertices(v, 0);
+  return sum / 3;
 }
 
 /// A square that stands in the plane y = 0, with u along z and v along -x.
