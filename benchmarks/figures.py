@@ -389,12 +389,6 @@ def scenes_above(study, value, other="cascadic"):
     return " and ".join([", ".join(found[:-1]), found[-1]] if len(found) > 1 else found) or "no scene"
 
 
-def seconds_of_scenes(fewest, most):
-    """Of those whose finest level has so many vertices."""
-    seconds = [float(r["seconds"]) for r in rows_of("scenes.md") if fewest <= int(r["vertices"]) <= most]
-    return f"{min(seconds):.0f} to {max(seconds):.0f}"
-
-
 def flops_of_five_scenes():
     """The lowest and the highest of the scenes with a fourth level but for the sphere."""
     return lowest_to_highest([ratio for name, ratio in medians_over("cascadic", "four_levels", TFLOP).items() if name != "sphere"])
@@ -510,7 +504,6 @@ VALUES = {
     "linear solvers of STARK": starks_linear_solvers,
     "sphere.solves": lambda: str(solves("sphere")[0]),
     "previews.solves": lambda: str(solves("previews")[0]),
-    "scenes of some 98K vertices [s]": lambda: seconds_of_scenes(90000, 100000),
     "dragon.pcs": lambda: seconds_text([of(runs("dragon_decrements", "pcs"), "seconds")]),
     "scale.vertices": lambda: f"{read('scale.json')['rows'][-1]['vertices'] / 1000:.0f}K",
     "scale.minutes": lambda: figure(read("scale.json")["rows"][-1]["total_seconds"] / 60, 2),
