@@ -59,13 +59,13 @@ TEST_CASE("A contact energy has the derivatives of its value, and semidefinite p
 }
 
 TEST_CASE("Contact acts within dhat and not beyond, whatever motion has led there") {
-  int tell_gaps = 0, silent = 0;
+  bool told_gaps = false;
   for_each_state(all_models(), [&](const BoundContact& contact, const Positions& x) {
     const auto here = collisions_at(contact, x);
     std::vector<double> gaps;
     here->append_gaps(gaps);
-    (gaps.empty() ? silent : tell_gaps) += 1;
     if (!gaps.empty()) {
+      told_gaps = true;
       CHECK(static_cast<Eigen::Index>(gaps.size()) == here->stencils().rows());
       CHECK(std::ranges::min(gaps) == here->smallest_gap());
     }
@@ -92,7 +92,7 @@ TEST_CASE("Contact acts within dhat and not beyond, whatever motion has led ther
     CHECK(collisions_at(contact, far)->contact_count() == 0);
     CHECK(contact.build_candidates(far, far)->max_step().fraction == 1);
   });
-  CHECK(tell_gaps >= 2 * silent);  // the documents' example leaves gaps out, ipc and shapes do not
+  CHECK(told_gaps);  // ipc and shapes do; a model may leave them out
 }
 
 TEST_CASE("Self-contact is invariant under rigid motions, and rubs where sheets slide over each other") {
