@@ -136,6 +136,19 @@ TEST_CASE("midedge_bending: inner triangles of every triangulation have the plat
   CHECK(largest_miss(inner_densities(level, bent(level.rest, saddle), 1), expected) < 1e-4);
 }
 
+TEST_CASE("midedge_bending: a free plate has no modes without energy but the rigid ones") {
+  for_each_triangulation(7, [](const TriangleMesh& mesh) {
+    const Eigen::MatrixXd all = dense(hessian_of(*bind(mesh), mesh.vertices, Projection::none));
+    const Eigen::MatrixXd hessian = all(Eigen::seq(2, Eigen::last, 3), Eigen::seq(2, Eigen::last, 3));
+    const Eigen::VectorXd values = eigenvalues_of(hessian);
+    CHECK(values.head(3).cwiseAbs().maxCoeff() < 1e-10 * values.maxCoeff());
+    // The softest mode of a plate is nearly its twist.
+    const Eigen::VectorXd twist =
+        (mesh.vertices.col(0).array() - 0.3) * (mesh.vertices.col(1).array() - 0.25);
+    CHECK(values[3] > 0.9 * twist.dot(hessian * twist) / twist.squaredNorm());
+  });
+}
+
 TEST_CASE("midedge_bending: rigidities by direction are the plate's, equal ones the isotropic plate") {
   const OrthotropicStiffness c = plate_stiffness(woven);
   CHECK(c.strip(0) == Approx(3));
