@@ -53,7 +53,7 @@ STUDIES = {
         "check": ["sh", "-c", "/sbin/ldconfig -p | grep -q openblas || echo 'OpenBLAS: run third_party/setup compare' >&2"]},
     "python": one_record("python", "what the Python module costs", 5, "env", "PYTHONPATH={build}/python", "/usr/bin/python3",
                          "benchmarks/python", "{drape}") | {"needs": MODULE},
-    "codim_ipc": beside("codim_ipc", "Codim-IPC", 45, ["benchmarks/codim_ipc/installation.py"]),
+    "codim_ipc": beside("codim_ipc", "Codim-IPC", 60, ["benchmarks/codim_ipc/installation.py"]),
     "stark": beside("stark", "STARK", 20, [
         "sh", "-c", "test -x \"$STARK/simulate\" || echo 'STARK: name the folder in which benchmarks/stark/CMakeLists.txt was built' >&2"]),
     "blender": beside("blender", "Blender's cloth", 15, [

@@ -26,11 +26,12 @@ DHAT = 1e-3  # m
 BALL = {"name": "ball", "meshed_shape": "sphere", "radius": 0.3, "subdivisions": 4}
 
 
-def experiment_of(name, side, seed):
-    spec = SCENES[name]
+def experiment_of(name, side, seed, levels=1):
+    """A finest level of side × side vertices: it has the same mesh, start and energy whatever the number of levels."""
+    spec, coarsest = SCENES[name], (side - 1) // 2 ** (levels - 1) + 1
     return drape.Experiment({
-        "name": name, "cloth": {"shape": "square", "side": 1, "triangulation": "one_way", "columns": side, "rows": side}, "levels": 1,
-        "material": spec["material"], "start": {**spec["start"], "perturbation": 1e-3, "seed": seed},
+        "name": name, "cloth": {"shape": "square", "side": 1, "triangulation": "one_way", "columns": coarsest, "rows": coarsest},
+        "levels": levels, "material": spec["material"], "start": {**spec["start"], "perturbation": 1e-3, "seed": seed},
         "pins": [{"region": "nearest", "point": [*point, 0]} for point in spec["pins"]],
         "energies": ["neo_hookean", "hinge", "gravity"], "newton": {"force_tolerance": 1e-3}, "methods": {"newton": {}},
         "metrics": [], **({"contact": [{"type": "ipc", "dhat": DHAT}], "obstacles": [BALL]} if spec["contact"] else {})})
@@ -49,15 +50,20 @@ def obstacle_mesh(scene, folder):
 
 
 def solved(experiment, most=0):
-    """CPU seconds and positions after each iteration of drape's Newton method, at most so many if any, and the level at its end."""
+    """CPU seconds and positions after each iteration of drape's Newton method on the finest level, at most so many if any, and the
+    level at its end. The method solves each level from the scene's start."""
     solve, seconds, states = experiment.solver("newton"), [], []
+    finest = len(experiment.scene()) - 1
     begin = time.process_time()
     for iteration in solve:
+        if iteration.level < finest:
+            begin = time.process_time()
+            continue
         seconds.append(time.process_time() - begin)
         states.append(iteration.x.copy())
         if most and len(states) >= most:
             solve.stop()
-    return seconds, states, solve.levels[0]
+    return seconds, states, solve.levels[-1]
 
 
 def largest_stretch(rest, x, triangles):
