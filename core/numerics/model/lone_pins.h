@@ -16,7 +16,7 @@ std::vector<int> lone_pins(const LevelModel& coarse,
 
 /// Factor on the stiffness of each triangle of a level `levels_below` = k below the finest: below 1 around
 /// lone pins, so that the level hangs from them as low as the finest one does (docs/theory/locking.md).
-/// At a distance r below a point that holds the force F the tension is F / (θ r): θ = (α + sin α) / 2 for
+/// At a distance r below a point that holds the force F the strain is F / (E d θ r): θ = (α + sin α) / 2 for
 /// cloth that fills an angle α at its border (Michell's wedge), 4π / ((3 - ν) (1 + ν)) inside the cloth
 /// (Kelvin). So the cloth hangs lower by F ln 2 / (E d θ) with each refinement. This adds that compliance k
 /// times to 1 / K, K the stiffness of the vertex between resting neighbours along the angle's axis, or its
