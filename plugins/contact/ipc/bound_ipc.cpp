@@ -103,7 +103,7 @@ class BoundIpc::Candidates final : public CollisionCandidates {
   const BoundIpc& contact_;
   Positions x0_, x1_;  // the part of the motion that was searched
   double fraction_;    // of the requested motion
-  // Pairs with a barrier, pairs at rims with theirs (rim_contacts.h), and pairs for CCD only.
+  // Pairs with a barrier, pairs at rims with theirs (make_rim_contacts), and pairs for CCD only.
   std::vector<ContactPair> barrier_, rims_, ccd_only_;
   // Cloth vertices with the obstacle triangles that may contribute to their barrier.
   std::vector<VertexTriangleCandidate> vertex_triangles_;
