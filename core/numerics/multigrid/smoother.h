@@ -13,8 +13,8 @@ using Float4 = float __attribute__((vector_size(16)));
 ///
 /// The sweeps go through pieces of so many rows side by side, which see each other's old values, so that bits
 /// do not depend on the number of threads. The diagonal blocks of such rows are raised by the norms of their
-/// blocks in other pieces, without which a sweep may diverge (Baker, Falgout, Kolev and Yang 2011, l1 hybrid
-/// smoothers).
+/// blocks in other pieces, without which the preconditioner need not be positive definite (Baker, Falgout,
+/// Kolev and Yang 2011, l1 hybrid smoothers).
 class SmoothedMatrix {
  public:
   static constexpr int piece = 4096;  ///< rows
