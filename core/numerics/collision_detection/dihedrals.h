@@ -35,9 +35,10 @@ struct Dihedrals {
 
 /// Coefficients of the improved maximum operator (Li et al. 2023). Triangles have 1; the coefficients of
 /// edges and vertices correct for the points that triangles share. With a function of the distance summed
-/// over triangles, minus edges, plus vertices, a flat region counts once in any triangulation. The surface
-/// may be any set of triangles: an edge of n triangles has n - 1, a vertex 1 less its triangles plus what its
-/// edges have, by which every point of the surface counts once (inclusion and exclusion).
+/// over triangles, minus edges, plus vertices, a flat region counts once in any triangulation; the two sides
+/// of a thin body are two regions. The surface may be any set of triangles: an edge of n triangles has n - 1,
+/// a vertex 1 less its triangles plus what its edges have, by which every point of the surface counts once
+/// (inclusion and exclusion).
 struct OperatorCoefficients {
   Eigen::VectorXd edge, vertex;
 

@@ -39,7 +39,8 @@ struct NearestFeature {
 using SurfaceContacts = Grouped<NearestFeature>;
 
 /// The surface contacts of the cloth at x (n×3) [m]. `candidates` must be contiguous for each vertex and
-/// ascending by triangle; `friction` is μ where an obstacle has none of its own.
+/// ascending by triangle; `friction` is μ where an obstacle has none of its own. A surface has no inside: of
+/// a body thinner than d̂ the faces on the far side are contacts too.
 SurfaceContacts find_surface_contacts(const Positions& x, const ObstacleSurface& obstacles,
                                       const OperatorCoefficients& coefficients,
                                       const std::vector<VertexTriangleCandidate>& candidates,
