@@ -93,9 +93,10 @@ data: configure
 	@third_party/data/fetch data $(BUILD)
 
 # Runs what the pages state and fills their figures in: about three hours on two idle cores; resumes. STUDIES=sphere,scale chooses
-# some, STUDIES=scenes one that takes hours; LIMIT=no lifts the studies' own limits, eight hours in all. The records are stamped with
-# the commit that ran, so nothing may differ from it (benchmarks/run_studies). Without the scanned meshes, Blender or OpenBLAS, which are downloaded, only the studies that need
-# them are left out.
+# some, STUDIES=scenes the one that runs only when it is named; LIMIT=no lifts the studies' own limits, which
+# `benchmarks/run_studies --help` lists. The records are stamped with the commit that ran, so nothing may differ from it
+# (benchmarks/run_studies). Without the scanned meshes, Blender or OpenBLAS, which are downloaded, only the studies that need them
+# are left out.
 results: benchmarks
 	@$(MAKE) --no-print-directory python
 	@third_party/setup compare || true

@@ -1,13 +1,13 @@
 """The studies of `make results`, in the order in which they run.
 
-A study: `what` it is; the `minutes` that it may take, over all calls, on two cores (at most eight hours in sum, of those that
-are not `named`); whether its times are compared (`timed`: one process at a time, all cores, on an idle machine) or only its
-iterations and flops (one thread a run, a run a core); the `threads` of a timed one that does not take all cores; `starts`; the commands that `run` it in {out}, which
-go on where they were cut; those that `gather` its records, a first word ">FILE" storing what the rest prints; its `records` in
-benchmarks/results; `meshes` of data/ that it needs; what else it `needs` in {build}, and how to get it; a command that is to `check`
-what others have built, and says what is missing; whether it takes so long that it runs only when it is `named`; whether a run that
-is refused, or exceeds its sweep's time limit, is one of the `failures` that it records; whether what `gather` prints is a table of
-`scenes`, of which those are recorded that have run.
+A study: `what` it is; the `minutes` that it may take, over all calls, on two cores; whether its times are compared (`timed`: one
+process at a time, all cores, on an idle machine) or only its iterations and flops (one thread a run, a run a core); the `threads`
+of a timed one that does not take all cores; `starts`; the commands that `run` it in {out}, which go on where they were cut; those
+that `gather` its records, a first word ">FILE" storing what the rest prints; its `records` in benchmarks/results; `meshes` of
+data/ that it needs; what else it `needs` in {build}, and how to get it; a command that is to `check` what others have built, and
+says what is missing; whether it takes so long that it runs only when it is `named`; whether a run that is refused, or exceeds its
+sweep's time limit, is one of the `failures` that it records; whether what `gather` prints is a table of `scenes`, of which those
+are recorded that have run.
 """
 
 MESHES = ["bunny.ply", "armadillo.ply"]
