@@ -10,6 +10,8 @@ namespace {
 /// Larger shifts are not tried [1/s²].
 constexpr double max_shift = 1e30;
 
+constexpr const char* units_remedy = "; check that the moduli, the density and the loads are in SI units";
+
 /// Names the first block with an entry that is not finite, as in "the block of vertices 3 and 7". Skips the
 /// rows and columns of fixed vertices. Empty if all other entries are finite.
 std::string first_not_finite(const BlockMatrix& matrix, const std::vector<char>& fixed) {
@@ -51,11 +53,12 @@ std::string HessianModification::factorise(const Assemble& assemble, const Facto
   }
   blend_ = blend_count - 1;
   if (const std::string where = first_not_finite(*matrix, fixed); !where.empty())
-    return "the Newton matrix holds entries that are not finite, first in " + where;
+    return "the Newton matrix holds entries that are not finite, first in " + where + units_remedy +
+           ", and an energy of your own by drape check-energy";
   // Without projection, or with a rigid mode in the static form: add mass until it factorises.
   for (double shift = first_shift_; shift < max_shift; shift *= 10)
     if (factorise(*matrix, shift)) return "";
-  return "the Newton matrix is not positive definite with any shift";
+  return std::string("the Newton matrix is not positive definite with any shift") + units_remedy;
 }
 
 }  // namespace drape

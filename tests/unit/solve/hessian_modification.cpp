@@ -81,7 +81,9 @@ TEST_CASE("Where no blend works, multiples of the masses are added") {
 TEST_CASE("A matrix that no modification helps is reported, and the first shift never vanishes") {
   HessianModification modification{NewtonParameters()};
   Recorder r{.least_blend = 2, .least_shift = 1e300};
-  CHECK(r.factorise(modification) == "the Newton matrix is not positive definite with any shift");
+  CHECK(r.factorise(modification) ==
+        "the Newton matrix is not positive definite with any shift; check that the moduli, the density and "
+        "the loads are in SI units");
   CHECK(r.shifts.size() > 25);
   CHECK(r.shifts.back() < 1e30);
   CHECK(first_mass_shift({.step_size = 0.1}) == Approx(0.1));

@@ -150,7 +150,8 @@ TEST_CASE("The step size stays the same within an implicit step, and altogether 
 
 TEST_CASE("A Newton matrix with NaN stalls the level, which names the vertex and a pin short of its target") {
   const std::string fault =
-      "the Newton matrix holds entries that are not finite, first in the block of vertex 5";
+      "the Newton matrix holds entries that are not finite, first in the block of vertex 5; check that the "
+      "moduli, the density and the loads are in SI units, and an energy of your own by drape check-energy";
   for (const NewtonForm form : forms)
     for (const PsdBlend blend : {PsdBlend::adaptive, PsdBlend::full})
       for (const double lift : {0.0, 0.1}) {  // of the pin's target: the predictor needs a factor too
