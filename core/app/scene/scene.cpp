@@ -117,15 +117,18 @@ void refuse_intersecting_start(const Experiment& e, const LevelModel& model, con
   const auto& pins = e.parameters.pins;
   const bool moved = std::ranges::any_of(pins, &PinParameters::has_transform);
   const std::string remark = moved ? " (pinned vertices begin at their targets)" : "";
+  const std::string remedy =  // repair_start moves no cloth with pins
+      pins.empty() ? "; change the start or the obstacle, or let --allow-start-repair move the start"
+                   : "; change the start, the pins or the obstacle";
   for (const auto& contact : model.contacts()) {
     const std::vector<Intersection> found = contact->intersections(start);
     for (std::size_t k = 0; k < std::min(found.size(), max_listed); ++k)
       errors.push_back({e.location_of("start"), "the start of level " + std::to_string(model.level().index) +
                                                     " touches" + remark + ": " + to_string(found[k])});
     if (found.size() > max_listed)
-      errors.push_back({e.location_of("start"), "… and " + std::to_string(found.size() - max_listed) +
-                                                    " more pairs; move the start and the obstacle apart, or "
-                                                    "let --allow-start-repair do it"});
+      errors.push_back(
+          {e.location_of("start"), "… and " + std::to_string(found.size() - max_listed) + " more pairs"});
+    if (!found.empty()) errors.back().message += remedy;
   }
 }
 
