@@ -30,7 +30,7 @@ class SolidTrajectory {
   double acceleration_bound_, displacement_bound_;  // of the solid's points: |p''|, |p(t) - p(0)| [m]
 };
 
-/// The trajectories of the solids that move. Throws std::runtime_error if number or kinds differ.
+/// The trajectories of those solids that move, of equally many. Throws std::runtime_error if a kind differs.
 std::vector<SolidTrajectory> moving_solids(const std::vector<Solid>& from, const std::vector<Solid>& to);
 
 /// The displacement [m] of a solid's point p as the solid moves rigidly from one placement to the other. A
