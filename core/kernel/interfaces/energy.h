@@ -21,8 +21,8 @@ struct Projection {
   Kind kind = clamp;
   double blend = 1;  ///< in [0, 1]; 0 leaves the Hessian unprojected
 
-  constexpr Projection(Kind kind_in, double blend_in = 1)  // NOLINT: implicit on purpose
-      : kind(kind_in), blend(blend_in) {}
+  /// Not explicit: a kind alone stands for its full projection.
+  constexpr Projection(Kind kind_in, double blend_in = 1) : kind(kind_in), blend(blend_in) {}
   /// Whether the Hessian stays unprojected.
   bool is_exact() const { return kind == none || blend == 0; }
   /// The projected eigenvalue. T is double or a Pack.
