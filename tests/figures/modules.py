@@ -2,6 +2,7 @@
 
 import re
 import sys
+from importlib.machinery import SourceFileLoader
 from pathlib import Path
 
 sys.dont_write_bytecode = True
@@ -12,6 +13,10 @@ import records  # noqa: E402
 
 def text_of(path):
     return (ROOT / path).read_text()
+
+
+def script(name):
+    return SourceFileLoader(name, str(ROOT / "benchmarks" / name)).load_module()
 
 
 def stamps_tell_other_work():
@@ -40,5 +45,12 @@ def twins_are_one_experiment():
         assert f"../{second}.yaml" not in scenes, second
 
 
+def the_version_leaves_the_same_aside():
+    """A change that makes no study old may not make a build dirty, which run_studies refuses."""
+    of_version = re.findall(r'"(:\(exclude\)[^"]+)"', text_of("core/write_version.cmake"))
+    assert sorted(of_version) == sorted(script("run_studies").ASIDE), of_version
+
+
 stamps_tell_other_work()
 twins_are_one_experiment()
+the_version_leaves_the_same_aside()
