@@ -95,8 +95,8 @@ data: configure
 # Runs what the pages state and fills their figures in: about three hours on two idle cores; resumes. STUDIES=sphere,scale chooses
 # some, STUDIES=scenes the one that runs only when it is named; LIMIT=no lifts the studies' own limits, which
 # `benchmarks/run_studies --help` lists. The records are stamped with the commit that ran, so nothing may differ from it
-# (benchmarks/run_studies). Without the scanned meshes, Blender or OpenBLAS, which are downloaded, only the studies that need them
-# are left out.
+# (benchmarks/run_studies). Studies that need what is not there are left out: scanned meshes and OpenBLAS, which are downloaded, or
+# another program, which counts as a failure only where its study is named.
 results: benchmarks
 	@$(MAKE) --no-print-directory python
 	@third_party/setup compare || true
