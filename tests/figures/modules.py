@@ -51,6 +51,14 @@ def the_version_leaves_the_same_aside():
     assert sorted(of_version) == sorted(script("run_studies").ASIDE), of_version
 
 
+def scenes_that_did_not_run_are_not_called_unfinished():
+    table1 = script("table1")
+    others = table1.left_out(["sphere"], [(None, {"experiment": "sphere"}), (None, {"experiment": "cube"})])
+    assert others == {"Not finished": ["cube"], "Not run": ["materials_6", "bunny", "armadillo", "sphere_fine"]}, others
+    assert "\n## Not finished\n\n- cube\n\n## Not run\n\n- materials_6\n" in table1.markdown({}, others)
+
+
 stamps_tell_other_work()
 twins_are_one_experiment()
 the_version_leaves_the_same_aside()
+scenes_that_did_not_run_are_not_called_unfinished()
