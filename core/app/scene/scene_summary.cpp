@@ -5,7 +5,6 @@
 
 #include "core/kernel/files/number_text.h"
 #include "core/kernel/interfaces/contact_model.h"
-#include "core/numerics/elements/orthotropic_stiffness.h"
 #include "core/numerics/model/required.h"
 
 namespace drape {
@@ -94,10 +93,11 @@ SceneSummary summary_of(const Scene& scene) {
   add_edges(scene.hierarchy.levels.back(), summary);
   const Eigen::VectorXd rest = edge_lengths(coarsest.level(), coarsest.level().rest.vertices);
   summary.start_stretch = median(edge_lengths(coarsest.level(), scene.placed[0]).cwiseQuotient(rest));
-  const bool bends = std::ranges::any_of(
-      scene.energies, [](const NamedEnergy& named) { return named.energy->role() == EnergyRole::bending; });
-  const double gravity = gravity_of(coarsest, scene.energies), stiffness = 2 * bending_stiffness(material);
-  if (bends && gravity > 0 && stiffness > 0)
+  double stiffness = 0;
+  for (const NamedEnergy& named : scene.energies)
+    if (named.energy->role() == EnergyRole::bending) stiffness += named.energy->plate_stiffness(material);
+  const double gravity = gravity_of(coarsest, scene.energies);
+  if (gravity > 0 && stiffness > 0)
     summary.bending_length = std::cbrt(stiffness / (material.area_density() * gravity));
   add_contacts(coarsest, scene.starts[0], summary);
   return summary;

@@ -21,8 +21,9 @@ struct SceneSummary {
   int parts = 0;         ///< number of connected parts
   int level = 0;         ///< the finest, whose edges at rest these are [m]:
   double shortest_edge = 0, median_edge = 0, longest_edge = 0;
-  double mass = 0;                       ///< [kg]
-  std::optional<double> bending_length;  ///< (D/(ρ d g))^⅓ [m]; none without bending or uniform gravity
+  double mass = 0;  ///< [kg]
+  /// (D/(ρ d g))^⅓ [m], D the sum of Energy::plate_stiffness; none without it or uniform gravity
+  std::optional<double> bending_length;
   double start_stretch = 1;  ///< median of start over rest length of the coarsest level's edges [1]
   double dhat = 0;           ///< the largest d̂ of the contact models [m]; 0 without one
   std::vector<ObstacleSummary> obstacles;

@@ -71,11 +71,23 @@ TEST_CASE("Numbers have significant digits, and no exponent up to thousands") {
 
 TEST_CASE("The summary has what a person would notice, and leaves out what a scene does not have") {
   CHECK(summary_text(scene_yaml("shape: square, side: 1, columns: 21, rows: 21", ball_below(0.3, 0.02))) ==
-        "1 × 1 m, 1 part, edges 50–71 mm, 0.15 kg, bending length 5.4 mm (0.11 edges), d̂ 1 mm (0.02 edges), "
+        "1 × 1 m, 1 part, edges 50–71 mm, 0.15 kg, bending length 7.7 mm (0.15 edges), d̂ 1 mm (0.02 edges), "
         "starts 20 mm above ball: sphere");
   CHECK(summary_text("name: bare\ncloth: {shape: rectangle, size: [0.3, 0.2], columns: 4, rows: 3}\nlevels: "
                      "2\nrefiner: midpoint\nenergies: [neo_hookean]\nmethods: {newton: {}}\n") ==
         "0.3 × 0.2 m, 1 part, edges 50–71 mm on level 1, 9 g");
+}
+
+TEST_CASE("The bending length is that of the scene's bending energies") {
+  const std::string scene = scene_yaml("shape: square, side: 1, columns: 21, rows: 21"),
+                    half_of_hinge = ", per: hinge, energy: \"1.5*k*length^2/area*bend^2\"}";
+  const std::pair<std::string, std::string> energies[] = {
+      {"midedge_bending", "5.4 mm (0.11 edges)"},
+      {"quadratic_bending", "7.7 mm (0.15 edges)"},
+      {"{type: formula, name: one" + half_of_hinge + ", {type: formula, name: other" + half_of_hinge,
+       "7.7 mm (0.15 edges)"}};
+  for (const auto& [bending, length] : energies)
+    CHECK_THAT(summary_text(replaced(scene, "hinge", bending)), Contains(", bending length " + length));
 }
 
 TEST_CASE("The summary names the nearest obstacle, of either contact model, and where the cloth is") {
@@ -146,7 +158,7 @@ TEST_CASE("What no fabric or scene has gets a warning that says what is usual, b
                                      "bending_modulus: 8e10")),
        "of level 0; 2 to 20 are usual"},
       {scene_yaml("shape: square, side: 30, vertices: 25"),
-       "2: the bending length of 5.4 mm is 0.00072 edges of level 0"},
+       "2: the bending length of 7.7 mm is 0.001 edges of level 0"},
       {edited_scene("[ipc, shapes]", "[{type: ipc, dhat: 0.1}]"),
        "contact distance dhat of 0.1 m is longer than most edges of level 0 (53 mm)"},
   });
