@@ -54,7 +54,7 @@ void add_edges(const Level& level, SceneSummary& summary) {
 void add_contacts(const LevelModel& model, const Positions& start, SceneSummary& summary) {
   const Positions points = start(model.level().topology.components(), Eigen::all);
   for (const auto& contact : model.contacts()) {
-    summary.dhat = std::max(summary.dhat, contact->smallest_gap(start).dhat);
+    summary.dhat = std::max(summary.dhat, contact->dhat());
     std::vector<ObstacleGap> gaps = contact->obstacle_gaps(start);
     if (gaps.empty()) continue;
     const std::vector<TriangleMesh> meshes = contact->obstacles();

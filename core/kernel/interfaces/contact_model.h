@@ -96,12 +96,10 @@ class CollisionCandidates {
   virtual std::unique_ptr<Collisions> build_collisions(const Positions& x) const = 0;
 };
 
-/// The smallest gap of a state and the parameters of the barrier that acts on it.
+/// The smallest gap of a state.
 struct SmallestGap {
   std::string between;  ///< "cloth triangle 12 and ball: sphere"; empty without a gap below d̂
   double gap = std::numeric_limits<double>::infinity();  ///< [m]
-  double dhat = 0;                                       ///< d̂, below which the barrier acts [m]
-  double stiffness = 0;                                  ///< κ of the barrier [Pa]
 };
 
 /// How far the cloth is from an obstacle.
@@ -123,6 +121,8 @@ class BoundContact {
   /// The obstacles as meshes, in the order of the model's parameters: for drawing, and for pins to follow.
   virtual std::vector<TriangleMesh> obstacles() const = 0;
 
+  /// d̂, below which the barrier acts [m]; 0 for a model without a barrier.
+  virtual double dhat() const { return 0; }
   /// The barrier stiffness κ [Pa]; 0 for a model without a barrier.
   virtual double stiffness() const { return 0; }
   /// This model with another κ [Pa]; null if its κ is a parameter of the experiment, or if it has none.
@@ -132,7 +132,7 @@ class BoundContact {
   /// One line on pairs of primitives that the barrier leaves out, for messages; empty if there are none.
   virtual std::string remark() const { return ""; }
 
-  /// The smallest gap at x, for a barrier with a d̂ and a stiffness.
+  /// The smallest gap at x, for a model with a barrier.
   virtual SmallestGap smallest_gap([[maybe_unused]] const Positions& x) const { return {}; }
   /// The gap of each obstacle at x (n×3), which must be free of intersections, however far it is, in the
   /// order of obstacles(). None by default.

@@ -99,13 +99,13 @@ std::string rounding_text(const LevelResult& so_far, const NewtonParameters& p, 
 std::string weak_barrier(const LevelModel& model, const Positions& x) {
   for (const auto& contact : model.contacts()) {
     const SmallestGap smallest = contact->smallest_gap(x);
-    if (!(smallest.gap < weak_gap_fraction * smallest.dhat)) continue;
+    if (!(smallest.gap < weak_gap_fraction * contact->dhat())) continue;
     const double pressure = model.load_pressure(x);
-    if (smallest.stiffness >= pressure) continue;
-    return "the barrier is too weak for the load: its stiffness is " + three_digits(smallest.stiffness) +
+    if (contact->stiffness() >= pressure) continue;
+    return "the barrier is too weak for the load: its stiffness is " + three_digits(contact->stiffness()) +
            " Pa but the load's pressure is " + three_digits(pressure) + " Pa, and the gap between " +
            smallest.between + " is " + three_digits(smallest.gap) + " m, " +
-           three_digits(smallest.gap / smallest.dhat) +
+           three_digits(smallest.gap / contact->dhat()) +
            " of the contact's dhat; set its stiffness to about " + three_digits(suitable_ratio * pressure) +
            " (null chooses it from the cloth's weight)";
   }

@@ -80,8 +80,6 @@ class BoundIpc::Candidates final : public CollisionCandidates {
   /// surface's barrier acts.
   SmallestGap smallest_gap() const {
     SmallestGap smallest;
-    smallest.dhat = contact_.barrier_.dhat;
-    smallest.stiffness = contact_.barrier_.stiffness;
     const ContactPair* nearest = nullptr;
     for (const std::vector<ContactPair>* pairs : {&barrier_, &rims_, &ccd_only_})
       for (const ContactPair& pair : *pairs) {

@@ -50,6 +50,7 @@ class BoundIpc final : public BoundContact {
                                                         const Positions& x1) const override;
   std::vector<Intersection> intersections(const Positions& x) const override;
   std::vector<TriangleMesh> obstacles() const override;
+  double dhat() const override { return barrier_.dhat; }
   double stiffness() const override { return barrier_.stiffness; }
   std::shared_ptr<const BoundContact> with_stiffness(double stiffness) const override;
   std::string remark() const override { return rest_->layers.remark(); }

@@ -111,6 +111,7 @@ class BoundShapes final : public BoundContact {
     return meshes;
   }
 
+  double dhat() const override { return scene_->barrier.dhat; }
   double stiffness() const override { return scene_->barrier.stiffness; }
   std::shared_ptr<const BoundContact> with_stiffness(double stiffness) const override {
     if (scene_->barrier.stiffness_is_fixed) return nullptr;
@@ -121,12 +122,10 @@ class BoundShapes final : public BoundContact {
 
   SmallestGap smallest_gap(const Positions& x) const override {
     SmallestGap smallest;
-    smallest.dhat = scene_->barrier.dhat;
-    smallest.stiffness = scene_->barrier.stiffness;
     for (const SolidPair& pair : find_triangles(*scene_, x, x)) {
       const Solid& solid = scene_->solids[pair.solid];
       const double gap = separate(solid, scene_->corners(pair.element, x)).separation;
-      if (gap >= std::min(smallest.gap, smallest.dhat)) continue;
+      if (gap >= std::min(smallest.gap, dhat())) continue;
       smallest.gap = gap;
       smallest.between = triangle_name(pair.element) + " and " + solid.name;
     }
