@@ -1,6 +1,8 @@
 #include "plugins/contact/ipc/rest_layers.h"
 
 #include <algorithm>
+#include <array>
+#include <functional>
 #include <limits>
 #include <span>
 #include <stdexcept>
@@ -48,8 +50,8 @@ class PathSearch {
         part_(0.5 * (high_ - low_).norm() <= radius ? parts_of(level) : std::vector<int>()),
         visited_by_(level.triangle_count(), -1) {}
 
-  /// Whether a path connects the pair's primitives within the radius of `centre`.
-  bool connects(const ContactPair& pair, const Eigen::Vector3d& centre) {
+  /// Whether a path connects the pair's primitives within the radius of `centre`; `goal` is in the second.
+  bool connects(const ContactPair& pair, const Eigen::Vector3d& centre, const Eigen::Vector3d& goal) {
     // Where the whole cloth is within the radius, every path is. A search would visit it all, for each pair.
     if ((centre - low_).cwiseAbs().cwiseMax((high_ - centre).cwiseAbs()).norm() <= radius_)
       return share_a_part(pair);
@@ -61,8 +63,11 @@ class PathSearch {
       const int t = open_.back();
       open_.pop_back();
       if (ends(pair, t)) return true;
-      for (int k = 0; k < 3; ++k) {
-        const int e = level_.topology.triangle_edges(t, k);
+      // The neighbour nearest to the goal is opened last and so visited first: nearly a straight walk.
+      const auto sides = level_.topology.triangle_edges.row(t);
+      std::array<int, 3> edges = {sides[0], sides[1], sides[2]};
+      std::ranges::sort(edges, std::ranges::greater(), [&](int e) { return distance(e, goal); });
+      for (const int e : edges) {
         if (distance(e, centre) > radius_) continue;
         for (const int neighbour : {0, 1})
           if (const int s = level_.topology.edge_triangles(e, neighbour); s >= 0) open(s);
@@ -129,8 +134,9 @@ RestLayers RestLayers::of(const Surface& cloth, const Level& level, double dhat)
     for (int i = begin; i < end; ++i) {
       const PairPositions at = positions_of(pairs[i], rest, {});
       const Closest nearest = closest(pairs[i].kind, at);
-      const Eigen::Vector3d centre = 0.5 * at * nearest.c.cwiseAbs();
-      if (!paths.connects(pairs[i], centre))
+      const Eigen::Vector3d centre = 0.5 * at * nearest.c.cwiseAbs(),
+                            goal = at.rightCols(4 - first_primitive_size(pairs[i].kind)).rowwise().mean();
+      if (!paths.connects(pairs[i], centre, goal))
         reach[i] = std::max(connection(at, nearest).norm(), smallest_reach * dhat);
     }
   });
