@@ -97,16 +97,20 @@ std::optional<Dimension> dimension_of(const std::string& unit) {
   const std::string text = lowered(unit);
   Dimension whole;
   double sign = 1;       // -1 behind "/"
-  bool expects = true;   // a unit, at the begin or behind an operator
+  bool expects = true;   // a unit, at the begin or behind "*", "/" or "("
   bool inside = false;   // parentheses
   bool divided = false;  // what "/" divides by has ended
   for (std::size_t at = 0; at < text.size();) {
     const char c = text[at];
-    if (c == '/' && (sign < 0 || at == 0)) return std::nullopt;  // a/b/c: ambiguous to readers
-    if (c == '(' || c == ')') inside = c == '(';
+    if (expects && std::string_view("*/)").find(c) != std::string_view::npos) return std::nullopt;
+    if (c == '/' && (sign < 0 || inside)) return std::nullopt;  // a/b/c, (a/b c): ambiguous to readers
+    if (c == '(' || c == ')') {
+      if (inside == (c == '(')) return std::nullopt;  // nested, or not opened
+      inside = !inside;
+    }
     if (c == ')') divided = sign < 0;
     if (c == '/') sign = -1;
-    if (c == '/' || c == '*') expects = true;
+    if (c == '/' || c == '*' || c == '(') expects = true;
     if (std::string_view(" */()").find(c) != std::string_view::npos) {
       ++at;
       continue;
@@ -128,7 +132,7 @@ std::optional<Dimension> dimension_of(const std::string& unit) {
     divided = sign < 0 && !inside;
     at = end;
   }
-  return expects ? std::nullopt : std::optional(whole);
+  return expects || inside ? std::nullopt : std::optional(whole);
 }
 
 std::string name_of(ElementKind kind) {
