@@ -112,6 +112,14 @@ def test_tables_have_the_names_and_numbers_of_the_files(experiment):
     assert {name for name in result.iterations if name not in ("method", "intersections")} <= set(dir(drape.Iteration))
 
 
+def test_names_of_methods_are_texts_in_tables(small):
+    del small["reference"]
+    small["methods"] = {name: {"type": "newton"} for name in ("nan", "inf")}
+    result = run(small, methods=["all"])
+    for table in (result.levels, result.iterations, result.errors):
+        assert set(table["method"]) == {"nan", "inf"}
+
+
 def test_files_are_the_same_in_every_locale(experiment, tmp_path, monkeypatch):
     """In a locale whose numbers have a decimal comma, made by the localedef of libc-bin."""
     if shutil.which("localedef") is None:

@@ -100,8 +100,9 @@ def _read_csv(file: pathlib.Path) -> pandas.DataFrame:
         return pandas.DataFrame()
     text = file.read_text(encoding="utf-8")
     whole = text[:text.rfind("\n") + 1]  # a killed run may leave a part of a line
-    return _tidy(pandas.read_csv(io.StringIO(whole), dtype={"method": str}, float_precision="round_trip",
-                                 keep_default_na=False, na_values=["", "nan"]))
+    # A converter, since na_values would count for a dtype's texts: a method may have the name nan.
+    return _tidy(pandas.read_csv(io.StringIO(whole), converters={"method": str}, float_precision="round_trip",
+                                 keep_default_na=False, na_values=["", "nan", "-nan"]))
 
 
 class Result:
