@@ -1,5 +1,6 @@
 #include "core/app/files/snapshot_file.h"
 
+#include <algorithm>
 #include <cstring>
 
 #include "core/kernel/files/file.h"
@@ -16,7 +17,9 @@ std::size_t size_of(Eigen::Index n) { return sizeof(float) * 3 * static_cast<std
 
 SnapshotFile::SnapshotFile(const std::filesystem::path& file, std::size_t count, Eigen::Index n,
                            std::optional<std::uint32_t> checksum)
-    : bytes_(read_file(file)), count_(count), n_(n) {
+    : bytes_(read_file(file, std::max<std::uintmax_t>(largest_file, count * size_of(n)))),
+      count_(count),
+      n_(n) {
   if (bytes_.size() != count * size_of(n))
     refuse_path(file, "holds " + std::to_string(bytes_.size()) + " bytes, not " + std::to_string(count) +
                           " snapshots of " + std::to_string(n) + " vertices");

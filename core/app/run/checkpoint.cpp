@@ -1,5 +1,6 @@
 #include "core/app/run/checkpoint.h"
 
+#include <limits>
 #include <utility>
 
 #include "core/app/files/archive.h"
@@ -102,7 +103,8 @@ Checkpoint load_checkpoint(const std::filesystem::path& folder, std::vector<std:
     const std::filesystem::path file = folder / name;
     if (!std::filesystem::exists(file) || (faults.empty() && name == upcoming)) continue;
     try {
-      Checkpoint checkpoint = decode(read_file(file));
+      // The cloth sets its size: a limit would lose the runs of large ones.
+      Checkpoint checkpoint = decode(read_file(file, std::numeric_limits<std::uintmax_t>::max()));
       if (!faults.empty()) warnings.push_back(faults + "; going on from " + file.string());
       return checkpoint;
     } catch (const std::exception& fault) {
