@@ -271,6 +271,8 @@ void Recorder::run_finished(bool complete) {
   results_["complete"] = complete;
   save();
   log("run_finished", {{"complete", complete}});
+  // The checkpoint, from which they could be written again, is removed next.
+  for (const char* name : {"results.json", "iterations.csv", "log.jsonl"}) sync_to_disk(folder_.file(name));
 }
 
 }  // namespace drape
