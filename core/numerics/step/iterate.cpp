@@ -80,7 +80,8 @@ StepLimit Iterate::max_step(const Positions& x1) const {
 }
 
 double Iterate::energy_noise(double inertia) const {
-  return relative_noise * (std::abs(energy_ + inertia) + s_.residual_scale * std::sqrt(free_count_));
+  const double work = s_.residual_scale * std::sqrt(free_count_) * rest_diagonal_;
+  return relative_noise * (std::abs(energy_ + inertia) + work);
 }
 
 }  // namespace drape

@@ -73,8 +73,9 @@ class Iterate {
     return s_.limited_by.empty() ? "" : "; the step is limited by " + s_.limited_by;
   }
 
-  /// Differences of energies below this are round-off, with `inertia` added to F(x) [J]. The scale includes
-  /// the load, because terms of the energy cancel while their round-off does not.
+  /// Differences of energies below this [J] are round-off, with `inertia` added to F(x) [J]. The scale
+  /// includes the load's work across the cloth, because terms of the energy cancel while their round-off does
+  /// not.
   double energy_noise(double inertia) const;
   /// F(x) without friction, whose potential is no function of the state alone [J].
   double energy_without_friction() const { return energy_ - f_.contacts().friction(result_.x); }

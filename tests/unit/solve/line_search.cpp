@@ -100,6 +100,23 @@ TEST_CASE("Where the energy changes by round-off only, the gradient's norm decid
   }
 }
 
+TEST_CASE("What counts as round-off of the energy grows with weight and length, as energies do") {
+  const auto noise = [](double side) {
+    const Level level = Level::of(0, grid({side, side}, 4, 4, Diagonals::one_way));
+    const std::vector<NamedEnergy> at_rest = {{"wells", energy_of(Wells(level.rest.vertices, 1, 0))}};
+    const LevelModel model(level, Material(), at_rest, {});
+    PlainObjective objective(model);
+    LevelResult result;
+    Iterate iterate(objective, result);
+    iterate.move_to(level.rest.vertices);
+    iterate.set_constraints(model.fixed(), nullptr);
+    iterate.evaluate();
+    iterate.update_residual();
+    return iterate.energy_noise(0);
+  };
+  CHECK(noise(10) == Approx(1000 * noise(1)));  // a hundred times the weight, ten times as far
+}
+
 TEST_CASE("The gradient of an implicit step is that of its energy, without fixed vertices") {
   const Positions rest = NewtonProblem::rest();
   NewtonProblem problem({energy_of(Wells(rest.array() + 0.3, 10, 0.1))}, {{0, rest.row(0), 0}});
