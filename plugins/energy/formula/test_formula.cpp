@@ -159,9 +159,10 @@ TEST_CASE("units are read and written") {
   CHECK(dimension_of("(kg*m)/(s^2 m)")->text() == "J/m²");
   CHECK(dimension_of("kg m^2/s^2")->text() == "J");
   CHECK(dimension_of("m^0.5 kg")->text() == "m^0.5 kg");
-  for (const std::string unit : {"", "kPa", "mm", "N/", "/m", "N/m/m", "m^", "m^x", "N m m^99", "?",
-                                 "m/s^2*kg", "m/s^2 kg", "N/m·s", "(N/m)*m", "(m", "m)", "N/(m", "((m))",
-                                 "m()", "*m", "m**s", "(m*)s", " /m", "(N/m s)"})
+  for (const std::string unit :
+       {"",         "kPa",   "mm",       "N/",       "/m",    "N/m/m",   "m^",  "m^x",
+        "N m m^99", "?",     "m/s^2*kg", "m/s^2 kg", "N/m·s", "(N/m)*m", "(m",  "m)",
+        "N/(m",     "((m))", "m()",      "*m",       "m**s",  "(m*)s",   " /m", "(N/m s)"})
     CHECK_FALSE(dimension_of(unit));
 }
 
