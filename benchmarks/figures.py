@@ -273,10 +273,9 @@ def codim_ipc():
             row += [ours] + [f"at most {text}" if bounded else text for text in (theirs, ratio)]
         rows.append(row + [with_range([r.get("rms_distance") for r in starts], two)])
         for key, what in (("drape_one_level", "alone"), ("drape_to_rest", "to rest")):
-            for r in starts:
-                if key in r:
-                    ours, theirs = (r[program]["seconds_per_iteration"] for program in (key, "codim_ipc"))
-                    rows.append([scene, f"{vertices}, {what}", two(ours), two(theirs), two(theirs / ours), *4 * ["–"]])
+            for r in (r for r in starts if key in r):
+                ours, theirs = (r[program]["seconds_per_iteration"] for program in (key, "codim_ipc"))
+                rows.append([scene, f"{vertices}, {what}", two(ours), two(theirs), two(theirs / ours), *4 * ["–"]])
     return table(["scene", "vertices", "iteration [s]: drape", "iteration [s]: Codim-IPC", "iteration: ratio", "to the same energy [s]: drape",
                   "to the same energy [s]: Codim-IPC", "to the same energy: ratio", "RMS distance of the final states [diagonals]"], rows, "lrrrrrrrr")
 

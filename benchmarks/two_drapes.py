@@ -27,7 +27,8 @@ BALL = {"name": "ball", "meshed_shape": "sphere", "radius": 0.3, "subdivisions":
 
 
 def experiment_of(name, side, seed, levels=1):
-    """A finest level of side × side vertices: it has the same mesh, start and energy whatever the number of levels."""
+    """Its finest level has side × side vertices: the same mesh and energy for every number of levels, but vertices are numbered, and
+    the start's noise drawn, in another order."""
     spec, coarsest = SCENES[name], (side - 1) // 2 ** (levels - 1) + 1
     return drape.Experiment({
         "name": name, "cloth": {"shape": "square", "side": 1, "triangulation": "one_way", "columns": coarsest, "rows": coarsest},
@@ -53,7 +54,7 @@ def solved(experiment, most=0):
     """CPU seconds and positions after each iteration of drape's Newton method on the finest level, at most so many if any, and the
     level at its end. The method solves each level from the scene's start."""
     solve, seconds, states = experiment.solver("newton"), [], []
-    finest = len(experiment.scene()) - 1
+    finest = len(solve.scene) - 1
     begin = time.process_time()
     for iteration in solve:
         if iteration.level < finest:
