@@ -97,7 +97,7 @@ std::optional<Dimension> dimension_of(const std::string& unit) {
   const std::string text = lowered(unit);
   Dimension whole;
   double sign = 1;       // -1 behind "/"
-  bool expects = true;   // a unit, at the begin or behind "*", "/" or "("
+  bool expects = true;   // a unit, at the beginning or behind "*", "/" or "("
   bool inside = false;   // parentheses
   bool divided = false;  // what "/" divides by has ended
   for (std::size_t at = 0; at < text.size();) {
