@@ -475,7 +475,8 @@ VALUES = {
     **{f"{method}'s preview of the sphere [s]": lambda method=method: seconds_text(
         [r["seconds_of_preview"] for r in runs("sphere", method)]) for method in METHODS},
     "flops of pcs on five scenes, four levels": flops_of_five_scenes,
-    **{f"{study}, more flops": lambda study=study: scenes_above(study, TFLOP) for study in ("previews", "four_levels")},
+    **{f"{study}, more {what}": lambda study=study, value=value: scenes_above(study, value)
+       for study in ("previews", "four_levels") for what, value in (("flops", TFLOP), ("time", itemgetter("seconds")))},
     **{f"{study}, level 1 farther": lambda study=study: scenes_above(study, lambda r: r["level_1"]["distance_rms"])
        for study in ("previews", "four_levels")},
     "iterations of the coarse matrix": lambda: lowest_to_highest([matrix / galerkin for matrix, galerkin in zip(
