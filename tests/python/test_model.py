@@ -151,5 +151,6 @@ def test_wrong_shapes_and_types(scene):
 
 def test_a_material_has_its_stiffness_by_direction(small):
     material = drape.Experiment({**small, "material": {"fabric": "gray-interlock"}}).scene()[0].material
-    assert (material.warp_bending, material.weft_bending, material.warp_stiffness) == (23.19e-6, 14.27e-6, None)
+    assert (material.warp_bending, material.weft_bending, material.bias_bending) == (23.19e-6, 14.27e-6, 24.75e-6)
+    assert (material.warp_stiffness, material.weft_stiffness, material.shear_stiffness) == (16.59, 34.48, 18.43)
     assert material.mean_bending_modulus * material.thickness**3 / 12 == pytest.approx((23.19e-6 * 14.27e-6) ** 0.5)

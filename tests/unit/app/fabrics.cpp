@@ -65,6 +65,34 @@ TEST_CASE("every fabric of the table is a material with a source") {
   }
 }
 
+TEST_CASE("the fabrics of Wang et al. have the tension of the published files") {
+  struct Published {
+    const char* name;
+    double c11, c12, c22, c33;  // the first row of "stretching" [N/m]
+  };
+  // ARCSim's materials/*.json, after the authors' page.
+  for (const auto& [name, c11, c12, c22, c33] : {
+           Published{"ivory-rib-knit", 42.871021, -0.234556, 65.166023, 83.175644},
+           {"pink-ribbon-brown", 151.503906, 106.028160, 244.830673, 30.250183},
+           {"white-dots-on-blk", 2002.08618, 0.345588, 2027.48559, 19.189022},
+           {"navy-sparkle-sweat", 12.486332, -19.875324, 3.272434, 17.616289},
+           {"camel-ponte-roma", 31.146198, -12.802702, 44.028667, 31.896357},
+           {"gray-interlock", 16.593832, -14.695990, 34.477123, 36.860302},
+           {"11oz-black-denim", 205.352005, 10.234077, 1013.88629, 53.387184},
+           {"white-swim-solid", 47.971176, 6.834521, 104.615456, 60.773663},
+           {"tango-red-jet-set", 43.067627, 54.373299, 171.424835, 14.314700},
+           {"royal-target", 2016.55456, 9.170511, 2034.97644, 104.759674},
+       }) {
+    INFO(name);
+    const Material m = material_of("fabric: " + std::string(name));
+    const double contraction = std::pow(std::max(c12, 0.0), 2);
+    REQUIRE((m.warp_stiffness && m.weft_stiffness && m.shear_stiffness));
+    CHECK(*m.warp_stiffness == Approx(c11 - contraction / c22).epsilon(5e-4));
+    CHECK(*m.weft_stiffness == Approx(c22 - contraction / c11).epsilon(5e-4));
+    CHECK(*m.shear_stiffness == Approx(c33 / 2).epsilon(5e-4));
+  }
+}
+
 TEST_CASE("what is written beside a fabric takes precedence, and the numbers are saved") {
   const Experiment e = experiment_from(with_material("fabric: gray-interlock, warp_bending: 3e-5"));
   const Material m = e.parameters.material;
@@ -233,11 +261,12 @@ TEST_CASE("drape fabric prints what a laboratory measures, and lists the table")
   CHECK_THAT(shown_by("fabric gray-interlock", folder.path),
              Contains("187 g/m²") && Contains("bending length c             23.3") &&
                  Contains("thickness             0.318 mm (default, not measured)\n") &&
-                 Contains("N/m (default, not measured)\n") && !Contains("as of an isotropic cloth"));
+                 Contains("tensile stiffness           16.59      34.48") && Contains("  N/m\n") &&
+                 !Contains("as of an isotropic cloth"));
   CHECK_THAT(shown_by("fabric cotton-broad", folder.path),
              Contains("hysteresis 2HB        1.216 mN, 0.12") &&
                  Contains("drape run configs/tests/cusick.yaml --set 'material.fabric=cotton-broad'") &&
-                 Contains("thickness             0.497 mm\n") &&
+                 Contains("thickness             0.497 mm\n") && Contains("N/m (default, not measured)\n") &&
                  Contains("weft and bias not measured: as of an isotropic cloth\n"));
   CHECK_THAT(shown_by("fabric wool-lycra", folder.path), Contains("N/m\n"));
   CHECK_THAT(refused_by("fabric denim", folder.path), Contains("unknown fabric \"denim\""));
