@@ -16,7 +16,8 @@ METHODS = ["pcs", "cascadic", "newton"]
 TOLERANCES_AND_STEPS = ["tolerance_1e-2", "tolerance_1e-4", "step_growth_1", "step_growth_3", "step_size_0.01_s", "step_size_1_s"]  # of ablations
 TWO_DRAPES = ["hanging", "draped"]  # the scenes of two_drapes.py
 MEASURED = ["cotton-broad", "wool-tropical", "polyester-tropical", "polyester-faille"]  # their drape coefficients
-FABRICS = [*MEASURED, *(f"{fabric} elastic" for fabric in MEASURED), "11oz-black-denim", "gray-interlock", "tango-red-jet-set", "cotton"]
+STRETCHED = ["11oz-black-denim", "tango-red-jet-set", "gray-interlock"]  # their tension
+FABRICS = [*MEASURED, *(f"{fabric} elastic" for fabric in MEASURED), *STRETCHED, *(f"{fabric} default tension" for fabric in STRETCHED), "cotton"]
 
 
 def table(head, rows, right):
