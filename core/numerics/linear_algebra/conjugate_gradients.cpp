@@ -9,12 +9,6 @@ namespace {
 
 constexpr int grain = 8192;  // vertices
 
-double dot(const Positions& a, const Positions& b) {
-  return parallel_sum(static_cast<int>(a.rows()), grain, [&](int begin, int end) {
-    return a.middleRows(begin, end - begin).cwiseProduct(b.middleRows(begin, end - begin)).sum();
-  });
-}
-
 /// Calls body(i) for each vertex.
 template <class Body>
 void for_each_vertex(const Positions& x, const Body& body) {
@@ -25,6 +19,12 @@ void for_each_vertex(const Positions& x, const Body& body) {
 
 }  // namespace
 
+double inner_product(const Positions& a, const Positions& b) {
+  return parallel_sum(static_cast<int>(a.rows()), grain, [&](int begin, int end) {
+    return a.middleRows(begin, end - begin).cwiseProduct(b.middleRows(begin, end - begin)).sum();
+  });
+}
+
 ConjugateGradients::End ConjugateGradients::solve(const BlockMatrix& matrix, const Eigen::VectorXd& shift,
                                                   const std::vector<char>& fixed, const Positions& b,
                                                   const Precondition& precondition, const Accuracy& accuracy,
@@ -34,7 +34,7 @@ ConjugateGradients::End ConjugateGradients::solve(const BlockMatrix& matrix, con
     if (fixed[i]) r_.row(i).setZero();
   });
   x.setZero(b.rows(), 3);
-  double norm = std::sqrt(dot(r_, r_)), rz = 0;
+  double norm = std::sqrt(inner_product(r_, r_)), rz = 0;
   const double whole = norm;
   for (int k = 0;; ++k) {
     if (!std::isfinite(norm)) return End::not_converged;
@@ -42,7 +42,7 @@ ConjugateGradients::End ConjugateGradients::solve(const BlockMatrix& matrix, con
     if (k == accuracy.max_iterations)
       return norm <= accuracy.sufficient * whole ? End::converged : End::not_converged;
     precondition(r_, z_);
-    const double next = dot(r_, z_);
+    const double next = inner_product(r_, z_);
     if (!(next > 0)) return std::isnan(next) ? End::not_converged : End::not_definite;
     if (k == 0)
       p_ = z_;
@@ -56,14 +56,14 @@ ConjugateGradients::End ConjugateGradients::solve(const BlockMatrix& matrix, con
       else
         ap_.row(i) += shift[i] * p_.row(i);
     });
-    const double curvature = dot(p_, ap_);
+    const double curvature = inner_product(p_, ap_);
     if (!(curvature > 0)) return std::isnan(curvature) ? End::not_converged : End::not_definite;
     const double alpha = rz / curvature;
     for_each_vertex(x, [&](int i) {
       x.row(i) += alpha * p_.row(i);
       r_.row(i) -= alpha * ap_.row(i);
     });
-    norm = std::sqrt(dot(r_, r_));
+    norm = std::sqrt(inner_product(r_, r_));
   }
 }
 

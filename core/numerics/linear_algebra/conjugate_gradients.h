@@ -9,6 +9,9 @@
 
 namespace drape {
 
+/// Σ a_i · b_i of n×3 a and b, with the same bits on any number of threads.
+double inner_product(const Positions& a, const Positions& b);
+
 /// Preconditioned conjugate gradients in double precision (Hestenes and Stiefel 1952). Keeps its work space
 /// between solves. Gives the same bits with any number of threads.
 class ConjugateGradients {

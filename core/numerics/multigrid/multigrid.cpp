@@ -67,22 +67,24 @@ void Multigrid::cycle(std::size_t mesh) {
   flops_ += 2 * f.matrix.flops_of_product();
 }
 
-ConjugateGradients::End Multigrid::solve(const Positions& right_hand_side, Positions& solution) {
+void Multigrid::precondition(const Positions& r, Positions& z) {
   MultigridMesh& f = meshes_.front();
+  // To numbers of the order of 1, so that none is lost in single precision.
+  const double scale = r.cwiseAbs().maxCoeff();
+  for (int i = 0; i < f.size(); ++i)
+    for (int c = 0; c < 3; ++c) f.b[i][c] = static_cast<float>(r(f.order[i], c) / scale);
+  cycle(0);
+  z.resize(r.rows(), 3);
+  for (int i = 0; i < f.size(); ++i)
+    for (int c = 0; c < 3; ++c) z(f.order[i], c) = scale * f.x[i][c];
+  flops_ += f.matrix.flops_of_product();  // of the product that follows
+}
+
+ConjugateGradients::End Multigrid::solve(const Positions& right_hand_side, Positions& solution) {
   return gradients_.solve(
       *matrix_, shift_, fixed_, right_hand_side,
-      [&](const Positions& r, Positions& z) {
-        // To numbers of the order of 1, so that none is lost in single precision.
-        const double scale = r.cwiseAbs().maxCoeff();
-        for (int i = 0; i < f.size(); ++i)
-          for (int c = 0; c < 3; ++c) f.b[i][c] = static_cast<float>(r(f.order[i], c) / scale);
-        cycle(0);
-        z.resize(r.rows(), 3);
-        for (int i = 0; i < f.size(); ++i)
-          for (int c = 0; c < 3; ++c) z(f.order[i], c) = scale * f.x[i][c];
-        flops_ += f.matrix.flops_of_product();  // of the product that follows
-      },
-      {tolerance, most_cycles(f.size()), sufficient}, solution);
+      [this](const Positions& r, Positions& z) { precondition(r, z); },
+      {tolerance, most_cycles(meshes_.front().size()), sufficient}, solution);
 }
 
 }  // namespace drape

@@ -37,6 +37,10 @@ class Multigrid {
   /// reached either. n×3 right-hand side and solution, whose fixed rows are zero.
   ConjugateGradients::End solve(const Positions& right_hand_side, Positions& solution);
 
+  /// z = one V-cycle of the last set matrix on r, n×3, whose fixed rows are zero: a positive definite
+  /// approximation of its inverse.
+  void precondition(const Positions& r, Positions& z);
+
   /// Floating-point operations since the last call.
   double take_flops() { return std::exchange(flops_, 0); }
 
