@@ -6,6 +6,7 @@ const titles = {
   iterations: 'Newton iterations', shortened_steps: 'shortened steps', seconds: 'time [s]', preview_seconds: 'preview after [s]', flops: 'flops',
   energy_released: 'energy released [J]', smallest_gap: 'smallest gap [m]', intersections: 'intersections', force_residual: 'force residual',
   decrement: 'decrement [m/s]', peak_memory_bytes: 'peak memory [B]', message: 'message', pass: 'passes',
+  stability: 'stability', lowest_eigenvalue: 'lowest eigenvalue of M⁻¹H [1/s²]', curvature_ratio: 'curvature ratio',
 };
 const lower = ['iterations', 'seconds', 'preview_seconds', 'flops'];
 export const costs = {seconds: 'time [s]', iterations: 'Newton iterations', flops: 'flops of factorisations'};

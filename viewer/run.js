@@ -14,11 +14,12 @@ function sentence(run, row) {
   const rest = !last ? null : !converged(status) ? `not at rest: ${statusText(status)}, force residual ${number(last.force_residual)}`
     : status !== 'converged' || !tolerance ? 'at rest to rounding'
     : tolerance < 1 ? `at rest to ${Number(tolerance.toPrecision(3))}` : `ended at force residual ${number(last.force_residual)}`;  // 1: no balance is asked for
+  const stability = last?.stability && converged(status) ? last.stability.verdict : null;
   const way = !last ? method.status || 'no level is complete' : finished || status === method.status ? null : method.status === 'running' ? 'still running' : `then ${method.status}`;
   const crossing = known(row.intersections) ? counted(row.intersections, 'intersection') : null;
   const preview = known(row.preview_seconds) ? h('span', {}, 'preview after ', h('b', {class: 'preview-time'}, seconds(row.preview_seconds))) : null;
   const end = last ? h('span', {}, finished ? 'end after ' : `level ${last.level} so far, after `, h('b', {}, seconds(row.seconds))) : null;
-  const parts = [preview, end, last ? `${count(last.vertices)} vertices` : null, crossing, rest, way].filter(part => part !== null);
+  const parts = [preview, end, last ? `${count(last.vertices)} vertices` : null, crossing, rest, stability, way].filter(part => part !== null);
   const good = converged(method.status || '') && !(row.intersections > 0);
   return h('li', {class: good ? 'good' : 'poor'}, h('b', {}, row.method), ': ', parts.flatMap((part, k) => k ? [', ', part] : [part]), '.');
 }

@@ -18,17 +18,19 @@ inline drape::Checkpoint full_checkpoint() {
   coarse.x = state(4), coarse.from_initial_state = true;
   coarse.seconds_by_phase = {{"solve", 0.5}, {"gradient", 0.25}};
   coarse.smallest_gap = 1e-4;
+  coarse.stability = {Stability::marginal, -3, -0.02, 0.01, false}, coarse.saddles_left = 2;
   c.state.finished = {coarse}, c.state.level = 1, c.state.seconds = 3;
   NewtonState& s = c.state.under_way.emplace();
   s.so_far.x = state(9), s.so_far.force_residual = std::nan("");
-  s.check = {{1, 2, 3}, {7, 8, 9}, {3, -0.5, 1e-6}, {6, {1, 2, 3, 4, 5}, {6, 7, 8, 9, 10}, {1, 0, 2}},
-             0.02,      4};
+  s.check = {{1, 2, 3}, {7, 8, 9}, {3, -0.5, 1e-6}, {6, {1, 2, 3, 4, 5}, {6, 7, 8, 9, 10}, {1, 0, 2}}, 0.02,
+             4,         1000};
   s.iterate = {2, "ball"};
   s.step.max_iterations = 30, s.step.step_length = 0.125;
   s.step.controller = {0.25, -4, 3e3, true, 0.5};
   s.switched_to_plain = true;
   s.dirichlet = {{3}, 1e4, 0.5, 2, false, true, "post"};
   s.load_stepper = {{4, 5}, {state(9), state(9), 0.5}, 2};
+  s.saddle_exit = {2, 40};
   s.so_far.load_stepping = {3, {0.5, 0.25}};
   s.contacts = {state(9),
                 {{{{1, 2, 3, 4, 0}, {1e-5, 0, 2e-5}}}, {}},

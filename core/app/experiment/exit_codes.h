@@ -1,5 +1,9 @@
 #pragma once
 
+#include <string_view>
+
+#include "core/kernel/interfaces/solver.h"
+
 namespace drape {
 
 // Exit codes of `drape`. `drape --help` prints the list below; docs/reference/exit-codes.md has details.
@@ -12,6 +16,11 @@ constexpr int exit_aborted = 3;
 constexpr int exit_too_slow = 124;
 /// Plus the signal's number, as in a shell.
 constexpr int exit_by_signal = 128;
+
+/// Whether the status of a level or of a method, by its name in results, counts as success.
+inline bool has_converged(std::string_view status) {
+  return status == to_string(Outcome::converged) || status == to_string(Outcome::converged_to_rounding);
+}
 
 struct ExitCode {
   int code;

@@ -63,9 +63,9 @@ constexpr bool has_members(std::index_sequence<places...>) {
 }
 
 /// The number of an aggregate's members.
-template <class T, std::size_t most = 17>
+template <class T, std::size_t most = 19>
 constexpr std::size_t member_count() {
-  static_assert(most > 0, "an aggregate of 1 to 17 members");
+  static_assert(most > 0, "an aggregate of 1 to 19 members");
   if constexpr (has_members<T>(std::make_index_sequence<most>()))
     return most;
   else
@@ -91,12 +91,12 @@ void with_members(T& value, const Body& body) {
     auto& [a, b, c, d, e, f, g, h, i, j, k, l, m] = value;
     body(a, b, c, d, e, f, g, h, i, j, k, l, m);
   }
-  if constexpr (n == 17) {
-    auto& [a, b, c, d, e, f, g, h, i, j, k, l, m, o, p, q, r] = value;
-    body(a, b, c, d, e, f, g, h, i, j, k, l, m, o, p, q, r);
+  if constexpr (n == 19) {
+    auto& [a, b, c, d, e, f, g, h, i, j, k, l, m, o, p, q, r, s, t] = value;
+    body(a, b, c, d, e, f, g, h, i, j, k, l, m, o, p, q, r, s, t);
   }
   // clang-format on
-  static_assert(n <= 10 || n == 13 || n == 17, "add a line for so many members");
+  static_assert(n <= 10 || n == 13 || n == 19, "add a line for so many members");
 }
 
 /// A number, an enumeration with an overload of `bool is_value(T)`, or a struct by its members.

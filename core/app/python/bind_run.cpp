@@ -14,6 +14,7 @@
 #include "core/app/view/page.h"
 #include "core/kernel/files/number_text.h"
 #include "core/numerics/mesh_files/io.h"
+#include "core/numerics/stability/stability_test.h"
 
 namespace drape::python {
 
@@ -216,6 +217,20 @@ void bind_run(py::module_& m) {
       .def_readonly("seconds", &MethodLevelResult::seconds)
       .def_readonly("seconds_by_phase", &MethodLevelResult::seconds_by_phase)
       .def_readonly("force_residual", &MethodLevelResult::force_residual, "Of the objective [1].")
+      .def_property_readonly(
+          "stability",
+          [](const MethodLevelResult& r) {
+            return r.stability ? std::optional(std::string(to_string(r.stability->verdict))) : std::nullopt;
+          },
+          "stable, marginal or unstable; None if the level did not end at an equilibrium that was tested.")
+      .def_property_readonly(
+          "lowest_eigenvalue",
+          [](const MethodLevelResult& r) {
+            return r.stability ? std::optional(r.stability->lowest_eigenvalue) : std::nullopt;
+          },
+          "Of M⁻¹H [1/s²].")
+      .def_readonly("saddles_left", &MethodLevelResult::saddles_left,
+                    "Unstable equilibria from which the level went on.")
       .def_readonly("smallest_gap", &MethodLevelResult::smallest_gap, "[m]; None without a contact model.")
       .def_readonly("contact_stiffness", &MethodLevelResult::contact_stiffness,
                     "Barrier stiffness of each contact model at the end [Pa].")

@@ -5,6 +5,7 @@
 #include <map>
 #include <stdexcept>
 
+#include "core/app/experiment/exit_codes.h"
 #include "core/app/report/run_table.h"
 #include "core/kernel/files/message_text.h"
 #include "core/kernel/files/string_utils.h"

@@ -142,6 +142,9 @@ TableRow row_of(const RunData& run, const MethodRecord& method) {
       (has_converged(level.status) ? remark : fault) +=
           (several ? "level " + std::to_string(level.level) + ": " : "") + level.message + "\n";
   Json row = {{"method", method.name}, {"pass", false}, {"status", statuses(method)}};
+  row["stability"] = member_of(member_of(last.json, "stability"), "verdict");
+  row["lowest_eigenvalue"] = json_of(last.of("stability.lowest_eigenvalue"));
+  row["curvature_ratio"] = json_of(last.of("stability.curvature_ratio"));
   row["vertices"] = count_of(last.of("vertices"));
   row["steps"] = count_of(method.cost("steps"));
   row["iterations"] = count_of(method.cost("iterations"));
@@ -183,8 +186,8 @@ RunTable table_of(const RunCollection& collection) {
   const std::vector<std::string> varied = varied_keys(collection);
   table.columns.insert(table.columns.end(), varied.begin(), varied.end());
   for (const char* column :
-       {"seed", "method", "pass", "status", "vertices", "steps", "iterations", "shortened_steps", "seconds",
-        "energy_released", "smallest_gap", "intersections"})
+       {"seed", "method", "pass", "status", "stability", "vertices", "steps", "iterations", "shortened_steps",
+        "seconds", "energy_released", "smallest_gap", "intersections"})
     table.columns.emplace_back(column);
   const std::vector<DeclaredMetric> metrics = collection.metrics();
   for (const MetricScope scope : {MetricScope::state, MetricScope::pair})
@@ -195,6 +198,7 @@ RunTable table_of(const RunCollection& collection) {
     table.columns.push_back(name);
     table.in_files.push_back(name);
   };
+  for (const char* name : {"lowest_eigenvalue", "curvature_ratio"}) add_to_files(name);
   for (const std::string& name : summary_quantities(collection.error_measures())) add_to_files(name);
   for (const MetricScope scope : {MetricScope::state, MetricScope::pair})
     for (const MetricColumn& column : columns_of(metrics, scope, Shown::stored)) add_to_files(column.name);

@@ -5,11 +5,14 @@
 
 #include "core/app/files/archive.h"
 #include "core/kernel/files/file.h"
+#include "core/numerics/stability/stability_test.h"
 
 namespace drape {
 
-/// An outcome is valid if it has a name.
+/// An outcome is valid if it has a name, and so is a verdict.
 bool is_value(Outcome outcome) { return *to_string(outcome) != '\0'; }
+
+bool is_value(Stability::Verdict verdict) { return *to_string(verdict) != '\0'; }
 
 bool is_value(LinearSolver solver) {
   return solver >= LinearSolver::automatic && solver <= LinearSolver::cholmod;
@@ -19,7 +22,7 @@ namespace {
 
 constexpr std::string_view magic = "drapestt";
 /// Raise it with the first change after a release to what a checkpoint holds.
-constexpr std::uint32_t format = 1;
+constexpr std::uint32_t format = 2;
 
 struct Header {
   std::uint32_t format = drape::format, checksum = 0;

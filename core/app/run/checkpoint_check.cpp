@@ -69,7 +69,9 @@ class Check {
 
   void result(const LevelResult& r) const {
     positions(r.x, r.level, "the state of level " + std::to_string(r.level));
-    require(r.steps >= 0 && r.iterations >= 0 && r.factorisations >= 0 && r.analyses >= 0, "negative counts");
+    require(
+        r.steps >= 0 && r.iterations >= 0 && r.factorisations >= 0 && r.analyses >= 0 && r.saddles_left >= 0,
+        "negative counts");
     stiffness(r.contact_stiffness, r.level);
     load_stepping(r.load_stepping);
   }
@@ -96,6 +98,7 @@ class Check {
     require(s.step.controller.step_size > 0 && s.step.max_iterations > 0 &&
                 s.step.factor.fallback_solves >= 0 && blend >= 0 && blend < HessianModification::blend_count,
             "the settings of the step");
+    require(s.check.strictness >= 1 && s.saddle_exit.exits >= 0, "the exit from a saddle");
     for (const Positions* x : {&s.load_stepper.response.from, &s.load_stepper.response.predicted})
       if (x->rows() > 0) positions(*x, level, "the response to an increment");
     contacts(s.contacts, level);

@@ -12,10 +12,22 @@
 #include "core/kernel/threads/parallel.h"
 #include "core/kernel/threads/stopwatch.h"
 #include "core/kernel/version.h"
+#include "core/numerics/stability/stability_test.h"
 
 namespace drape {
 
 namespace {
+
+/// Null for a level that did not end at an equilibrium that was tested.
+Json stability_entry(const LevelResult& r) {
+  if (!r.stability) return {};
+  return {{"verdict", to_string(r.stability->verdict)},
+          {"lowest_eigenvalue", r.stability->lowest_eigenvalue},
+          {"curvature_ratio", r.stability->curvature_ratio},
+          {"extent", r.stability->extent},
+          {"found_by", r.stability->by_factorisation ? "factorisation" : "multigrid"},
+          {"saddles_left", r.saddles_left}};
+}
 
 /// The cells of iterations.csv after `method`, each behind its column's name; `intersections` is the number
 /// of pairs, where every iteration is checked.
@@ -215,6 +227,7 @@ Json Recorder::state_entry(const LevelResult& r, const Cost& cost) {
           {"energy_parts_released", released_parts},
           {"decrement", r.decrement},
           {"force_residual", r.force_residual},
+          {"stability", stability_entry(r)},
           {"intersections", crossing ? Json(*crossing) : Json()},
           {"smallest_gap", r.smallest_gap ? Json(*r.smallest_gap) : Json()},
           {"contact_stiffness", r.contact_stiffness},

@@ -3,6 +3,7 @@
 #include <limits>
 
 #include "core/app/experiment/declared_metrics.h"
+#include "core/app/experiment/exit_codes.h"
 #include "core/app/files/json_file.h"
 #include "core/app/files/snapshot_file.h"
 #include "core/app/run/recorder.h"

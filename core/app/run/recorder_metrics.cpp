@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "core/app/experiment/exit_codes.h"
 #include "core/app/run/recorder.h"
 #include "core/app/run/recorder_files.h"
 #include "core/kernel/files/file.h"

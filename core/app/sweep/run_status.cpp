@@ -5,6 +5,7 @@
 #include <cstring>
 #include <iterator>
 
+#include "core/app/experiment/exit_codes.h"
 #include "core/app/experiment/experiment.h"
 #include "core/app/files/file_lock.h"
 #include "core/app/files/json_file.h"

@@ -7,8 +7,8 @@ namespace drape {
 void Expectation::declare(Declaration<Expectation>& d) {
   d.add("status", &Expectation::status,
         "expected status of every method's worst level; refused: before any computation")
-      .choices(
-          {"converged", "converged_to_rounding", "infeasible", "stalled", "max_steps_reached", "refused"});
+      .choices({"converged", "converged_to_rounding", "infeasible", "stalled", "saddle", "max_steps_reached",
+                "refused"});
   d.add("message", &Expectation::message,
         "expected part of the message; required unless the status is converged");
 }

@@ -8,6 +8,7 @@
 #include <map>
 #include <utility>
 
+#include "core/app/experiment/exit_codes.h"
 #include "core/app/files/json_file.h"
 #include "core/app/files/yaml_file.h"
 #include "core/kernel/interfaces/solver.h"

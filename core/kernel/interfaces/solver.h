@@ -34,6 +34,7 @@ enum class Outcome {
   converged,
   converged_to_rounding,     ///< as near to equilibrium as round-off allows, though above the tolerance
   refined_early_on_request,  ///< an observer asked for the next level
+  saddle,                    ///< forces vanish, but a motion lowers the energy (Stability)
   max_steps_reached,
   stalled,
   infeasible,
@@ -43,8 +44,6 @@ enum class Outcome {
 const char* to_string(Outcome outcome);
 /// Whether a level is at equilibrium.
 inline bool has_converged(Outcome outcome) { return outcome <= Outcome::converged_to_rounding; }
-/// The same for outcomes by name.
-bool has_converged(const std::string& outcome);
 
 /// One Newton iteration, for observers.
 struct IterationRow {
@@ -60,6 +59,16 @@ struct IterationRow {
   double step_size = 0;                ///< h [s]; +∞ for the static form
   std::optional<int> contacts;         ///< closer than d̂, if the level has a contact model
   std::optional<double> smallest_gap;  ///< of them [m]; +∞ without one
+};
+
+/// Whether an equilibrium is a minimum of the objective, by its unprojected Hessian H there on the free
+/// vertices (docs/theory/method.md, section 2).
+struct Stability {
+  enum Verdict { stable, marginal, unstable } verdict = stable;
+  double lowest_eigenvalue = 0;  ///< of M⁻¹H [1/s²]
+  double curvature_ratio = 0;    ///< the least vᵀHv / vᵀH⁺v, H⁺ the projected Hessian [1]
+  double extent = 0;             ///< share of the mass that this v moves (its participation ratio) [1]
+  bool by_factorisation = true;  ///< of H; else by iterations with multigrid
 };
 
 /// Result of one level.
@@ -80,6 +89,8 @@ struct LevelResult {
   std::optional<double> smallest_gap;  ///< where the level has a contact model [m]; +∞ without a contact
   ContactStiffness contact_stiffness;  ///< at the end, of each contact model [Pa]
   LoadSteppingState load_stepping;     ///< at the end
+  std::optional<Stability> stability;  ///< of the last equilibrium that was tested
+  int saddles_left = 0;                ///< unstable equilibria from which the level went on
 };
 
 struct NewtonState;

@@ -71,6 +71,8 @@ class Objective {
   }
   /// Whether the smooth part differs from the level's plain energy.
   virtual bool is_proxy() const { return false; }
+  /// Whether matrix() without projection is the Hessian of F.
+  virtual bool has_exact_hessian() const { return true; }
   /// Replaces a proxy's smooth part by the level's plain energy, once the proxy's minimum is reached. Returns
   /// false if nothing changes.
   virtual bool switch_to_plain() { return false; }

@@ -9,6 +9,7 @@
 #include "core/numerics/solve/newton_report.h"
 #include "core/numerics/solve/newton_state.h"
 #include "core/numerics/solve/start_fault.h"
+#include "core/numerics/stability/saddle_exit.h"
 
 namespace drape {
 namespace {
@@ -45,7 +46,8 @@ class Newton {
             iterate_, check_, parameters, [this](int k) { report(k); }, [this] { return is_to_end(); },
             run.hierarchy),
         dirichlet_(iterate_, step_, run.load_stepping != nullptr),
-        load_(run.load_stepping, iterate_, dirichlet_, run.observer) {
+        load_(run.load_stepping, iterate_, dirichlet_, run.observer),
+        saddle_exit_(iterate_, step_.factor(), check_, parameters, [this] { report(0); }) {
     result_.x = std::move(x);
     result_.level = f_.model().level().index;
   }
@@ -105,6 +107,7 @@ class Newton {
     s.load_stepper = load_.state();
     s.contacts = f_.contacts().memory();
     s.switched_to_plain = switched_to_plain_;
+    s.saddle_exit = saddle_exit_.state();
     return s;
   }
 
@@ -113,6 +116,7 @@ class Newton {
     iterate_.restore(s.iterate);
     check_.restore(s.check);
     load_.restore(s.load_stepper);
+    saddle_exit_.restore(s.saddle_exit);
     switched_to_plain_ = s.switched_to_plain;
     if (switched_to_plain_) f_.switch_to_plain();
     dirichlet_.restore(s.dirichlet);
@@ -135,12 +139,12 @@ class Newton {
       while (step_.factor().fault().empty() && dirichlet_.has_penalty() && check_.is_within(near_equilibrium))
         increase_penalty();
       if (!step_.factor().fault().empty()) return End{Outcome::stalled, step_.factor().fault()};
+      saddle_exit_.limit_steps();
       const bool in_tolerance = !dirichlet_.active() && check_.in_tolerance();
       const bool at_equilibrium = in_tolerance || at_floor;
-      if (at_equilibrium && !load_.loading()) {
-        if (switch_to_plain()) continue;
-        return end_at_equilibrium(in_tolerance);
-      }
+      if (at_equilibrium && !load_.loading() && switch_to_plain()) continue;
+      if (at_equilibrium && (!load_.loading() || load_.equilibrates()) && leave_saddle()) continue;
+      if (at_equilibrium && !load_.loading()) return end_at_equilibrium(in_tolerance);
       if (load_.loading() && !dirichlet_.active() && (at_equilibrium || load_.advances_at_once())) {
         advance_increment(at_equilibrium);
         if (load_.blocked()) return End{Outcome::infeasible, load_.blocked_text()};
@@ -192,12 +196,21 @@ class Newton {
     return true;
   }
 
+  /// At an equilibrium: if it is a saddle, goes on from a state of lower energy.
+  bool leave_saddle() {
+    if (dirichlet_.infeasible() || !saddle_exit_.leave(!load_.loading())) return false;
+    start_over();
+    saddle_exit_.tighten();
+    return true;
+  }
+
   End end_at_equilibrium(bool in_tolerance) {
     load_.report_increment();
     const bool is_balanced = in_tolerance || iterate_.force_residual() < balanced;
     const std::string rounding = in_tolerance ? "" : rounding_text(result_, p_, check_.rounding_residual());
     if (dirichlet_.infeasible())
       return {Outcome::infeasible, "", is_balanced ? "the rest of the cloth is at equilibrium" : rounding};
+    if (is_balanced && saddle_exit_.at_saddle()) return {Outcome::saddle, saddle_exit_.text()};
     if (in_tolerance) return {Outcome::converged};
     return {is_balanced ? Outcome::converged_to_rounding : Outcome::stalled, rounding};
   }
@@ -212,6 +225,7 @@ class Newton {
     note_unreached_targets();
     f_.contacts().end_lag_damping();
     step_.controller().end_limit();
+    saddle_exit_.restart();
     load_.advance(at_equilibrium);
     check_.restart();
     dirichlet_.enforce();
@@ -277,6 +291,7 @@ class Newton {
   NewtonStep step_;
   DirichletEnforcer dirichlet_;
   LoadStepper load_;
+  SaddleExit saddle_exit_;
   bool switched_to_plain_ = false;  // the proxy was replaced by the plain energy
   bool stuck_ = false;  // the last step found no descent, at the rounding floor or with pins under way
 };

@@ -7,6 +7,7 @@
 #include "core/numerics/model/active_contacts.h"
 #include "core/numerics/solve/dirichlet_enforcer.h"
 #include "core/numerics/solve/load_stepper.h"
+#include "core/numerics/stability/saddle_exit.h"
 #include "core/numerics/step/newton_step.h"
 
 namespace drape {
@@ -22,6 +23,7 @@ struct NewtonState {
   EquilibriumCheck::State check;
   DirichletEnforcer::State dirichlet;
   LoadStepper::State load_stepper;
+  SaddleExit::State saddle_exit;
   ContactMemory contacts;
   bool switched_to_plain = false;  ///< the objective was a proxy and is now the plain energy
 };

@@ -184,7 +184,8 @@ LevelResult refine_safely(const Problem& problem, int level, const Positions& x,
     newton.psd_blend = PsdBlend::full;
     newton.force_tolerance = tolerance;
     newton.max_steps = max_steps;
-    newton.step_size = target_step_size;  // scales the mass that damps a step without descent
+    newton.stability = StabilityMode::off;  // the target term is no energy of the cloth
+    newton.step_size = target_step_size;    // scales the mass that damps a step without descent
     int fewest = model.level().triangle_count() + 1, idle = 0;
     for (int round = 0; round < max_rounds; ++round) {
       Round descent(observer);

@@ -5,21 +5,21 @@
 namespace drape {
 
 bool EquilibriumCheck::is_within(double times) const {
-  if (!(iterate_.force_residual() <= times * p_.force_tolerance)) return false;  // also false for NaN
+  if (!(iterate_.force_residual() <= times * force_tolerance())) return false;  // also false for NaN
   return p_.decrement_tolerance == 0 || *std::ranges::max_element(s_.decrements) <= p_.decrement_tolerance;
 }
 
 bool EquilibriumCheck::in_tolerance() {
   if (!is_within(1)) return false;
   iterate_.update_friction();
-  return iterate_.force_residual() <= p_.force_tolerance;
+  return iterate_.force_residual() <= force_tolerance();
 }
 
 bool EquilibriumCheck::is_at_rounding_floor(FactorCache& factor) {
   s_.idle = {};
   iterate_.update_friction();
   const RoundingFloor floor =
-      rounding_floor(factor.plain_hessian(), iterate_.x(), iterate_.gradient(), iterate_.fixed());
+      rounding_floor(factor.hessian(Projection::none), iterate_.x(), iterate_.gradient(), iterate_.fixed());
   rounding_residual_ = floor.norm / iterate_.residual_scale();
   return floor.reached;
 }

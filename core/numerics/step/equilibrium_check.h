@@ -25,6 +25,7 @@ class EquilibriumCheck {
     CycleDetector cycle = {};
     double lowest_residual = unknown;  ///< the lowest force residual at the end of a step [1]
     int steps_since_lowest = 0;        ///< how many steps ago that was
+    double strictness = 1;             ///< what the force tolerance is divided by
   };
   const State& state() const { return s_; }
   void restore(const State& state) { s_ = state; }
@@ -52,6 +53,11 @@ class EquilibriumCheck {
   double drift() const {
     return (iterate_.free_centroid() - s_.initial_centroid).norm() / iterate_.rest_diagonal();
   }
+
+  /// The force tolerance [1].
+  double force_tolerance() const { return p_.force_tolerance / s_.strictness; }
+  /// Divides the force tolerance, until restart().
+  void tighten(double strictness) { s_.strictness = strictness; }
 
   /// Notes the decrement of an iteration, before the iteration is counted.
   void note_decrement(double decrement) { s_.decrements[iterate_.result().iterations % 3] = decrement; }

@@ -55,7 +55,8 @@ bool FactorCache::solve(double mass_shift, double step_length, const Positions& 
   use(fallback_solves_ > 0 ? fallback_ : preferred_);
   if (fallback_solves_ > 0) --fallback_solves_;
   return modify(fixed, step_length, [&](const BlockMatrix& matrix, double shift) {
-    while (!factorise(matrix, fixed, mass_shift + shift) || !solve_with_factor(right_hand_side, solution)) {
+    while (!factorise(matrix, fixed, (mass_shift + shift) * iterate_.model().masses()) ||
+           !solve_with_factor(right_hand_side, solution)) {
       const bool has_whole_projection = modification_.blend() == HessianModification::blend_count - 1;
       const bool may_be_definite = has_whole_projection || too_slow_;
       if (solver_ == direct_ || !may_be_definite) return false;
@@ -81,7 +82,7 @@ bool FactorCache::update(double mass_shift, double step_length) {
   const std::vector<char>& fixed = iterate_.model().fixed();
   use(direct_);
   return modify(fixed, step_length, [&](const BlockMatrix& matrix, double shift) {
-    return factorise(matrix, fixed, mass_shift + shift);
+    return factorise(matrix, fixed, (mass_shift + shift) * iterate_.model().masses());
   });
 }
 
@@ -93,7 +94,8 @@ bool FactorCache::modify(const std::vector<char>& fixed, double step_length,
   return fault_.empty();
 }
 
-bool FactorCache::factorise(const BlockMatrix& matrix, const std::vector<char>& fixed, double shift) {
+bool FactorCache::factorise(const BlockMatrix& matrix, const std::vector<char>& fixed,
+                            const Eigen::VectorXd& shift) {
   LevelResult& result = iterate_.result();
   const bool by_multigrid = solver_ == LinearSolver::multigrid;
   too_slow_ = false;
@@ -101,9 +103,8 @@ bool FactorCache::factorise(const BlockMatrix& matrix, const std::vector<char>& 
   if (!by_multigrid) analyse(matrix, fixed);
   PhaseTimer t(result.seconds_by_phase, "factorise");
   factored_ = &matrix;
-  const Eigen::VectorXd shifts = shift * iterate_.model().masses();
   const bool is_definite =
-      by_multigrid ? multigrid_->set(matrix, shifts, fixed) : cholesky_.factorise(matrix, shifts);
+      by_multigrid ? multigrid_->set(matrix, shift, fixed) : cholesky_.factorise(matrix, shift);
   result.flops += by_multigrid ? multigrid_->take_flops() : cholesky_.flops();
   return is_definite;
 }
@@ -113,13 +114,33 @@ void FactorCache::analyse(const BlockMatrix& matrix, const std::vector<char>& fi
   cholesky_.analyse(matrix.pattern, fixed);
 }
 
-const BlockMatrix& FactorCache::plain_hessian() {
-  const BlockMatrix& matrix = iterate_.hessian(Projection::none);
+const BlockMatrix& FactorCache::hessian(Projection projection) {
+  const BlockMatrix& matrix = iterate_.hessian(projection);
   // New contacts may have added blocks. They are analysed now and not with the next factorisation: a
   // checkpoint stores the pattern of the last matrix, and a resumed run takes that for the one that was
   // analysed.
   if (cholesky_.is_analysed()) analyse(matrix, iterate_.fixed());
   return matrix;
+}
+
+bool FactorCache::prepare(const BlockMatrix& matrix, const Eigen::VectorXd& shift) {
+  const std::vector<char>& fixed = iterate_.fixed();
+  if (multigrid_) {
+    use(LinearSolver::multigrid);
+    if (factorise(matrix, fixed, shift)) return true;
+  }
+  use(direct_);
+  return factorise(matrix, fixed, shift);
+}
+
+void FactorCache::precondition(const Positions& right_hand_side, Positions& solution) {
+  PhaseTimer t(iterate_.result().seconds_by_phase, "solve");
+  if (solver_ != LinearSolver::multigrid) {
+    cholesky_.solve(right_hand_side, solution);
+    return;
+  }
+  multigrid_->precondition(right_hand_side, solution);
+  iterate_.result().flops += multigrid_->take_flops();
 }
 
 FactorCache::State FactorCache::state() const {

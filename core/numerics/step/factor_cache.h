@@ -52,9 +52,19 @@ class FactorCache {
   /// The factorised matrix without the shift.
   const BlockMatrix& matrix() const { return *factored_; }
 
-  /// The Hessian at the iterate without projection [N/m], valid until the next factorisation. It takes the
-  /// place of the factorised matrix.
-  const BlockMatrix& plain_hessian();
+  /// The Hessian at the iterate with this projection [N/m], valid until the next one. It takes the place of
+  /// the factorised matrix.
+  const BlockMatrix& hessian(Projection projection);
+
+  /// Makes precondition() an approximation of the inverse of a matrix of hessian()'s pattern plus
+  /// diag(shift_i I₃), shift by vertex [N/m]: a V-cycle where multigrid is preferred and serves, else a
+  /// factor in double precision. Returns false if that finds the sum not to be positive definite. Refers to
+  /// the matrix until the next call.
+  bool prepare(const BlockMatrix& matrix, const Eigen::VectorXd& shift);
+  /// n×3 right-hand side [N] and solution [m], whose fixed rows are zero.
+  void precondition(const Positions& right_hand_side, Positions& solution);
+  /// Whether it is to be a V-cycle.
+  bool prefers_cycle() const { return multigrid_ != nullptr; }
 
   /// The solver of the last factorisation.
   LinearSolver solver() const { return solver_; }
@@ -67,7 +77,7 @@ class FactorCache {
   bool modify(const std::vector<char>& fixed, double step_length,
               const HessianModification::Factorise& factorise);
   void analyse(const BlockMatrix& matrix, const std::vector<char>& fixed);
-  bool factorise(const BlockMatrix& matrix, const std::vector<char>& fixed, double shift);
+  bool factorise(const BlockMatrix& matrix, const std::vector<char>& fixed, const Eigen::VectorXd& shift);
   bool solve_with_factor(const Positions& right_hand_side, Positions& solution);
 
   Iterate& iterate_;

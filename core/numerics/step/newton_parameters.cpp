@@ -68,6 +68,14 @@ void NewtonParameters::declare(Declaration<NewtonParameters>& d) {
        "the same bits with any number of threads. cholmod: CHOLMOD's, whose speed, threads and bits "
        "depend on the installed BLAS")
       .source("docs/results/speed.md; Chen et al. 2008 for cholmod");
+  d.add_choice(
+       "stability", &NewtonParameters::stability,
+       {{"leave", StabilityMode::leave}, {"report", StabilityMode::report}, {"off", StabilityMode::off}},
+       "what becomes of an equilibrium, of a level or of an increment with `equilibrate`, that is a "
+       "saddle. leave: the cloth moves along its least stable motion while the energy falls, and is "
+       "solved again. report: the level ends as `saddle`, as it does if ten exits do not suffice. off: "
+       "no equilibrium is tested")
+      .source("docs/theory/method.md section 2");
 }
 
 }  // namespace drape

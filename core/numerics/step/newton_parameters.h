@@ -15,6 +15,9 @@ enum class PsdBlend {
   adaptive  ///< as little as keeps the matrix positive definite (HessianModification)
 };
 
+/// What becomes of an equilibrium that is no minimum.
+enum class StabilityMode { leave, report, off };
+
 /// Settings of the Newton solver. All methods share one implementation, so their comparison compares methods.
 struct NewtonParameters {
   NewtonForm form = NewtonForm::quasistatic;
@@ -27,6 +30,7 @@ struct NewtonParameters {
   Projection::Kind projection = Projection::clamp;
   PsdBlend psd_blend = PsdBlend::adaptive;
   LinearSolver linear_solver = LinearSolver::automatic;
+  StabilityMode stability = StabilityMode::leave;
 
   static void declare(Declaration<NewtonParameters>& d);
 };

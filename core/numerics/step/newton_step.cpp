@@ -83,7 +83,7 @@ std::string NewtonStep::solve() {
 /// itself leaves convergence to the decrement, and says nothing of a step.
 bool NewtonStep::is_solved_to(double fraction) const {
   return free_norm(step_.gradient(), iterate_.fixed()) <=
-         fraction * std::min(p_.force_tolerance, 1.0) * iterate_.residual_scale();
+         fraction * std::min(check_.force_tolerance(), 1.0) * iterate_.residual_scale();
 }
 
 std::string NewtonStep::iterate() {

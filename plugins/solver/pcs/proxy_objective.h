@@ -63,6 +63,10 @@ class ProxyObjective : public Objective {
   /// factor.
   ProxyObjective(const Problem& problem, int level, const ProxyOptions& options);
   bool is_proxy() const override { return !is_plain_ || effective_; }
+  /// Parts of finer levels have matrices from below the finest level, or none.
+  bool has_exact_hessian() const override {
+    return is_plain_ || (finer_.empty() && options_.hessian == ProxyMatrix::galerkin);
+  }
   bool switch_to_plain() override;
 
  protected:

@@ -1,0 +1,171 @@
+#include "core/numerics/stability/saddle_exit.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "core/kernel/files/message_text.h"
+#include "core/kernel/threads/stopwatch.h"
+#include "core/numerics/linear_algebra/conjugate_gradients.h"
+
+namespace drape {
+namespace {
+
+/// Exits of one increment, or of a level without a schedule. Each lowers the energy.
+constexpr int most_exits = 10;
+/// The force tolerance after an exit, by how much it is below the level's own at most, and for how many
+/// steps.
+constexpr double tight_tolerance = 1e-6, most_strictness = 1000;
+constexpr int most_tight_steps = 100;
+/// Amplitudes of a walk along a mode, in diagonals of the rest shape: the first one, up to which one
+/// round-off may hide the fall of the energy, and the last one; and the factor from one to the next.
+constexpr double first_amplitude = 1e-6, hidden_amplitude = 1e-3, last_amplitude = 1, stride_growth = 2;
+/// Newton steps across the mode after a stride, with the matrix of the first.
+constexpr int relaxations = 4;
+/// Forces along a mode below this fraction of all forces do not choose its sign.
+constexpr double clear_slope = 1e-3;
+
+/// Counts all the time of its life as the phase `stability`, but for the building of collisions, which is a
+/// phase of its own and subtracted from the gradient's.
+class OwnPhase {
+ public:
+  explicit OwnPhase(const Iterate& iterate)
+      : iterate_(iterate), before_(iterate.result().seconds_by_phase), built_before_(built()) {}
+  ~OwnPhase() {
+    const double building = built() - built_before_;
+    before_["gradient"] += building;
+    before_["stability"] += watch_.seconds() - building;
+    iterate_.result().seconds_by_phase = std::move(before_);
+  }
+  OwnPhase(const OwnPhase&) = delete;
+  OwnPhase& operator=(const OwnPhase&) = delete;
+
+ private:
+  double built() const { return iterate_.objective().contacts().seconds_building(); }
+
+  const Iterate& iterate_;
+  std::map<std::string, double> before_;
+  const double built_before_;
+  const Stopwatch watch_;
+};
+
+}  // namespace
+
+bool SaddleExit::at_saddle() const {
+  const std::optional<Stability>& tested = iterate_.result().stability;
+  return tested && tested->verdict == Stability::unstable;
+}
+
+std::string SaddleExit::text() const {
+  const Stability& s = *iterate_.result().stability;
+  return "forces balance at a saddle, not at a minimum: the lowest eigenvalue of the Hessian over the masses "
+         "is " +
+         three_digits(s.lowest_eigenvalue) + " 1/s², the curvature ratio " + three_digits(s.curvature_ratio) +
+         (p_.stability == StabilityMode::report
+              ? "; newton.stability: leave leaves it"
+              : "; it could not be left in " + std::to_string(s_.exits) +
+                    " exits: start with a larger perturbation, or apply the load in smaller increments");
+}
+
+bool SaddleExit::leave(bool at_end) {
+  LevelResult& result = iterate_.result();
+  if (p_.stability == StabilityMode::off || !iterate_.objective().has_exact_hessian()) return false;
+  const OwnPhase phase(iterate_);
+  const std::optional<StabilityTest> test = test_stability(iterate_, factor_, !at_end);
+  result.stability = test ? std::optional(test->stability) : std::nullopt;
+  if (!at_saddle() || s_.exits == most_exits) return false;
+  // Both ways are equally good for a symmetric saddle. Forces decide if they are clear, else the largest
+  // entry.
+  Eigen::Index row = 0, column = 0;
+  test->mode.cwiseAbs().maxCoeff(&row, &column);
+  double sign = test->mode(row, column) < 0 ? -1 : 1;
+  const double slope = iterate_.gradient().cwiseProduct(test->mode).sum();
+  if (std::abs(slope) > clear_slope * free_norm(iterate_.gradient(), iterate_.fixed()) * test->mode.norm())
+    sign = slope > 0 ? -1 : 1;
+  const Positions origin = iterate_.x();
+  const bool falls = walk(test->mode, sign) || walk(test->mode, -sign);
+  if (!falls) result.stability->verdict = Stability::marginal;
+  if (!falls || p_.stability == StabilityMode::report) {
+    return_to(origin);
+    return false;
+  }
+  ++s_.exits;
+  ++result.saddles_left;
+  s_.steps = result.steps;
+  return true;
+}
+
+bool SaddleExit::walk(const Positions& mode, double sign) {
+  const Positions origin = iterate_.x();
+  const double begun_at = iterate_.energy(), noise = iterate_.energy_noise(0);
+  Positions lowest = origin;
+  double lowest_energy = begun_at, amplitude = 0;
+  for (double a = first_amplitude; a <= last_amplitude; a *= stride_growth) {
+    const Positions stride = lowest + sign * (a - amplitude) * iterate_.rest_diagonal() * mode;
+    const double feasible = iterate_.max_step(stride).fraction;
+    iterate_.move_to(lowest + feasible * (stride - lowest));
+    iterate_.evaluate();
+    if (std::isfinite(iterate_.energy())) relax_across(mode);
+    const double energy = iterate_.energy();
+    const bool is_hidden = a < hidden_amplitude && std::abs(energy - begun_at) <= noise;
+    const bool falls = energy < lowest_energy && !is_hidden;
+    if (falls) {
+      lowest = iterate_.x();
+      lowest_energy = energy;
+      amplitude = a;
+      if (p_.stability == StabilityMode::leave) note_stride();
+    } else {
+      iterate_.move_to(lowest);
+    }
+    if (feasible < 1 || !(falls || is_hidden)) break;
+  }
+  const bool has_fallen = begun_at - lowest_energy > noise;
+  return_to(has_fallen ? lowest : origin);
+  return has_fallen;
+}
+
+void SaddleExit::return_to(const Positions& x) {
+  iterate_.move_to(x);
+  iterate_.max_step(x);  // finds the contacts there again
+  iterate_.evaluate();
+  iterate_.update_residual();
+}
+
+void SaddleExit::note_stride() {
+  ++iterate_.result().iterations;
+  iterate_.update_residual();
+  report_();
+}
+
+/// Lowers the energy across the mode, by Newton steps of the projected Hessian that leave its amplitude.
+/// Motions slower than the saddle's own are left to the solver.
+void SaddleExit::relax_across(const Positions& mode) {
+  const double rate = std::abs(iterate_.result().stability->lowest_eigenvalue);
+  ImplicitStep step;
+  Positions along, direction;
+  for (int k = 0; k < relaxations; ++k) {
+    const double before = iterate_.energy();
+    if (k == 0 && !factor_.prepare(factor_.hessian(Projection::clamp), rate * iterate_.model().masses()))
+      return;
+    step.begin(iterate_.x(), 1);
+    step.evaluate(iterate_, 0);
+    factor_.precondition(mode, along);
+    factor_.precondition(step.gradient(), direction);
+    direction -= inner_product(mode, direction) / inner_product(mode, along) * along;
+    direction *= -1;
+    if (!line_search_.search(iterate_, step, direction)) return;
+    if (before - iterate_.energy() <= iterate_.energy_noise(0)) return;
+  }
+}
+
+void SaddleExit::tighten() {
+  check_.tighten(std::clamp(p_.force_tolerance / tight_tolerance, 1.0, most_strictness));
+}
+
+void SaddleExit::limit_steps() {
+  if (s_.steps < 0 || iterate_.result().steps - s_.steps < most_tight_steps) return;
+  s_.steps = -1;
+  check_.tighten(1);
+}
+
+}  // namespace drape

@@ -1,0 +1,162 @@
+#include "core/numerics/stability/stability_test.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+
+#include "core/kernel/threads/parallel.h"
+#include "core/numerics/stability/lowest_mode.h"
+#include "core/numerics/step/rounding_floor.h"
+
+namespace drape {
+namespace {
+
+/// Round-off of a factorisation, relative to the blocks of its vertices.
+constexpr double relative_round_off = 4e-15;
+/// Saddles are left below the first ratio; below the second one if at least this share of the cloth moves.
+/// Others change nothing that can be seen: kinks of some fifty vertices (docs/results/stability.md).
+constexpr double visible_ratio = -0.07, visible_ratio_of_large = -1e-4, large_extent = 0.05;
+/// Tenfold shifts that are tried where the projected matrix does not factorise with the first.
+constexpr int most_larger_shifts = 6;
+constexpr int grain = 8192;  // vertices
+constexpr ModeAccuracy accuracy{.relative_change = 1e-2, .negligible = 1e-6, .max_iterations = 100};
+
+/// The operators of one test, on the free vertices.
+class Operators {
+ public:
+  explicit Operators(const std::vector<char>& fixed) : fixed_(fixed) {}
+
+  /// y = (A + diag(shift_i I₃)) x; without a shift if that is empty.
+  void multiply(const BlockMatrix& matrix, const Eigen::VectorXd& shift, const Positions& x,
+                Positions& y) const {
+    matrix.multiply(x, y);
+    for_each_vertex(y, [&](int i) {
+      if (fixed_[i])
+        y.row(i).setZero();
+      else if (shift.size() > 0)
+        y.row(i) += shift[i] * x.row(i);
+    });
+  }
+  /// y = diag(weights_i I₃) x
+  void scale(const Eigen::VectorXd& weights, const Positions& x, Positions& y) const {
+    y.resize(x.rows(), 3);
+    for_each_vertex(y, [&](int i) { y.row(i) = weights[i] * x.row(i); });
+  }
+  /// Numbers in [-1, 1) without any symmetry, the same ones every time (SplitMix64).
+  Positions scattered() const {
+    Positions x = Positions::Zero(static_cast<Eigen::Index>(fixed_.size()), 3);
+    std::uint64_t state = 0;
+    for (Eigen::Index i = 0; i < x.rows(); ++i)
+      for (int c = 0; c < 3; ++c) {
+        std::uint64_t z = (state += 0x9e3779b97f4a7c15U);
+        z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9U;
+        z = (z ^ (z >> 27)) * 0x94d049bb133111ebU;
+        if (!fixed_[i]) x(i, c) = std::ldexp(static_cast<double>((z ^ (z >> 31)) >> 11), -52) - 1;
+      }
+    return x;
+  }
+
+ private:
+  template <class Body>
+  static void for_each_vertex(const Positions& x, const Body& body) {
+    parallel_for(static_cast<int>(x.rows()), grain, [&](int begin, int end) {
+      for (int i = begin; i < end; ++i) body(i);
+    });
+  }
+
+  const std::vector<char>& fixed_;
+};
+
+/// By how much the forces out of balance can lower eigenvalues of M⁻¹H [1/s²]: turning a body of size L under
+/// them changes the energy by their product with L, over a moment of inertia of M L².
+double feigned_eigenvalue(const Iterate& iterate) {
+  const double force = iterate.force_residual() * iterate.residual_scale() * std::sqrt(iterate.free_count());
+  return force / (iterate.model().masses().sum() * iterate.rest_diagonal());
+}
+
+/// What round-off may do to a vertex' stiffness [N/m]: that of the factorisation, and that of the forces
+/// (rounding_bounds) over the shortest edge on which they act.
+Eigen::VectorXd round_off(const Iterate& iterate, const BlockMatrix& matrix) {
+  const Positions& x = iterate.x();
+  Eigen::VectorXd shortest = Eigen::VectorXd::Constant(x.rows(), iterate.rest_diagonal());
+  const Eigen::MatrixX3i& triangles = iterate.model().level().rest.triangles;
+  for (Eigen::Index t = 0; t < triangles.rows(); ++t)
+    for (int k = 0; k < 3; ++k) {
+      const int i = triangles(t, k), j = triangles(t, (k + 1) % 3);
+      const double edge = (x.row(i) - x.row(j)).norm();
+      shortest[i] = std::min(shortest[i], edge);
+      shortest[j] = std::min(shortest[j], edge);
+    }
+  Eigen::VectorXd result = rounding_bounds(matrix, x).cwiseQuotient(shortest);
+  for (Eigen::Index i = 0; i < x.rows(); ++i) {
+    const double* block = matrix.block(matrix.pattern->row_start[i]);
+    result[i] += relative_round_off * (std::abs(block[0]) + std::abs(block[4]) + std::abs(block[8]));
+  }
+  return result;
+}
+
+/// The participation ratio (Σ m_i |v_i|²)² / Σ m_i · Σ m_i |v_i|⁴: 1 for a translation, 1/n for a vertex.
+double extent_of(const Positions& mode, const Eigen::VectorXd& masses) {
+  const Eigen::ArrayXd squared = mode.rowwise().squaredNorm().array();
+  const double sum = (masses.array() * squared).sum();
+  return sum * sum / (masses.sum() * (masses.array() * squared.square()).sum());
+}
+
+bool is_visible(const Stability& s) {
+  return s.curvature_ratio < (s.extent < large_extent ? visible_ratio : visible_ratio_of_large);
+}
+
+}  // namespace
+
+const char* to_string(Stability::Verdict verdict) {
+  constexpr const char* names[] = {"stable", "marginal", "unstable"};
+  const auto index = static_cast<std::size_t>(verdict);
+  return index < std::size(names) ? names[index] : "";
+}
+
+std::optional<StabilityTest> test_stability(Iterate& iterate, FactorCache& factor, bool verdict_only) {
+  StabilityTest test;
+  if (iterate.free_count() == 0) return test;
+  Stability& s = test.stability;
+  s.by_factorisation = !factor.prefers_cycle();
+  const double neutral = feigned_eigenvalue(iterate);
+  const Eigen::VectorXd& masses = iterate.model().masses();
+  const BlockMatrix* hessian = &factor.hessian(Projection::none);
+  Eigen::VectorXd shift = neutral * masses + round_off(iterate, *hessian);
+  if (!shift.allFinite()) return std::nullopt;
+  if (verdict_only && s.by_factorisation && factor.prepare(*hessian, shift)) return test;
+
+  BlockMatrix projected;
+  do {  // until neither has lost blocks of former contacts: a factor is to serve both
+    projected = factor.hessian(Projection::clamp);
+    hessian = &factor.hessian(Projection::none);
+  } while (hessian->pattern != projected.pattern);
+  const bool is_definite = !verdict_only && s.by_factorisation && factor.prepare(*hessian, shift);
+  for (int k = 0; !is_definite && !factor.prepare(projected, shift); ++k) {
+    if (k == most_larger_shifts) return std::nullopt;
+    shift *= 10;
+  }
+  const Operators operators(iterate.fixed());
+  const LinearOperator a = [&](const Positions& x, Positions& y) { operators.multiply(*hessian, {}, x, y); };
+  const LinearOperator b = [&](const Positions& x, Positions& y) {
+    operators.multiply(projected, shift, x, y);
+  };
+  const LinearOperator m = [&](const Positions& x, Positions& y) { operators.scale(masses, x, y); };
+  const LinearOperator inverse = [&](const Positions& x, Positions& y) { factor.precondition(x, y); };
+
+  Positions start, scattered;
+  m(operators.scattered(), scattered);
+  inverse(scattered, start);
+  const LowestMode slowest = lowest_mode(a, m, inverse, std::move(start), accuracy);
+  const bool is_stable = is_definite || (!s.by_factorisation && slowest.value >= -neutral);
+  if (is_stable && verdict_only) return test;
+  const LowestMode weakest = lowest_mode(a, b, inverse, slowest.vector, accuracy);
+  s.lowest_eigenvalue = slowest.value;
+  s.curvature_ratio = weakest.value;
+  s.extent = extent_of(weakest.vector, masses);
+  s.verdict = is_stable ? Stability::stable : !is_visible(s) ? Stability::marginal : Stability::unstable;
+  test.mode = weakest.vector / weakest.vector.cwiseAbs().maxCoeff();
+  return test;
+}
+
+}  // namespace drape
