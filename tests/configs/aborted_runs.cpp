@@ -102,6 +102,26 @@ TEST_CASE("A method's result does not rest on its word") {
             "values: [[0, 0, -9.81], [0, 0, -5]]}]}'") == says + "the schedule has not come to its end");
 }
 
+TEST_CASE("Cloth that jaws hold by friction has converged, but not where a method only says so") {
+  const FailingExperiment folder("");
+  folder.write("e.yaml", R"(name: gripped
+cloth: {shape: rectangle, size: [0.25, 0.3], vertices: 400}
+levels: 1
+material: {density: 472.6, thickness: 3.18e-4, membrane_modulus: 8e5, bending_modulus: 8e5, poisson_ratio: 0.243}
+start: {rotate: [90, 0, 0]}
+energies: [neo_hookean, hinge, gravity]
+contact: [ipc]
+obstacles:
+  - {name: left, meshed_shape: box, size: [0.2, 0.1, 0.1], translate: [0.125, -0.0503, 0.2]}
+  - {name: right, meshed_shape: box, size: [0.2, 0.1, 0.1], translate: [0.125, 0.0503, 0.2]}
+friction: 0.6
+methods: {odd: {type: failing, level: 9}, pcs: {}}
+)");
+  const auto methods = folder.methods("--method all");
+  CHECK(methods["pcs"]["status"] == "converged");
+  CHECK(methods["odd"]["status"] == "stalled");
+}
+
 TEST_CASE("An energy that throws fails every method that evaluates it, where it does") {
   // The finest level's energies are made once: the first method to evaluate them is the one that fails.
   const auto solving = FailingExperiment("", "level: 1, gradients: 5").methods("--method all");

@@ -3,8 +3,13 @@
 #include <algorithm>
 #include <stdexcept>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "core/kernel/files/message_text.h"
+#include "core/numerics/contact_forces/friction.h"
+#include "core/numerics/contact_forces/friction_balance.h"
+#include "core/numerics/model/required.h"
 
 namespace drape {
 
@@ -22,15 +27,16 @@ double distance_of_pins(const LevelModel& model, const Positions& x) {
   return most;
 }
 
-/// LevelModel::force_residual of the vertices without contact forces.
-double residual_without_contacts(const LevelModel& model, const Positions& x) {
+/// LevelModel::force_residual, less what friction can carry; on the same side of `enough`.
+double residual_beyond_friction(const LevelModel& model, const Positions& x, double enough) {
   Positions g;
   model.energy_gradient(x, g);
   const double scale = model.residual_scale(x, g);
-  const Eigen::VectorXd pressure = model.contact_pressure(x);
-  for (int v = 0; v < g.rows(); ++v)
-    if (model.fixed()[v] || (pressure.size() > 0 && pressure[v] > 0)) g.row(v).setZero();
-  return g.norm() / scale;
+  std::vector<FrictionContact> frictions;
+  for (const auto& contact : model.contacts())
+    for (const auto& group : friction_contacts(*collisions_at(*contact, x)))
+      frictions.insert(frictions.end(), group.begin(), group.end());
+  return norm_beyond_friction(frictions, std::move(g), model.fixed(), enough * scale) / scale;
 }
 
 }  // namespace
@@ -66,10 +72,10 @@ LevelResult audited(const Scene& scene, LevelResult result, double force_toleran
              !(distance <= max_pin_distance * bounding_box_diagonal(result.x))) {
     refuse(Outcome::infeasible, "a pin is " + three_digits(distance) + " m off its target");
   } else if (result.level == scene.finest() && result.outcome == Outcome::converged) {
-    const double residual =
-        residual_without_contacts(model.with_stiffness(result.contact_stiffness), result.x);
-    if (!(residual <= residual_slack * std::max(result.force_residual, force_tolerance)))
-      refuse(Outcome::stalled, "the force residual is " + three_digits(residual));
+    const double enough = residual_slack * std::max(result.force_residual, force_tolerance),
+                 residual = residual_beyond_friction(model.with_stiffness(result.contact_stiffness), result.x,
+                                                     enough);
+    if (!(residual <= enough)) refuse(Outcome::stalled, "the force residual is " + three_digits(residual));
   }
   return result;
 }
