@@ -61,9 +61,9 @@ TEST_CASE("a cloth that crosses itself is refused") {
   const std::string pair = "cloth triangle 0 and cloth triangle 1 at (0.2";
   CHECK_THAT(refused_alike(folder),
              StartsWith("error: e.yaml:1:1: the start of level 0 touches: " + pair) && EndsWith(remedy));
-  CHECK_THAT(
-      refused_alike(folder, "--allow-start-repair"),
-      StartsWith("error: e.yaml:1:1: moving the start by up to ") && Contains(" does not part " + pair));
+  CHECK_THAT(refused_alike(folder, "--allow-start-repair"),
+             StartsWith("error: e.yaml:1:1: moving the whole start by up to ") &&
+                 Contains(" does not part " + pair));
 }
 
 TEST_CASE("a run with contact has contacts, gaps and intersections in its results") {

@@ -85,7 +85,7 @@ CLI::Option* ConfigArguments::add_overrides_to(CLI::App& command) {
 CLI::Option* ConfigArguments::add_to(CLI::App& command) {
   CLI::Option* file = add_overrides_to(command);
   command.add_flag("--allow-start-repair", allow_start_repair,
-                   "translate an intersecting start up or sideways until it is free");
+                   "move an intersecting start as a whole, the shortest way that leads across no obstacle");
   return file;
 }
 

@@ -57,15 +57,17 @@ std::vector<std::string> remarks_of(const Experiment& experiment, const Scene& s
 void refuse_intersecting_start(const Experiment& experiment, const LevelModel& model, const Positions& start,
                                ConfigErrors& errors);
 
-/// Whether one of the points (n×3) [m] lies inside a closed mesh that faces outwards, or, if that is
-/// asked, inwards. Of a cloth that intersects nothing, a vertex of each connected part will do.
+/// Which of the points (n×3) [m] lie inside a closed mesh that faces outwards, or, if that is asked, inwards.
+std::vector<char> are_inside(const Positions& points, const TriangleMesh& mesh, bool facing_inwards = false);
+/// Whether one does. Of a cloth that intersects nothing, a vertex of each connected part will do.
 bool is_inside(const Positions& points, const TriangleMesh& mesh, bool facing_inwards = false);
 
-/// Translates a start that intersects something, or is closer than a micrometre to it: up, or else
-/// sideways, equally on every level, until nothing intersects, no obstacle encloses the cloth and as few
-/// obstacles as possible are within d̂. Returns the translation [m], zero if none was necessary. It is added
-/// to the experiment's `start.translate`, and the caller must build the scene again. Appends an error if no
-/// translation is found, or if an intersecting cloth has pins.
+/// Translates a start that intersects something, or is closer than a micrometre to it, by the shortest way
+/// up, to a side or down that leads across no obstacle (CrossedParts), equally on every level, until nothing
+/// intersects, no obstacle encloses the cloth and as few obstacles as possible are within d̂. Returns the
+/// translation [m], zero if none was necessary. It is added to the experiment's `start.translate`, and the
+/// caller must build the scene again. Appends an error if no translation is found, or if an intersecting
+/// cloth has pins.
 Eigen::Vector3d repair_start(Experiment& experiment, const Scene& scene, ConfigErrors& errors);
 
 }  // namespace drape

@@ -1,9 +1,11 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 
 #include "core/app/files/yaml_file.h"
+#include "core/app/scene/crossed_parts.h"
 #include "core/app/scene/scene.h"
 #include "core/kernel/files/message_text.h"
 #include "core/numerics/mesh/mesh_faults.h"
@@ -19,6 +21,8 @@ using Eigen::Vector3d;
 constexpr double tiny_gap = 1e-6;
 /// Trial distances, relative to the cloth's diagonal, in a geometric series.
 constexpr double shortest_part = 1e-3, growth = 1.5;
+/// No start is moved by more than so many times its depth in an obstacle and its longest edge.
+constexpr double reach = 2;
 /// Bisections of the first free translation, to move no further than necessary.
 constexpr int halvings = 5;
 
@@ -51,7 +55,14 @@ class TranslationSearch {
       : scene_(scene),
         diagonal_(bounding_box_diagonal(scene.starts[0])),
         points_(scene.starts[0](scene.hierarchy.levels[0].topology.components(), Eigen::all)),
-        obstacles_(obstacles_of(scene.model(0)->contacts())) {
+        obstacles_(obstacles_of(scene.model(0)->contacts())),
+        crossed_(scene.hierarchy.levels[0], scene.starts[0], obstacles_) {
+    const Level& level = scene.hierarchy.levels[0];
+    double longest_edge = 0;
+    for (const auto& edge : level.topology.edges.rowwise())
+      longest_edge =
+          std::max(longest_edge, (scene.starts[0].row(edge[0]) - scene.starts[0].row(edge[1])).norm());
+    limit_ = std::min(diagonal_, reach * (crossed_.depth() + longest_edge));
     start = persistent_ = clearance_at(Vector3d::Zero());
     found = start.intersections.empty();
     best_contacts_ = start.contacts;
@@ -63,32 +74,37 @@ class TranslationSearch {
 
   void run() {
     for (const Vector3d& direction :
-         {Vector3d(0, 0, 1), Vector3d(1, 0, 0), Vector3d(-1, 0, 0), Vector3d(0, 1, 0), Vector3d(0, -1, 0)}) {
-      double before = 0;
-      for (double part = shortest_part; part < growth; part *= growth) {
-        const double distance = std::min(part, 1.0) * diagonal_;
-        if (is_better(distance * direction)) {
-          shorten(direction, before, distance);
-          // Without contacts this is the best; otherwise another direction may be better.
-          if (best_contacts_ == 0) return;
-        }
-        before = distance;
-      }
-    }
+         {Vector3d(0, 0, 1), Vector3d(1, 0, 0), Vector3d(-1, 0, 0), Vector3d(0, 1, 0), Vector3d(0, -1, 0)})
+      search(direction);
+    for (const Vector3d& direction : {Vector3d(0, 0, -1), crossed_.way_out()})
+      if (translation.isZero(0)) search(direction);
   }
 
   /// Why run() has found none.
   std::string failure() const {
-    const std::string attempt = "moving the start by up to " + three_digits(diagonal_) + " m up or to a side";
+    const std::string attempt = "moving the whole start by up to " + three_digits(limit_) + " m";
     const std::string level = " on level " + std::to_string(start.level);
-    if (const auto& pairs = persistent_.intersections; !pairs.empty())
-      return attempt + " does not part " + to_string(pairs[0]) + level +
-             "; change the start's shape or the obstacle";
-    return attempt + " finds no position without intersections; at the start these intersect: " +
-           to_string(start.intersections[0]) + level;
+    const std::string remedy = "; change the start's shape or place, or the obstacle";
+    if (const auto& pairs = persistent_.intersections; !pairs.empty() && !is_across_)
+      return attempt + " does not part " + to_string(pairs[0]) + level + remedy;
+    return attempt +
+           (is_across_ ? " frees it only across an obstacle, to another side of that"
+                       : " finds no position without intersections") +
+           "; at the start these intersect: " + to_string(start.intersections[0]) + level + remedy;
   }
 
  private:
+  void search(const Vector3d& direction) {
+    double before = 0;
+    for (double part = shortest_part; before < limit_; part *= growth) {
+      const double distance = std::min(part * diagonal_, limit_);
+      // No shorter way with fewer contacts can follow.
+      if (best_contacts_ == 0 && found && distance >= translation.norm() && !translation.isZero(0)) return;
+      if (is_better(distance * direction)) shorten(direction, before, distance);
+      before = distance;
+    }
+  }
+
   Clearance clearance_at(const Vector3d& translation) const {
     Clearance clearance;
     for (std::size_t l = 0; l < scene_.starts.size(); ++l) {
@@ -114,15 +130,22 @@ class TranslationSearch {
     });
   }
 
-  /// Accepts a translation without intersections if it has fewer contacts than any before.
-  bool is_better(const Vector3d& trial, bool or_as_good = false) {
+  /// Accepts a translation without intersections if it has fewer contacts than any before, or as few and is
+  /// shorter. It must not lead across an obstacle.
+  bool is_better(const Vector3d& trial) {
     const Clearance clearance = clearance_at(trial);
     if (!clearance.intersections.empty()) {
       intersect_persistent(clearance);
       return false;
     }
-    if (found && clearance.contacts >= best_contacts_ + (or_as_good ? 1 : 0)) return false;
+    if (found && (clearance.contacts > best_contacts_ ||
+                  (clearance.contacts == best_contacts_ && trial.norm() >= translation.norm())))
+      return false;
     if (enclosed(trial)) return false;
+    if (crossed_.lead_across(trial)) {
+      is_across_ = true;
+      return false;
+    }
     found = true;
     best_contacts_ = clearance.contacts;
     translation = trial;
@@ -132,7 +155,7 @@ class TranslationSearch {
   void shorten(const Vector3d& direction, double low, double high) {
     for (int k = 0; k < halvings; ++k) {
       const double middle = 0.5 * (low + high);
-      (is_better(middle * direction, true) ? high : low) = middle;
+      (is_better(middle * direction) ? high : low) = middle;
     }
   }
 
@@ -149,20 +172,28 @@ class TranslationSearch {
   const double diagonal_;   // of the coarsest level's start [m]
   const Positions points_;  // at the start, a vertex of each component
   const std::vector<TriangleMesh> obstacles_;
-  Clearance persistent_;  // with the pairs that intersected initially and after every trial
+  const CrossedParts crossed_;
+  double limit_ = 0;        // of translations [m]
+  bool is_across_ = false;  // a translation failed by CrossedParts::lead_across only
+  Clearance persistent_;    // with the pairs that intersected initially and after every trial
   int best_contacts_ = 0;
 };
 
 }  // namespace
 
-bool is_inside(const Positions& points, const TriangleMesh& mesh, bool facing_inwards) {
+std::vector<char> are_inside(const Positions& points, const TriangleMesh& mesh, bool facing_inwards) {
   // What is open encloses what it surrounds almost wholly, as a scan with holes does: a cloth may lie in a
   // bowl.
   const bool open = !border_half_edges(mesh.triangles, static_cast<int>(mesh.vertices.rows())).empty();
   const double enclosed = open ? 0.9 : 0.5;
-  for (Eigen::Index i = 0; i < points.rows(); ++i)
-    if ((facing_inwards ? -1 : 1) * winding_number(mesh, points.row(i).transpose()) > enclosed) return true;
-  return false;
+  std::vector<char> inside;
+  for (const auto& p : points.rowwise())
+    inside.push_back((facing_inwards ? -1 : 1) * winding_number(mesh, p.transpose()) > enclosed);
+  return inside;
+}
+
+bool is_inside(const Positions& points, const TriangleMesh& mesh, bool facing_inwards) {
+  return std::ranges::any_of(are_inside(points, mesh, facing_inwards), std::identity());
 }
 
 Vector3d repair_start(Experiment& experiment, const Scene& scene, ConfigErrors& errors) {

@@ -1,0 +1,138 @@
+#include "core/app/scene/crossed_parts.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "core/app/scene/scene.h"
+#include "core/numerics/collision_detection/closest.h"
+#include "core/numerics/collision_detection/intersections.h"
+#include "core/numerics/mesh/disjoint_sets.h"
+#include "core/numerics/mesh/mesh_faults.h"
+
+namespace drape {
+
+namespace {
+
+using Eigen::Vector3d;
+
+/// A motion along a surface may lead into it by this much of its length.
+constexpr double along_surface = 0.1;
+/// An edge that is so nearly parallel to a motion sweeps no area: the next edges stand for it.
+constexpr double parallel = 1e-6;
+
+Vector3d corner(const TriangleMesh& mesh, Eigen::Index t, int k) {
+  return mesh.vertices.row(mesh.triangles(t, k));
+}
+
+Vector3d normal_of(const TriangleMesh& mesh, Eigen::Index t) {
+  const Vector3d a = corner(mesh, t, 0);
+  return (corner(mesh, t, 1) - a).cross(corner(mesh, t, 2) - a).normalized();
+}
+
+/// The nearest point of a mesh.
+struct NearestPoint {
+  Vector3d way;  ///< there from p [m]
+  bool behind;   ///< whether p is behind the triangle
+};
+
+NearestPoint nearest_point(const TriangleMesh& mesh, const Vector3d& p) {
+  NearestPoint nearest{Vector3d::Constant(std::numeric_limits<double>::infinity()), false};
+  for (Eigen::Index t = 0; t < mesh.triangles.rows(); ++t) {
+    const Vector3d a = corner(mesh, t, 0), b = corner(mesh, t, 1), c = corner(mesh, t, 2);
+    const Eigen::Vector4d w = closest_point_triangle(p, a, b, c).c;
+    const Vector3d way = -(w[0] * p + w[1] * a + w[2] * b + w[3] * c);
+    if (way.norm() < nearest.way.norm()) nearest = {way, way.dot(normal_of(mesh, t)) > 0};
+  }
+  return nearest;
+}
+
+/// Whether the triangles of a closed mesh face inwards.
+bool faces_inwards(const TriangleMesh& mesh) {
+  double volume = 0;
+  const Vector3d origin = mesh.vertices.row(0);
+  for (Eigen::Index t = 0; t < mesh.triangles.rows(); ++t)
+    volume +=
+        (corner(mesh, t, 0) - origin).dot((corner(mesh, t, 1) - origin).cross(corner(mesh, t, 2) - origin));
+  return volume < 0;
+}
+
+}  // namespace
+
+CrossedParts::CrossedParts(const Level& level, const Positions& start, std::vector<TriangleMesh> obstacles)
+    : start_(start), obstacles_(std::move(obstacles)) {
+  for (const TriangleMesh& obstacle : obstacles_) add(level, obstacle);
+  if (way_out_.norm() > 0) way_out_.normalize();
+}
+
+void CrossedParts::add(const Level& level, const TriangleMesh& obstacle) {
+  const TriangleMesh cloth{start_, level.rest.triangles};
+  const int vertices = level.vertex_count();
+  const bool closed =
+      border_half_edges(obstacle.triangles, static_cast<int>(obstacle.vertices.rows())).empty();
+  const Positions one_of_each = start_(level.topology.components(), Eigen::all);
+  const bool is_room = closed && is_inside(one_of_each, obstacle, true);
+  const double facing = closed && !is_room && faces_inwards(obstacle) ? -1 : 1;
+  std::vector<char> crosses(cloth.triangles.rows(), 0);
+  const auto cuts = [&](const Vector3d& outwards) {
+    if (closed) outwards_.push_back(outwards);
+  };
+  for (const TrianglePair& pair : intersections(cloth, obstacle)) {
+    crosses[pair.first] = 1;
+    way_out_ += facing * normal_of(obstacle, pair.second);
+    cuts(facing * normal_of(obstacle, pair.second));
+  }
+  // What triangles without an intersection connect is on one side.
+  DisjointSets sides(vertices);
+  for (Eigen::Index t = 0; t < cloth.triangles.rows(); ++t)
+    for (int k = 1; k < 3 && !crosses[t]; ++k) sides.unite(cloth.triangles(t, 0), cloth.triangles(t, k));
+  std::vector<int> ones;  // a vertex of each side
+  for (int v = 0; v < vertices; ++v)
+    if (sides.find(v) == v) ones.push_back(v);
+  const Positions at_ones = start_(ones, Eigen::all);
+  const std::vector<char> within = are_inside(at_ones, obstacle),
+                          inwards = are_inside(at_ones, obstacle, true);
+  std::vector<char> behind(vertices, 0);
+  for (std::size_t i = 0; i < ones.size(); ++i)
+    behind[ones[i]] = closed ? is_room != (within[i] || inwards[i])
+                             : nearest_point(obstacle, at_ones.row(i).transpose()).behind;
+  for (int v = 0; v < vertices; ++v) {
+    behind[v] = behind[sides.find(v)];
+    if (!behind[v]) continue;
+    const Vector3d way = nearest_point(obstacle, start_.row(v).transpose()).way;
+    depth_ = std::max(depth_, way.norm());
+    cuts(way.normalized());
+  }
+  const auto is_free = [&](int t) { return t >= 0 && !crosses[t]; };
+  std::vector<Eigen::Vector2i>& edges = free_edges_.emplace_back();
+  for (Eigen::Index e = 0; e < level.topology.edges.rows(); ++e) {
+    const auto triangles = level.topology.edge_triangles.row(e);
+    if ((is_free(triangles[0]) || is_free(triangles[1])) && !behind[level.topology.edges(e, 0)])
+      edges.emplace_back(level.topology.edges.row(e));
+  }
+}
+
+bool CrossedParts::lead_across(const Vector3d& translation) const {
+  const double least = -along_surface * translation.norm();
+  if (std::ranges::any_of(outwards_, [&](const Vector3d& out) { return out.dot(translation) < least; }))
+    return true;
+  const int vertices = static_cast<int>(start_.rows());
+  TriangleMesh swept{Positions(2 * vertices, 3), {}};
+  swept.vertices << start_, start_.rowwise() + translation.transpose();
+  for (std::size_t k = 0; k < obstacles_.size(); ++k) {
+    swept.triangles.resize(2 * static_cast<Eigen::Index>(free_edges_[k].size()), 3);
+    Eigen::Index count = 0;
+    for (const Eigen::Vector2i& edge : free_edges_[k]) {
+      const Vector3d along = start_.row(edge[1]) - start_.row(edge[0]);
+      if (along.cross(translation).norm() <= parallel * along.norm() * translation.norm()) continue;
+      swept.triangles.row(count++) << edge[0], edge[1], edge[1] + vertices;
+      swept.triangles.row(count++) << edge[0], edge[1] + vertices, edge[0] + vertices;
+    }
+    swept.triangles.conservativeResize(count, 3);
+    if (!intersections(swept, obstacles_[k]).empty()) return true;
+  }
+  return false;
+}
+
+}  // namespace drape
