@@ -101,10 +101,9 @@ TriangleMesh read_text(const std::filesystem::path& path, std::string_view bytes
 
 TriangleMesh read_stl(const std::filesystem::path& path, std::string_view bytes) {
   if (const std::int64_t count = binary_count(bytes); count >= 0) return read_binary(path, bytes, count);
-  const std::string_view byte_order_mark = "\xEF\xBB\xBF";
-  const std::size_t first = bytes.starts_with(byte_order_mark) ? byte_order_mark.size() : 0,
-                    begin = std::min(bytes.find_first_not_of(" \t\r\n", first), bytes.size());
-  if (bytes.empty() || bytes.substr(begin).starts_with("solid")) return read_text(path, bytes);
+  const std::string_view text = utf8_text(path, bytes);
+  const std::size_t begin = std::min(text.find_first_not_of(" \t\r\n"), text.size());
+  if (bytes.empty() || text.substr(begin).starts_with("solid")) return read_text(path, bytes);
   refuse_size(path, bytes);
 }
 

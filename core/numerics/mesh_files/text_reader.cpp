@@ -19,13 +19,22 @@ std::string in_quotes(std::string_view word) { return "'" + excerpt(word) + "'";
 
 }  // namespace
 
+std::string_view utf8_text(const std::filesystem::path& path, std::string_view bytes) {
+  constexpr std::string_view mark = "\xEF\xBB\xBF";
+  constexpr std::string_view wide_marks[] = {"\xFF\xFE", "\xFE\xFF", {"\0\0\xFE\xFF", 4}};
+  const auto is_zero = [&](std::size_t i) { return bytes[i] == '\0'; };
+  if (std::ranges::any_of(wide_marks, [&](std::string_view wide) { return bytes.starts_with(wide); }) ||
+      (bytes.size() >= 4 && is_zero(0) != is_zero(1) && is_zero(0) == is_zero(2) && is_zero(1) == is_zero(3)))
+    refuse_path(path, "is in UTF-16 or UTF-32; save it as UTF-8");
+  return bytes.substr(bytes.starts_with(mark) ? mark.size() : 0);
+}
+
 TextReader::TextReader(std::filesystem::path path, std::string_view text, char comment, char continuation)
     : path_(std::move(path)), text_(text), comment_(comment), continuation_(continuation) {
   if (const std::size_t first = text.find_first_of("\r\n");
       first != text.npos && text[first] == '\r' && !text.substr(first + 1).starts_with('\n'))
     line_end_ = '\r';
-  if (constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF"; text_.starts_with(byte_order_mark))
-    position_ = byte_order_mark.size();
+  position_ = text_.size() - utf8_text(path_, text_).size();
 }
 
 bool TextReader::next_line() {

@@ -8,6 +8,10 @@
 
 namespace drape {
 
+/// A text file's bytes without a byte order mark. Throws std::runtime_error naming the file if it is in
+/// UTF-16 or UTF-32, as its mark or every other byte says.
+std::string_view utf8_text(const std::filesystem::path& path, std::string_view bytes);
+
 /// A text as lines of words, with errors that name file and line. Lines end with LF, CRLF or CR, whichever
 /// ends the first. The text must outlive the reader.
 class TextReader {

@@ -114,6 +114,27 @@ TEST_CASE("malformed STL files are refused with their line") {
                  "of the triangles that it declares; this one has 25 bytes"}});
 }
 
+TEST_CASE("a text in UTF-16 or UTF-32 is refused by its encoding, with a mark at its beginning or without") {
+  for (const auto& [name, text] : {std::pair("a.obj", "v 0 0 0\n"),
+                                   {"a.off", "OFF\n1 0 0\n"},
+                                   {"a.ply", "ply\nformat ascii 1.0\n"},
+                                   {"a.stl", "solid\n"}})
+    for (const int bytes : {2, 4})
+      for (const bool big_endian : {false, true})
+        for (const bool mark : {false, true}) {
+          if (bytes == 4 && !mark) continue;
+          CAPTURE(name, bytes, big_endian, mark);
+          std::string wide;
+          const auto add = [&](unsigned code) {
+            for (int k = 0; k < bytes; ++k)
+              wide += static_cast<char>(code >> 8 * (big_endian ? bytes - 1 - k : k) & 0xff);
+          };
+          if (mark) add(0xfeff);
+          for (const char* c = text; *c != '\0'; ++c) add(static_cast<unsigned char>(*c));
+          CHECK_THROWS_WITH(mesh_in(name, wide), "FILE: is in UTF-16 or UTF-32; save it as UTF-8");
+        }
+}
+
 TEST_CASE("a word of a megabyte is shortened in the message") {
   const std::string word(1000000, 'x');
   for (const std::string& text : {"v 0 0 " + word, "f " + word, word, "v 0 0 0\nf 1/" + word + " 1 1"}) {
