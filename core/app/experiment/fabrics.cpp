@@ -1,16 +1,17 @@
 #include "core/app/experiment/fabrics.h"
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <optional>
 #include <sstream>
-#include <string_view>
 
 #include "core/kernel/files/file.h"
 #include "core/kernel/files/message_text.h"
 #include "core/kernel/files/string_utils.h"
 #include "core/kernel/interfaces/material.h"
 #include "core/kernel/plugin/parameters.h"
+#include "core/numerics/mesh_files/text_reader.h"
 
 namespace drape {
 namespace {
@@ -62,9 +63,9 @@ constexpr Column columns[] = {
     {"bending_hysteresis", "bending_hysteresis"},
     // ClothDrapeTester's dataset.csv (Feng et al. 2022)
     {"density[kg.m-2]", "mass"},
-    {"linear warp[SI*1e9]", "warp_bending", 1e-9},
-    {"linear weft[SI*1e9]", "weft_bending", 1e-9},
-    {"linear diag[SI*1e9]", "bias_bending", 1e-9},
+    {"linear warp[si*1e9]", "warp_bending", 1e-9},
+    {"linear weft[si*1e9]", "weft_bending", 1e-9},
+    {"linear diag[si*1e9]", "bias_bending", 1e-9},
 };
 
 /// A line's cells. In double quotes separators are text, and two quotes are one (RFC 4180).
@@ -85,17 +86,18 @@ std::vector<std::string> cells_of(const std::string& line, char separator) {
 }
 
 struct Table {
-  std::string file;  ///< for messages
-  std::vector<std::string> header;
+  std::string file;                 ///< for messages
+  std::vector<std::string> header;  ///< in small letters
   std::vector<std::vector<std::string>> rows;
 
   Table(std::string name, const std::string& text) : file(std::move(name)) {
-    constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
-    std::istringstream lines(text.starts_with(byte_order_mark) ? text.substr(byte_order_mark.size()) : text);
+    std::istringstream lines{std::string(utf8_text(file, text))};
     char separator = ',';
     for (std::string line; std::getline(lines, line);) {
       if (line.find_first_not_of(" \t\r") == std::string::npos) continue;
-      if (header.empty() && line.find(',') == std::string::npos) separator = ';';
+      if (header.empty())  // the first of these that it has
+        if (const std::size_t k = std::string(",;\t").find_first_of(line); k != std::string::npos)
+          separator = ",;\t"[k];
       std::vector<std::string> cells = cells_of(line, separator);
       for (std::string& cell : cells) {
         const std::size_t first = cell.find_first_not_of(" \t\r"), last = cell.find_last_not_of(" \t\r");
@@ -106,9 +108,14 @@ struct Table {
       else
         rows.push_back(std::move(cells));
     }
+    for (std::string& head : header)
+      for (char& c : head) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
   }
 
+  /// Empty without the column. Throws std::runtime_error if there are two.
   std::string cell(std::size_t row, const std::string& column) const {
+    if (std::count(header.begin(), header.end(), column) > 1)
+      throw std::runtime_error(file + " has two columns \"" + column + "\"; leave one out");
     const auto i = std::find(header.begin(), header.end(), column) - header.begin();
     return i < std::ssize(header) && i < std::ssize(rows[row]) ? rows[row][i] : "";
   }
@@ -121,10 +128,15 @@ struct Table {
     }
     return all;
   }
-  /// The row of this name or number, from 1.
+  /// The row of this name or number, from 1. Throws std::runtime_error if several have the name.
   std::optional<std::size_t> find(const std::string& row) const {
     const std::vector<std::string> all = names();
-    if (const auto i = std::find(all.begin(), all.end(), row); i != all.end()) return i - all.begin();
+    const auto i = std::find(all.begin(), all.end(), row);
+    if (const auto count = std::count(i, all.end(), row); count > 1)
+      throw std::runtime_error(file + " has " + std::to_string(count) + " rows named \"" + excerpt(row) +
+                               "\", the first of them row " + std::to_string(i - all.begin() + 1) +
+                               "; give each a name of its own, or name it by its number");
+    if (i != all.end()) return i - all.begin();
     const std::optional<int> number = parse_integer(row);
     if (number && *number >= 1 && *number <= std::ssize(rows)) return *number - 1;
     return std::nullopt;
@@ -196,12 +208,16 @@ ConfigNode row_of_file(const ConfigNode& fabric, std::optional<double> thickness
     errors.push_back({file->where, "\"file\": " + path.string() + " is not a file"});
     return {};
   }
-  const Table table(path.string(), read_file(path));
-  const auto found = table.find(row->scalar);
-  if (found) return material_of(table, *found, row->scalar, row->where, thickness, errors);
-  errors.push_back({row->where, table.file + " has " + std::to_string(table.rows.size()) +
-                                    " rows and none named \"" + excerpt(row->scalar) + "\"; " +
-                                    remedy(row->scalar, table.names())});
+  try {
+    const Table table(path.string(), read_file(path));
+    const auto found = table.find(row->scalar);
+    if (found) return material_of(table, *found, row->scalar, row->where, thickness, errors);
+    errors.push_back({row->where, table.file + " has " + std::to_string(table.rows.size()) +
+                                      " rows and none named \"" + excerpt(row->scalar) + "\"; " +
+                                      remedy(row->scalar, table.names())});
+  } catch (const std::exception& fault) {
+    errors.push_back({file->where, reason_of(fault)});
+  }
   return {};
 }
 

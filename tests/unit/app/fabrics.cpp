@@ -254,6 +254,26 @@ TEST_CASE("a row of a file, whose faults are named") {
   CHECK(*tested.bias_bending == Approx(4e-6));
 }
 
+TEST_CASE("a table of tabs and of capital heads is read, and one that says something twice is refused") {
+  const OwnFabrics own("NAME\tMass\tThickness\tWARP_BENDING\ntwill, blue\t0.3\t5e-4\t2e-5\n");
+  const Material m = material_of(own.row("\"twill, blue\""));
+  CHECK(m.area_density() == Approx(0.3));
+  CHECK(m.warp_bending == 2e-5);
+  CHECK(fabric_names(own / "own.csv") == std::vector<std::string>{"twill, blue"});
+  own.write("own.csv",
+            "name,mass,warp_bending\ntwill,0.3,2e-5\ncalico,0.1,1e-6\ntwill,0.2,1e-5\n2,0.1,1e-6\n");
+  check_refused(
+      {{own.row("twill"),
+        "own.csv has 2 rows named \"twill\", the first of them row 1; give each a name of its own, or "
+        "name it by its number"}});
+  CHECK(material_of(own.row("3")).warp_bending == 1e-5);
+  CHECK(material_of(own.row("calico")).warp_bending == 1e-6);
+  own.write("own.csv", "name,mass,Mass,warp_bending\ntwill,0.3,0.2,2e-5\n");
+  check_refused({{own.row("twill"), "own.csv has two columns \"mass\"; leave one out"}});
+  own.write("own.csv", std::string("\xFF\xFEn\0a\0m\0e\0\n\0", 12));
+  check_refused({{own.row("twill"), "own.csv: is in UTF-16 or UTF-32; save it as UTF-8"}});
+}
+
 TEST_CASE("drape fabric prints what a laboratory measures, and lists the table") {
   const Scratch folder;
   CHECK_THAT(shown_by("fabric", folder.path), Contains("11oz-black-denim      Wang et al. 2011"));
