@@ -123,7 +123,7 @@ std::string attach(const Experiment& e, int pin, const Scene& scene, const Level
   const ConfigNode *file = obstacle.find("mesh"), *frames = obstacle.find("animation");
   if (frames && !frames->items.empty()) file = &frames->items[0];
   if (!follow.vertices.empty() && file && !file->scalar.empty() &&
-      read_mesh(file->scalar).vertices.rows() != mesh.vertices.rows())
+      read_surface(file->scalar).vertices.rows() != mesh.vertices.rows())
     return "loses vertices of its file that are in no triangle, or at the place of others, so \"vertices\" "
            "would name others; remove the former from the file, and join the latter";
   for (const int v : follow.vertices)

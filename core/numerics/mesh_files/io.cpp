@@ -15,6 +15,15 @@ std::runtime_error unknown_extension(const std::filesystem::path& path, const st
                             "'; known are " + known);
 }
 
+TriangleMesh read(const std::filesystem::path& path, MeshUse use) {
+  const std::string extension = lower_extension(path);
+  if (extension == ".obj") return read_obj(path, read_file(path), use);
+  if (extension == ".off") return read_off(path, read_file(path), use);
+  if (extension == ".ply") return read_ply(path, read_file(path), use);
+  if (extension == ".stl") return read_stl(path, read_file(path));
+  throw unknown_extension(path, ".obj, .off, .ply, .stl");
+}
+
 }  // namespace
 
 std::string lower_extension(const std::filesystem::path& path) {
@@ -24,14 +33,9 @@ std::string lower_extension(const std::filesystem::path& path) {
   return extension;
 }
 
-TriangleMesh read_mesh(const std::filesystem::path& path) {
-  const std::string extension = lower_extension(path);
-  if (extension == ".obj") return read_obj(path, read_file(path));
-  if (extension == ".off") return read_off(path, read_file(path));
-  if (extension == ".ply") return read_ply(path, read_file(path));
-  if (extension == ".stl") return read_stl(path, read_file(path));
-  throw unknown_extension(path, ".obj, .off, .ply, .stl");
-}
+TriangleMesh read_mesh(const std::filesystem::path& path) { return read(path, MeshUse::cloth); }
+
+TriangleMesh read_surface(const std::filesystem::path& path) { return read(path, MeshUse::surface); }
 
 void write_mesh(const std::filesystem::path& path, const TriangleMesh& mesh) {
   const std::string extension = lower_extension(path);

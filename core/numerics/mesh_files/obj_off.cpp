@@ -56,13 +56,13 @@ ObjCorner obj_corner(const TextReader& reader, std::string_view word, int vertex
   return corner;
 }
 
-/// The u and v of a vt line; v is 0 if it has u alone.
-std::array<double, 2> obj_uv(const TextReader& reader) {
+/// The u and v of a vt line, finite in a cloth; v is 0 if it has u alone.
+std::array<double, 2> obj_uv(const TextReader& reader, MeshUse use) {
   const auto& words = reader.words();
   if (words.size() < 2) reader.fail("texture coordinates need one to three numbers");
   std::array<double, 2> uv{};
   for (std::size_t k = 0; k < std::min<std::size_t>(words.size() - 1, 2); ++k)
-    uv[k] = reader.coordinate(words[k + 1]);
+    uv[k] = use == MeshUse::cloth ? reader.coordinate(words[k + 1]) : reader.number(words[k + 1]);
   check_further_numbers(reader, 3, 1);
   return uv;
 }
@@ -80,9 +80,9 @@ bool is_other_obj_line(std::string_view word) {
 
 }  // namespace
 
-TriangleMesh read_obj(const std::filesystem::path& path, std::string_view bytes) {
+TriangleMesh read_obj(const std::filesystem::path& path, std::string_view bytes, MeshUse use) {
   TextReader reader(path, bytes, '#', '\\');
-  MeshBuilder builder;
+  MeshBuilder builder{.use = use};
   std::vector<int> face;
   std::vector<std::array<double, 2>> uv;
   std::vector<double> face_uv;
@@ -91,7 +91,7 @@ TriangleMesh read_obj(const std::filesystem::path& path, std::string_view bytes)
     if (words[0] == "v") {
       read_vertex(reader, 1, 4, builder);  // a weight, a colour
     } else if (words[0] == "vt") {
-      uv.push_back(obj_uv(reader));
+      uv.push_back(obj_uv(reader, use));
     } else if (words[0] == "f") {
       face.clear();
       face_uv.clear();
@@ -99,9 +99,10 @@ TriangleMesh read_obj(const std::filesystem::path& path, std::string_view bytes)
         const ObjCorner corner =
             obj_corner(reader, words[k], builder.vertex_count(), static_cast<int>(uv.size()));
         face.push_back(corner.vertex);
-        if (corner.uv >= 0) face_uv.insert(face_uv.end(), uv[corner.uv].begin(), uv[corner.uv].end());
+        if (corner.uv >= 0 && use == MeshUse::cloth)
+          face_uv.insert(face_uv.end(), uv[corner.uv].begin(), uv[corner.uv].end());
       }
-      if (face.size() < 3) reader.fail("a face needs at least three vertices");
+      if (face.size() < builder.fewest_corners()) reader.fail("a face needs at least three vertices");
       if (!face_uv.empty() && face_uv.size() < 2 * face.size())
         reader.fail("a face has a vt at every corner or at none");
       builder.add_face(face, face_uv, [&](const std::string& why) { reader.fail(why); });
@@ -113,7 +114,7 @@ TriangleMesh read_obj(const std::filesystem::path& path, std::string_view bytes)
   return builder.mesh();
 }
 
-TriangleMesh read_off(const std::filesystem::path& path, std::string_view bytes) {
+TriangleMesh read_off(const std::filesystem::path& path, std::string_view bytes, MeshUse use) {
   TextReader reader(path, bytes, '#');
   const std::string_view magic = reader.next_word("OFF");
   // Prefixes announce texture, colour and normals, which follow the coordinates and are skipped.
@@ -128,7 +129,7 @@ TriangleMesh read_off(const std::filesystem::path& path, std::string_view bytes)
   reader.set_note("the header declares " + std::to_string(vertex_count) + " vertices, " +
                   std::to_string(face_count) + " faces");
 
-  MeshBuilder builder;
+  MeshBuilder builder{.use = use};
   for (int v = 0; v < vertex_count; ++v) {
     if (!reader.next_line()) reader.fail("the file ends before vertex " + std::to_string(v));
     read_vertex(reader, 0, 9, builder);  // a normal, a colour, texture coordinates
@@ -138,7 +139,7 @@ TriangleMesh read_off(const std::filesystem::path& path, std::string_view bytes)
     if (!reader.next_line()) reader.fail("the file ends before face " + std::to_string(f));
     const auto& words = reader.words();
     const auto size = static_cast<std::size_t>(reader.count(words[0], "vertices of a face"));
-    if (size < 3) reader.fail("a face needs at least three vertices");
+    if (size < builder.fewest_corners()) reader.fail("a face needs at least three vertices");
     if (words.size() <= size) reader.fail("a face of " + std::to_string(size) + " vertices names fewer");
     face.clear();
     for (std::size_t k = 1; k <= size; ++k) face.push_back(reader.vertex(words[k], vertex_count));

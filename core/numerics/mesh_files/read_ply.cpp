@@ -30,6 +30,7 @@ constexpr std::array<const char*, 3> warp_names{"warp_x", "warp_y", "warp_z"};
 
 struct PlyContent {
   MeshBuilder mesh;
+  int vertex_count = 0;
   std::vector<PlyFace> faces;
   bool has_warp = false;     ///< of the faces
   std::vector<double> warp;  ///< 3m, or none
@@ -95,38 +96,37 @@ int corner(const PlyBody& body, double v, int vertex_count) {
 }
 
 void add_face(const PlyBody& body, const std::vector<double>& values, const std::vector<double>& uv,
-              int vertex_count, std::vector<PlyFace>& faces) {
-  if (values.size() < 3) body.fail("a face needs at least three vertices");
+              PlyContent& content) {
+  if (values.size() < content.mesh.fewest_corners()) body.fail("a face needs at least three vertices");
   std::vector<int> face;
-  for (const double v : values) face.push_back(corner(body, v, vertex_count));
+  for (const double v : values) face.push_back(corner(body, v, content.vertex_count));
   const bool finite = std::all_of(uv.begin(), uv.end(), [](double number) { return std::isfinite(number); });
   if (!uv.empty() && (uv.size() != 2 * face.size() || !finite))
     body.fail("list 'texcoord' needs two finite numbers for each corner");
-  faces.push_back({std::move(face), uv, {}});
+  content.faces.push_back({std::move(face), uv, {}});
 }
 
 /// Strips end with -1 or the list. Every second triangle of a strip is turned over, and one that repeats a
 /// vertex only joins its neighbours.
 void add_strips(const PlyBody& body, const std::vector<double>& values, const std::vector<double>&,
-                int vertex_count, std::vector<PlyFace>& faces) {
+                PlyContent& content) {
   std::vector<int> strip;
   for (const double v : values) {
     if (v == -1) {
       strip.clear();
       continue;
     }
-    strip.push_back(corner(body, v, vertex_count));
+    strip.push_back(corner(body, v, content.vertex_count));
     if (strip.size() < 3) continue;
     std::array<int, 3> t{strip.end()[-3], strip.end()[-2], strip.end()[-1]};
     if (strip.size() % 2 == 0) std::swap(t[0], t[1]);
-    if (t[0] != t[1] && t[1] != t[2] && t[2] != t[0]) faces.push_back({{t.begin(), t.end()}, {}, {}});
+    if (t[0] != t[1] && t[1] != t[2] && t[2] != t[0]) content.faces.push_back({{t.begin(), t.end()}, {}, {}});
   }
 }
 
 /// Reads an element of faces or of strips, whose lists of vertices and texture coordinates `add` takes.
 template <class Add>
-void read_faces(PlyBody& body, const PlyElement& element, int vertex_count, std::vector<PlyFace>& faces,
-                const Add& add) {
+void read_faces(PlyBody& body, const PlyElement& element, PlyContent& content, const Add& add) {
   std::vector<double> corners, uv;
   std::array<double, 3> warp{};
   const auto on_number = [&](const PlyProperty& p, double value) {
@@ -135,12 +135,12 @@ void read_faces(PlyBody& body, const PlyElement& element, int vertex_count, std:
   };
   const auto on_list = [&](const PlyProperty& p, const std::vector<double>& values) {
     if (holds_corners(p)) corners = values;
-    if (p.name == "texcoord") uv = values;
+    if (p.name == "texcoord" && content.mesh.use == MeshUse::cloth) uv = values;
   };
   read_element(body, element, on_number, on_list, [&] {
-    const std::size_t before = faces.size();
-    add(body, corners, uv, vertex_count, faces);
-    for (std::size_t i = before; i < faces.size(); ++i) faces[i].warp = warp;
+    const std::size_t before = content.faces.size();
+    add(body, corners, uv, content);
+    for (std::size_t i = before; i < content.faces.size(); ++i) content.faces[i].warp = warp;
     uv.clear();
   });
 }
@@ -152,7 +152,7 @@ std::string counts_of(const PlyHeader& header) {
   return "the header declares " + excerpt(text);
 }
 
-PlyContent read_content(const std::filesystem::path& path, std::string_view bytes) {
+PlyContent read_content(const std::filesystem::path& path, std::string_view bytes, MeshUse use) {
   TextReader reader(path, bytes, '\0');
   const PlyHeader header = read_ply_header(reader);
   const auto vertices = std::ranges::find(header.elements, std::string("vertex"), &PlyElement::name);
@@ -164,21 +164,22 @@ PlyContent read_content(const std::filesystem::path& path, std::string_view byte
   reader.set_note(counts_of(header));
 
   PlyContent content;
-  const int vertex_count = vertices->count;
+  content.mesh.use = use;
+  content.vertex_count = vertices->count;
   PlyBody body(reader, bytes, header.format, path);
   for (const PlyElement& element : header.elements) {
     if (element.name == "vertex")
       read_vertices(body, element, content);
     else if (element.name == "face")
-      content.has_warp = has_warp(element), read_faces(body, element, vertex_count, content.faces, add_face);
+      content.has_warp = has_warp(element), read_faces(body, element, content, add_face);
     else if (element.name == "tristrips")
-      read_faces(body, element, vertex_count, content.faces, add_strips);
+      read_faces(body, element, content, add_strips);
     else
       read_element(body, element, ignore, ignore, [] {});
   }
   body.finish();
 
-  content.mesh.coordinates.resize(3 * static_cast<std::size_t>(vertex_count));
+  content.mesh.coordinates.resize(3 * static_cast<std::size_t>(content.vertex_count));
   for (int axis = 0; axis < 3; ++axis) {
     const std::string name(1, "xyz"[axis]);
     const std::vector<double>* values = content.column(name);
@@ -215,16 +216,16 @@ void set_uv_of_vertices(const PlyContent& content, TriangleMesh& mesh) {
 
 }  // namespace
 
-TriangleMesh read_ply(const std::filesystem::path& path, std::string_view bytes) {
-  const PlyContent content = read_content(path, bytes);
+TriangleMesh read_ply(const std::filesystem::path& path, std::string_view bytes, MeshUse use) {
+  const PlyContent content = read_content(path, bytes, use);
   TriangleMesh mesh = content.mesh.mesh();
   mesh.warp = Eigen::Map<const Positions>(content.warp.data(), std::ssize(content.warp) / 3, 3);
-  if (mesh.uv.rows() == 0) set_uv_of_vertices(content, mesh);
+  if (mesh.uv.rows() == 0 && use == MeshUse::cloth) set_uv_of_vertices(content, mesh);
   return mesh;
 }
 
 VertexFields read_ply_fields(const std::filesystem::path& path) {
-  const PlyContent content = read_content(path, read_file(path));
+  const PlyContent content = read_content(path, read_file(path), MeshUse::cloth);
   VertexFields fields;
   for (const auto& [name, values] : content.columns)
     if (name != "x" && name != "y" && name != "z")

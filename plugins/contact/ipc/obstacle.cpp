@@ -43,7 +43,7 @@ ObstacleMeshes load_meshes(const std::vector<std::string>& files, const FileCoor
                            bool strict) {
   std::vector<TriangleMesh> frames;
   for (const std::string& file : files) {
-    frames.push_back(read_mesh(file));
+    frames.push_back(read_surface(file));
     coordinates.convert(frames.back().vertices);
     refuse(file, strict ? check_mesh(frames.back()) : check_coordinates(frames.back().vertices));
     if (const std::string what = difference(frames[0], frames.back()); !what.empty())

@@ -101,6 +101,36 @@ TEST_CASE("ipc: a mesh without faults stays as it is, one without any area is re
                     Contains("no triangle has an area"));
 }
 
+TEST_CASE("ipc: an obstacle has no use for texture coordinates, nor for faces of one or two corners") {
+  const Scratch folder;
+  const std::string points = "0 0 0\n1 0 0\n1 1 0\n0 1 0\n", off = "OFF\n4 4 0\n" + points,
+                    obj = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt nan 0\nvt 0 inf\n",
+                    ply =
+                        "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float "
+                        "y\nproperty float z\nelement face 4\nproperty list uchar int vertex_indices\n";
+  const std::string head = "end_header\n" + points, uv = "property list uchar float texcoord\n" + head;
+  const auto repair = [&](const std::string& name, const std::string& text, bool strict) {
+    folder.write(name, text);
+    ObstacleParameters p;
+    p.mesh = (folder / name).string();
+    p.strict = strict;
+    const ObstacleMeshes meshes = ObstacleMeshes::of(p, 0);
+    CHECK(meshes.frames.at(0)->mesh.triangles.rows() == 2);
+    return meshes.repair;
+  };
+  CHECK(repair("a.obj", obj + "f 1/1 2/2 3/1\nf 1/1 3/1 4/1\n", true) == "");
+  CHECK(repair("a.ply", replaced(ply, "face 4", "face 2") + uv + "3 0 1 2 6 0 nan 0 0 0 0\n3 0 2 3 0\n",
+               true) == "");
+  for (const auto& [name, text] : {std::pair("b.obj", obj + "f 1/1 2/1\nf 1 2 3\nf 4\nf 1 3 4\n"),
+                                   {"b.off", off + "2 0 1\n3 0 1 2\n1 3\n3 0 2 3\n"},
+                                   {"b.ply", ply + head + "2 0 1\n3 0 1 2\n1 3\n3 0 2 3\n"}}) {
+    CAPTURE(name);
+    CHECK(repair(name, text, false) == "obstacle mesh 0: dropped 2 triangles without area");
+    CHECK_THROWS_WITH(repair(name, text, true),
+                      Contains("2 triangles repeat a vertex: 0 (0, 1, 1), 2 (3, 3, 3)"));
+  }
+}
+
 TEST_CASE("ipc: the frames of an animation are repaired together") {
   TriangleMesh first = sheet(), second = sheet();
   second.vertices.col(2).array() += 0.1;
