@@ -72,6 +72,10 @@ void check_elements(const MeshFaults& faults, const Triangles& triangles, Lines&
   add_line(lines, faults.empty_triangles,
            {"triangle has", "triangles have", " no area", "move their vertices apart, or remove them"},
            triangle);
+  add_line(lines, faults.low_triangles,
+           {"triangle is", "triangles are", " so low that rounding of coordinates strains the cloth",
+            "move the vertices apart, or mesh the cloth anew there"},
+           triangle);
   add_line(lines, faults.doubled_triangles,
            {"triangle has", "triangles have", " the same vertices as another", "remove one of each two"},
            [&](const MeshFaults::Pair& p) { return triangle(p.element) + " as " + text(p.other); });
@@ -120,7 +124,6 @@ void check_overlaps(const TriangleMesh& mesh, Lines& lines) {
 }  // namespace
 
 std::vector<std::string> check_coordinates(const Positions& x) {
-  constexpr double largest_rounding = 1e-6;  // of a coordinate, relative to the diagonal
   Lines faults;
   std::vector<int> not_finite, too_large;
   for (int v = 0; v < x.rows(); ++v) {
@@ -160,7 +163,7 @@ std::vector<std::string> check_mesh(const TriangleMesh& mesh) {
   lines.insert(lines.end(), coordinates.begin(), coordinates.end());
 
   MeshFaults faults = MeshFaults::of_elements(mesh);
-  if (!is_sound) faults.empty_triangles.clear();
+  if (!is_sound) faults.empty_triangles.clear(), faults.low_triangles.clear();
   std::vector<char> removed(mesh.triangles.rows(), 0);  // by the remedy of another fault
   for (const int t : faults.repeating_triangles) removed[t] = 1;
   for (const MeshFaults::Pair& pair : faults.doubled_triangles) removed[pair.element] = 1;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <utility>
 
@@ -19,12 +20,19 @@ bool repeats_vertex(const Triangles& triangles, int t) {
   return v[0] == v[1] || v[1] == v[2] || v[2] == v[0];
 }
 
-bool has_no_area(const TriangleMesh& mesh, int t) {
+/// Appends a triangle without area or of too small a height; none with a coordinate that is NaN.
+void check_height(const TriangleMesh& mesh, int t, MeshFaults& faults) {
   const auto v = mesh.triangles.row(t);
   const Eigen::RowVector3d a = mesh.vertices.row(v[0]), b = mesh.vertices.row(v[1]),
                            c = mesh.vertices.row(v[2]);
-  const double longest = std::max({(b - a).squaredNorm(), (c - b).squaredNorm(), (a - c).squaredNorm()});
-  return (b - a).cross(c - a).norm() <= bounds::smallest_height * longest;  // false where a coordinate is NaN
+  const double longest = std::max({(b - a).squaredNorm(), (c - b).squaredNorm(), (a - c).squaredNorm()}),
+               area = (b - a).cross(c - a).norm(),
+               rounding = std::numeric_limits<double>::epsilon() *
+                          a.cwiseAbs().cwiseMax(b.cwiseAbs()).cwiseMax(c.cwiseAbs()).maxCoeff();
+  if (area <= bounds::smallest_height * longest)
+    faults.empty_triangles.push_back(t);
+  else if (rounding * std::sqrt(longest) > largest_rounding * area)
+    faults.low_triangles.push_back(t);
 }
 
 std::vector<MeshFaults::Pair> doubled(const Triangles& triangles) {
@@ -84,8 +92,8 @@ MeshFaults MeshFaults::of_elements(const TriangleMesh& mesh) {
     for (int k = 0; k < 3; ++k) used[mesh.triangles(t, k)] = 1;
     if (repeats_vertex(mesh.triangles, t))
       faults.repeating_triangles.push_back(t);
-    else if (has_no_area(mesh, t))
-      faults.empty_triangles.push_back(t);
+    else
+      check_height(mesh, t, faults);
   }
   for (int v = 0; v < mesh.vertices.rows(); ++v)
     if (!used[v]) faults.loose_vertices.push_back(v);

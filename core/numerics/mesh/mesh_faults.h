@@ -6,6 +6,9 @@
 
 namespace drape {
 
+/// Rounding of coordinates may be this part of what they have to resolve: a mesh, a triangle's height.
+constexpr double largest_rounding = 1e-6;
+
 /// An edge from a vertex to one of larger index, with its triangles.
 struct FaultyEdge {
   int smaller, larger;
@@ -20,6 +23,7 @@ struct MeshFaults {
   std::vector<int> loose_vertices;         ///< of no triangle
   std::vector<int> repeating_triangles;    ///< with a vertex twice
   std::vector<int> empty_triangles;        ///< no area: height below 1e-12 of the longest edge
+  std::vector<int> low_triangles;          ///< rounding exceeds largest_rounding of their height
   std::vector<Pair> doubled_triangles;     ///< with the vertices of another triangle, the first of that kind
   std::vector<FaultyEdge> crowded_edges;   ///< more than two triangles
   std::vector<FaultyEdge> inverted_edges;  ///< two triangles that run along it in the same direction

@@ -104,6 +104,21 @@ TEST_CASE("a triangle without area is found at any scale") {
   CHECK(check_mesh(mesh).empty());
 }
 
+TEST_CASE("a triangle that rounding of its coordinates strains is named at any scale, also far away") {
+  const double scale = GENERATE(1e-6, 1.0, 1e6);
+  TriangleMesh mesh = strip();
+  mesh.vertices.row(3) << 0.5 + 1e-11, 0.5, 1;  // beside the edge (1, 2)
+  mesh.vertices *= scale;
+  const Faults expected{
+      "1 triangle is so low that rounding of coordinates strains the cloth: 1 (2, 1, 3) (counted from 0); "
+      "move the vertices apart, or mesh the cloth anew there"};
+  CHECK(check_mesh(mesh) == expected);
+  mesh.vertices.row(3) += scale * Eigen::RowVector3d(1e-8, 0, 0);
+  CHECK(check_mesh(mesh).empty());
+  mesh.vertices.col(1).array() += 1e2 * scale;
+  CHECK(check_mesh(mesh) == expected);
+}
+
 TEST_CASE("a valid mesh has no faults, whether closed, a cushion, a folded sheet or one that faces down") {
   CHECK(check_mesh({}) == Faults{"the mesh has no vertices", "the mesh has no triangles"});
   CHECK(check_mesh(strip()).empty());
