@@ -86,9 +86,16 @@ void check_connectivity(const MeshFaults& faults, Lines& lines) {
            {"edge has", "edges have", " more than two triangles",
             "a sheet has one or two at each edge: remove those between its sides, or cut it there"},
            edge_text);
-  add_line(lines, faults.inverted_edges,
+  std::vector<FaultyEdge> turned, one_sided;
+  for (const FaultyEdge& edge : faults.inverted_edges) (edge.one_sided ? one_sided : turned).push_back(edge);
+  add_line(lines, turned,
            {"edge runs", "edges run", " in the same direction in both triangles",
             "turn one side over, so that all triangles have the same front side"},
+           edge_text);
+  add_line(lines, one_sided,
+           {"edge of a surface with one side, as a Möbius band has, runs",
+            "edges of a surface with one side, as a Möbius band has, run",
+            " in the same direction in both triangles", "a cloth has two sides: cut it open along them"},
            edge_text);
   add_line(lines, faults.shared_vertices,
            {"vertex joins", "vertices join", " separate fans of triangles",

@@ -105,9 +105,15 @@ void MeshFaults::find_connectivity(const Triangles& triangles, int vertex_count,
                                    const std::vector<char>& ignored) {
   const int corner_count = static_cast<int>(3 * triangles.rows());
   DisjointSets fans(corner_count);  // corners that are connected across edges
+  const int triangle_count = static_cast<int>(triangles.rows());
+  DisjointSets fronts(2 * triangle_count);  // triangles as they are, then turned over, with the same front
   for_each_edge(triangles, vertex_count, ignored, [&](const std::vector<int>& sides) {
     const HalfEdge e = HalfEdge::of(triangles, sides[0]);
     const bool inverted = sides.size() == 2 && HalfEdge::of(triangles, sides[1]).from == e.from;
+    if (sides.size() == 2)
+      for (const bool turned : {false, true})
+        fronts.unite(sides[0] / 3 + turned * triangle_count,
+                     sides[1] / 3 + (turned != inverted) * triangle_count);
     if (sides.size() > 2 || inverted) {
       FaultyEdge fault{e.smaller(), e.larger(), {}};
       for (const int h : sides) fault.triangles.push_back(h / 3);
@@ -119,6 +125,8 @@ void MeshFaults::find_connectivity(const Triangles& triangles, int vertex_count,
       fans.unite(corner_at(h, same_direction), corner_at(sides[0], true));
     }
   });
+  for (FaultyEdge& edge : inverted_edges)
+    edge.one_sided = fronts.find(edge.triangles[0]) == fronts.find(edge.triangles[0] + triangle_count);
   std::vector<int> fan_count(vertex_count, 0);
   for (int c = 0; c < corner_count; ++c)
     if (fans.find(c) == c && (ignored.empty() || !ignored[c / 3])) ++fan_count[triangles(c / 3, c % 3)];

@@ -13,6 +13,7 @@ constexpr double largest_rounding = 1e-6;
 struct FaultyEdge {
   int smaller, larger;
   std::vector<int> triangles;  ///< ascending
+  bool one_sided = false;      ///< of a surface whose triangles cannot all have the same front side
 };
 
 /// The elements of a mesh that a sheet with one side up does not have, ascending. Its indices are in range.

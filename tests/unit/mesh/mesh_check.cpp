@@ -53,6 +53,22 @@ TriangleMesh flat_cover(const TriangleMesh& sheet, const std::vector<int>& joine
   return mesh;
 }
 
+/// A band of 24 triangles whose ends are joined after half a turn.
+TriangleMesh moebius_band() {
+  constexpr int quads = 12;
+  TriangleMesh band;
+  for (int i = 0; i < quads; ++i)
+    for (const double side : {-0.2, 0.2}) {
+      const double turn = 2 * M_PI * i / quads, r = 1 + side * std::cos(turn / 2);
+      append(band, {{r * std::cos(turn), r * std::sin(turn), side * std::sin(turn / 2)}}, {});
+    }
+  for (int i = 0; i < quads; ++i) {
+    const int a = 2 * i, b = a + 1, c = i + 1 < quads ? a + 2 : 1, d = i + 1 < quads ? a + 3 : 0;
+    append(band, {}, {{a, c, b}, {b, c, d}});
+  }
+  return band;
+}
+
 }  // namespace
 
 TEST_CASE("every fault is one line that names the elements") {
@@ -117,6 +133,21 @@ TEST_CASE("a triangle that rounding of its coordinates strains is named at any s
   CHECK(check_mesh(mesh).empty());
   mesh.vertices.col(1).array() += 1e2 * scale;
   CHECK(check_mesh(mesh) == expected);
+}
+
+TEST_CASE("a surface with one side is not told to turn a side over") {
+  const std::string moebius =
+      "1 edge of a surface with one side, as a Möbius band has, runs in the same direction in both "
+      "triangles: "
+      "(0, 1) in triangles 0, 23 (counted from 0); a cloth has two sides: cut it open along them";
+  CHECK(check_mesh(moebius_band()) == Faults{moebius});
+  TriangleMesh mesh = strip();
+  mesh.triangles.row(1) << 1, 2, 3;
+  const TriangleMesh both = both_of(moebius_band(), mesh, {3, 0, 0});
+  CHECK(check_mesh(both) ==
+        Faults{"1 edge runs in the same direction in both triangles: (25, 26) in triangles 24, 25 (counted "
+               "from 0); turn one side over, so that all triangles have the same front side",
+               moebius});
 }
 
 TEST_CASE("a valid mesh has no faults, whether closed, a cushion, a folded sheet or one that faces down") {
