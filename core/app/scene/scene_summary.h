@@ -52,6 +52,10 @@ std::string point_text(const Eigen::Vector3d& p);
 ConfigErrors plausibility_warnings(const Experiment& experiment, const Scene& scene,
                                    const SceneSummary& summary);
 
+/// A warning for the measured numbers of the material that no energy of the scene reads, with edges of this
+/// length [m]: a mistake in the choice of energies.
+ConfigErrors unread_measures(const Experiment& experiment, double edge);
+
 /// Appends an error for every level at whose start an energy or a force is not finite.
 void refuse_infinite_energies(const Experiment& experiment, const Scene& scene, ConfigErrors& errors);
 
