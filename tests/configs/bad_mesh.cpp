@@ -70,6 +70,24 @@ TEST_CASE("all faults of a mesh are listed at once") {
   CHECK(std::count(said.begin(), said.end(), '\n') == 5);
 }
 
+TEST_CASE("seams that stand twice are named, with contact too") {
+  const std::string panel = "v 2 0 0\nv 3 0 0\nv 2 1 0\nv 3 1 0\nf 10 11 13 12\n";
+  const std::string scene =
+      "name: panels\ncloth: {shape: file, file: cloth.obj}\nlevels: 1\n"
+      "energies: [neo_hookean, hinge, gravity]\ncontact: ipc\nmethods: {newton: {}}\n";
+  const std::string weld =
+      "2 border vertices lie on another one, as 9 on 2 (counted from 0) at (2, 0, 0): the "
+      "cloth is not joined there; if it should be, weld them in the file\n";
+  const Scratch folder(scene);
+  folder.write("cloth.obj", sheet + panel);
+  const std::string said = refused_alike(folder);
+  CHECK_THAT(said, Contains("the start of level 0 touches: ") && Contains("error: e.yaml:2:8: " + weld) &&
+                       !Contains("change the start"));
+  CHECK_THAT(refused_alike(folder, "--allow-start-repair"), Contains(weld));
+  folder.write("e.yaml", replaced(scene, "contact: ipc\n", ""));
+  CHECK_THAT(drape_ends("check e.yaml", folder).err, Contains("warning: e.yaml:2:8: " + weld));
+}
+
 TEST_CASE("an obstacle whose coordinates are too large, or that is missing from data/, is refused") {
   const Scratch folder(
       replaced(small_experiment(), "levels: 2\n", "levels: 2\ncontact: ipc\nobstacles: [{mesh: far.obj}]\n"));

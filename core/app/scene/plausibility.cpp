@@ -3,7 +3,6 @@
 
 #include "core/app/scene/boundary_conditions.h"
 #include "core/app/scene/scene_summary.h"
-#include "core/numerics/mesh/unjoined_borders.h"
 #include "core/numerics/solve/start_fault.h"
 
 namespace drape {
@@ -134,19 +133,6 @@ void check_start(const Experiment& e, const SceneSummary& s, Warnings& warnings)
                                        : "give the \"unit\" of the start's file, or its \"scale\""));
 }
 
-void check_welded(const Experiment& e, const Level& coarsest, double edge, Warnings& warnings) {
-  if (e.parameters.cloth.shape != "file") return;
-  constexpr double same_place = 1e-4;  // of an edge: files round coordinates
-  const Coincidence found = coincident_border(coarsest, same_place * edge);
-  if (found.count == 0) return;
-  warnings.add("cloth", std::to_string(found.count) +
-                            (found.count == 1 ? " border vertex lies" : " border vertices lie") +
-                            " on another one, as " + std::to_string(found.second) + " on " +
-                            std::to_string(found.first) + " (counted from 0) at " +
-                            point_text(coarsest.rest.vertices.row(found.first)) +
-                            ": the cloth is not joined there; if it should be, weld them in the file");
-}
-
 /// A pin or handle "nearest" to a point that lies far from the cloth's rest shape.
 template <class Selections>
 void check_nearest(const Experiment& e, const std::string& key, const Selections& selections,
@@ -165,6 +151,12 @@ void check_nearest(const Experiment& e, const std::string& key, const Selections
   }
 }
 
+/// Panels of a file that nothing joins.
+void check_joined(const Experiment& e, const Level& coarsest, Warnings& warnings) {
+  if (const std::string unwelded = unwelded_fault(e, coarsest); !unwelded.empty())
+    warnings.add("cloth", unwelded);
+}
+
 }  // namespace
 
 ConfigErrors plausibility_warnings(const Experiment& e, const Scene& scene, const SceneSummary& s) {
@@ -172,7 +164,7 @@ ConfigErrors plausibility_warnings(const Experiment& e, const Scene& scene, cons
   Warnings warnings(e, all);
   check_size(e.parameters, s, warnings);
   const double coarse_edge = std::ldexp(s.median_edge, s.level);
-  check_welded(e, scene.hierarchy.levels[0], coarse_edge, warnings);
+  check_joined(e, scene.hierarchy.levels[0], warnings);
   check_material(e.parameters, s, warnings);
   check_membrane(e, warnings);
   for (ConfigError& warning : unread_measures(e, s.median_edge)) all.push_back(std::move(warning));

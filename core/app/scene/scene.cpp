@@ -7,9 +7,11 @@
 #include "core/app/experiment/cloth.h"
 #include "core/app/scene/boundary_conditions.h"
 #include "core/app/scene/load_schedule.h"
+#include "core/app/scene/scene_summary.h"
 #include "core/kernel/files/message_text.h"
 #include "core/numerics/mesh/check.h"
 #include "core/numerics/mesh/same_entries.h"
+#include "core/numerics/mesh/unjoined_borders.h"
 #include "core/numerics/mesh_files/io.h"
 
 namespace drape {
@@ -111,6 +113,22 @@ std::optional<Positions> read_reference(const Experiment& experiment, const Hier
 
 }  // namespace
 
+std::string unwelded_fault(const Experiment& e, const Level& level) {
+  if (e.parameters.cloth.shape != "file") return "";
+  constexpr double same_place = 1e-4;  // of an edge: files round coordinates
+  const Coincidence found = coincident_border(level, same_place * median_edge(level));
+  if (found.count == 0) return "";
+  return std::to_string(found.count) + (found.count == 1 ? " border vertex lies" : " border vertices lie") +
+         " on another one, as " + std::to_string(found.second) + " on " + std::to_string(found.first) +
+         " (counted from 0) at " + point_text(level.rest.vertices.row(found.first)) +
+         ": the cloth is not joined there; if it should be, weld them in the file";
+}
+
+bool touches_itself(const std::vector<Intersection>& pairs) {
+  return std::ranges::any_of(pairs,
+                             [](const Intersection& p) { return p.second.starts_with("cloth triangle "); });
+}
+
 void refuse_intersecting_start(const Experiment& e, const LevelModel& model, const Positions& start,
                                ConfigErrors& errors) {
   constexpr std::size_t max_listed = 3;  // of each contact model
@@ -128,7 +146,11 @@ void refuse_intersecting_start(const Experiment& e, const LevelModel& model, con
     if (found.size() > max_listed)
       errors.push_back(
           {e.location_of("start"), "… and " + std::to_string(found.size() - max_listed) + " more pairs"});
-    if (!found.empty()) errors.back().message += remedy;
+    const std::string unwelded = touches_itself(found) ? unwelded_fault(e, model.level()) : "";
+    if (!unwelded.empty())
+      errors.push_back({e.location_of("cloth"), unwelded});
+    else if (!found.empty())
+      errors.back().message += remedy;
   }
 }
 

@@ -7,6 +7,7 @@
 
 #include "core/app/experiment/cloth.h"
 #include "core/app/experiment/experiment.h"
+#include "core/kernel/interfaces/contact_model.h"
 #include "core/numerics/hierarchy/hierarchy.h"
 
 namespace drape {
@@ -51,6 +52,13 @@ std::unique_ptr<Scene> build_scene(const Experiment& experiment, ConfigErrors& e
 /// How the contact models treat their input and the scene, a line each: repaired obstacles, pairs of the
 /// cloth that have no barrier.
 std::vector<std::string> remarks_of(const Experiment& experiment, const Scene& scene);
+
+/// How many border vertices of a cloth from a file lie on others, as seams that stand twice do, and a remedy;
+/// empty without any.
+std::string unwelded_fault(const Experiment& experiment, const Level& level);
+
+/// Whether one of these pairs is of the cloth alone.
+bool touches_itself(const std::vector<Intersection>& pairs);
 
 /// Appends an error for every intersection of a start: contact only preserves intersection-free
 /// states.

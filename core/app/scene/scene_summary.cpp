@@ -103,6 +103,8 @@ SceneSummary summary_of(const Scene& scene) {
   return summary;
 }
 
+double median_edge(const Level& level) { return median(edge_lengths(level, level.rest.vertices)); }
+
 std::string text_of(const SceneSummary& s) {
   std::string text = size_text(s.size) + ", " + std::to_string(s.parts) +
                      (s.parts == 1 ? " part" : " parts") + ", edges " +

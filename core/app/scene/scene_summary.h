@@ -32,6 +32,9 @@ struct SceneSummary {
 
 SceneSummary summary_of(const Scene& scene);
 
+/// Of a level's rest shape [m].
+double median_edge(const Level& level);
+
 /// One line such as "0.62 × 0.7 m, 1 part, edges 8–31 mm, 0.19 kg, bending length 12 mm (2.1 edges), d̂ 1 mm
 /// (0.04 edges), starts 20 mm above body". Leaves out what the scene does not have.
 std::string text_of(const SceneSummary& summary);

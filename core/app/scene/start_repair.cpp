@@ -202,6 +202,12 @@ Vector3d repair_start(Experiment& experiment, const Scene& scene, ConfigErrors& 
   const Location& where = experiment.location_of("start");
   const bool intersects = !start.intersections.empty();
   if (!intersects && !(start.smallest_gap < tiny_gap)) return Vector3d::Zero();
+  const int level = start.level;
+  if (touches_itself(start.intersections) &&
+      !unwelded_fault(experiment, scene.hierarchy.levels[level]).empty()) {  // which no translation mends
+    refuse_intersecting_start(experiment, *scene.model(level), scene.starts[level], errors);
+    return Vector3d::Zero();
+  }
   if (!experiment.parameters.pins.empty()) {
     if (intersects)
       errors.push_back({where, "the start of level " + std::to_string(start.level) +
