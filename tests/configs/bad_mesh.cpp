@@ -70,7 +70,7 @@ TEST_CASE("all faults of a mesh are listed at once") {
   CHECK(std::count(said.begin(), said.end(), '\n') == 5);
 }
 
-TEST_CASE("seams that stand twice are named, with contact too") {
+TEST_CASE("panels that nothing joins are named: seams that stand twice, and the lines that sew elsewhere") {
   const std::string panel = "v 2 0 0\nv 3 0 0\nv 2 1 0\nv 3 1 0\nf 10 11 13 12\n";
   const std::string scene =
       "name: panels\ncloth: {shape: file, file: cloth.obj}\nlevels: 1\n"
@@ -86,6 +86,14 @@ TEST_CASE("seams that stand twice are named, with contact too") {
   CHECK_THAT(refused_alike(folder, "--allow-start-repair"), Contains(weld));
   folder.write("e.yaml", replaced(scene, "contact: ipc\n", ""));
   CHECK_THAT(drape_ends("check e.yaml", folder).err, Contains("warning: e.yaml:2:8: " + weld));
+
+  folder.write("e.yaml", scene);
+  folder.write("cloth.obj", sheet + replaced(replaced(panel, "v 2 0", "v 2.5 0"), "v 2 1", "v 2.5 1") +
+                                "l 3 10\nl 6 12 13\n");
+  CHECK_THAT(drape_ends("check e.yaml", folder).err,
+             Contains("warning: e.yaml:2:8: 2 lines between vertices (`l` in an OBJ file, `edge` in a PLY) "
+                      "are ignored: drape sews "
+                      "nothing; to join panels, have them share the vertices of the seam\n"));
 }
 
 TEST_CASE("an obstacle whose coordinates are too large, or that is missing from data/, is refused") {

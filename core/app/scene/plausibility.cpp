@@ -3,6 +3,7 @@
 
 #include "core/app/scene/boundary_conditions.h"
 #include "core/app/scene/scene_summary.h"
+#include "core/numerics/mesh_files/io.h"
 #include "core/numerics/solve/start_fault.h"
 
 namespace drape {
@@ -155,6 +156,13 @@ void check_nearest(const Experiment& e, const std::string& key, const Selections
 void check_joined(const Experiment& e, const Level& coarsest, Warnings& warnings) {
   if (const std::string unwelded = unwelded_fault(e, coarsest); !unwelded.empty())
     warnings.add("cloth", unwelded);
+  const int lines = e.parameters.cloth.shape == "file" ? lines_in(e.parameters.cloth.file) : 0;
+  if (lines > 0)
+    warnings.add("cloth", std::to_string(lines) + (lines == 1 ? " line" : " lines") +
+                              " between vertices (`l` in an OBJ file, `edge` in a PLY) " +
+                              (lines == 1 ? "is" : "are") +
+                              " ignored: drape sews nothing; to join panels, have "
+                              "them share the vertices of the seam");
 }
 
 }  // namespace

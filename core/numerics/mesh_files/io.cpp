@@ -15,11 +15,11 @@ std::runtime_error unknown_extension(const std::filesystem::path& path, const st
                             "'; known are " + known);
 }
 
-TriangleMesh read(const std::filesystem::path& path, MeshUse use) {
+TriangleMesh read(const std::filesystem::path& path, MeshUse use, int& lines) {
   const std::string extension = lower_extension(path);
-  if (extension == ".obj") return read_obj(path, read_file(path), use);
+  if (extension == ".obj") return read_obj(path, read_file(path), use, lines);
   if (extension == ".off") return read_off(path, read_file(path), use);
-  if (extension == ".ply") return read_ply(path, read_file(path), use);
+  if (extension == ".ply") return read_ply(path, read_file(path), use, lines);
   if (extension == ".stl") return read_stl(path, read_file(path));
   throw unknown_extension(path, ".obj, .off, .ply, .stl");
 }
@@ -33,9 +33,21 @@ std::string lower_extension(const std::filesystem::path& path) {
   return extension;
 }
 
-TriangleMesh read_mesh(const std::filesystem::path& path) { return read(path, MeshUse::cloth); }
+TriangleMesh read_mesh(const std::filesystem::path& path) {
+  int lines = 0;
+  return read(path, MeshUse::cloth, lines);
+}
 
-TriangleMesh read_surface(const std::filesystem::path& path) { return read(path, MeshUse::surface); }
+TriangleMesh read_surface(const std::filesystem::path& path) {
+  int lines = 0;
+  return read(path, MeshUse::surface, lines);
+}
+
+int lines_in(const std::filesystem::path& path) {
+  int lines = 0;
+  read(path, MeshUse::surface, lines);
+  return lines;
+}
 
 void write_mesh(const std::filesystem::path& path, const TriangleMesh& mesh) {
   const std::string extension = lower_extension(path);

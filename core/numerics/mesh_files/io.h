@@ -25,6 +25,10 @@ TriangleMesh read_mesh(const std::filesystem::path& path);
 /// with triangles that repeat a vertex in place of faces with one or two corners.
 TriangleMesh read_surface(const std::filesystem::path& path);
 
+/// The number of lines between vertices (`l` of an OBJ, elements `edge` of a PLY) that a mesh file has beside
+/// its faces; neither function above reads them.
+int lines_in(const std::filesystem::path& path);
+
 /// All scalar vertex properties of a PLY other than x, y and z, in the file's order.
 VertexFields read_ply_fields(const std::filesystem::path& path);
 

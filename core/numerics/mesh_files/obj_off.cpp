@@ -67,20 +67,19 @@ std::array<double, 2> obj_uv(const TextReader& reader, MeshUse use) {
   return uv;
 }
 
-/// Whether OBJ defines such a keyword, other than those of vertices and faces.
+/// Whether OBJ defines such a keyword, other than those of vertices, faces and lines.
 bool is_other_obj_line(std::string_view word) {
   constexpr std::string_view known[] = {
-      "vn",       "vp",       "vc",     "p",      "l",      "g",          "s",         "o",
-      "mg",       "usemtl",   "mtllib", "usemap", "maplib", "shadow_obj", "trace_obj", "bevel",
-      "c_interp", "d_interp", "lod",    "cstype", "deg",    "bmat",       "step",      "curv",
-      "curv2",    "surf",     "parm",   "trim",   "hole",   "scrv",       "sp",        "end",
-      "con",      "ctech",    "stech",  "call",   "csh"};
+      "vn",     "vp",     "vc",     "p",      "csh",        "g",         "s",     "o",        "mg",
+      "usemtl", "mtllib", "usemap", "maplib", "shadow_obj", "trace_obj", "bevel", "c_interp", "d_interp",
+      "lod",    "cstype", "deg",    "bmat",   "step",       "curv",      "curv2", "surf",     "parm",
+      "trim",   "hole",   "scrv",   "sp",     "end",        "con",       "ctech", "stech",    "call"};
   return std::find(std::begin(known), std::end(known), word) != std::end(known);
 }
 
 }  // namespace
 
-TriangleMesh read_obj(const std::filesystem::path& path, std::string_view bytes, MeshUse use) {
+TriangleMesh read_obj(const std::filesystem::path& path, std::string_view bytes, MeshUse use, int& lines) {
   TextReader reader(path, bytes, '#', '\\');
   MeshBuilder builder{.use = use};
   std::vector<int> face;
@@ -106,6 +105,8 @@ TriangleMesh read_obj(const std::filesystem::path& path, std::string_view bytes,
       if (!face_uv.empty() && face_uv.size() < 2 * face.size())
         reader.fail("a face has a vt at every corner or at none");
       builder.add_face(face, face_uv, [&](const std::string& why) { reader.fail(why); });
+    } else if (words[0] == "l") {
+      ++lines;
     } else if (!is_other_obj_line(words[0])) {
       reader.fail("no line of an OBJ file begins with '" + excerpt(words[0]) + "'");
     }

@@ -30,7 +30,7 @@ constexpr std::array<const char*, 3> warp_names{"warp_x", "warp_y", "warp_z"};
 
 struct PlyContent {
   MeshBuilder mesh;
-  int vertex_count = 0;
+  int vertex_count = 0, line_count = 0;
   std::vector<PlyFace> faces;
   bool has_warp = false;     ///< of the faces
   std::vector<double> warp;  ///< 3m, or none
@@ -175,7 +175,7 @@ PlyContent read_content(const std::filesystem::path& path, std::string_view byte
     else if (element.name == "tristrips")
       read_faces(body, element, content, add_strips);
     else
-      read_element(body, element, ignore, ignore, [] {});
+      read_element(body, element, ignore, ignore, [&] { content.line_count += element.name == "edge"; });
   }
   body.finish();
 
@@ -216,8 +216,9 @@ void set_uv_of_vertices(const PlyContent& content, TriangleMesh& mesh) {
 
 }  // namespace
 
-TriangleMesh read_ply(const std::filesystem::path& path, std::string_view bytes, MeshUse use) {
+TriangleMesh read_ply(const std::filesystem::path& path, std::string_view bytes, MeshUse use, int& lines) {
   const PlyContent content = read_content(path, bytes, use);
+  lines += content.line_count;
   TriangleMesh mesh = content.mesh.mesh();
   mesh.warp = Eigen::Map<const Positions>(content.warp.data(), std::ssize(content.warp) / 3, 3);
   if (mesh.uv.rows() == 0 && use == MeshUse::cloth) set_uv_of_vertices(content, mesh);
