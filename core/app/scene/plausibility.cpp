@@ -95,6 +95,32 @@ void check_material(const ExperimentParameters& p, const SceneSummary& s, Warnin
                               moduli);
 }
 
+/// Obstacles that the cloth will hardly meet, or not as they should lie.
+void check_obstacles(const Experiment& e, const SceneSummary& s, Warnings& warnings) {
+  const auto moves = [](const ScheduleKey& key) {
+    return std::ranges::any_of(key.targets, [](const KeyTarget& target) {
+      return target.part != LoadPart::material && target.part != LoadPart::energies;
+    });
+  };
+  if (s.obstacles.empty() || std::ranges::any_of(e.parameters.schedule.keys, moves)) return;
+  const ObstacleGap& nearest = s.nearest()->gap;
+  if (const double length = s.size.maxCoeff(); nearest.gap > length)
+    warnings.add("start", "the cloth starts " + length_text(nearest.gap) + " from the nearest obstacle, " +
+                              nearest.obstacle + ", farther than it is long (" + length_text(length) +
+                              "); move one of them by \"translate\", or check \"unit\" and \"up\" of their "
+                              "files");
+  for (const auto& [gap, size, drop] : s.obstacles) {
+    const double length = size.head<2>().maxCoeff(), height = size.z();
+    // A plate lies as it should; what would not reach up to the cloth need not stand.
+    if (height < 0.05 * length || length < 2 * height || drop < height || drop + height > 1.25 * length)
+      continue;
+    warnings.add("obstacles", "the obstacle " + gap.obstacle + " is " + length_text(length) + " long and " +
+                                  length_text(height) + " high, and the cloth starts " + length_text(drop) +
+                                  " above it: does it lie on its side? Then add \"up: y\", or turn it by "
+                                  "\"rotate\"");
+  }
+}
+
 void check_contact(const SceneSummary& s, Warnings& warnings) {
   if (s.dhat > largest_dhat * s.median_edge)
     warnings.add("contact", "the contact distance dhat of " + length_text(s.dhat) +
@@ -102,7 +128,7 @@ void check_contact(const SceneSummary& s, Warnings& warnings) {
                                 length_text(s.median_edge) +
                                 "); a tenth to a half of an edge is usual; lower \"dhat\", or take fewer "
                                 "vertices or levels");
-  for (const auto& [gap, size] : s.obstacles)
+  for (const auto& [gap, size, drop] : s.obstacles)
     if (size.norm() > largest_obstacle && size.norm() > largest_ratio * s.size.norm())
       warnings.add("obstacles", "the obstacle " + gap.obstacle + " is " + size_text(size) +
                                     " and the cloth " + size_text(s.size) +
@@ -180,6 +206,7 @@ ConfigErrors plausibility_warnings(const Experiment& e, const Scene& scene, cons
   check_nearest(e, "handles", e.parameters.handles, scene.hierarchy.levels[0], coarse_edge, warnings);
   check_start(e, s, warnings);
   check_contact(s, warnings);
+  check_obstacles(e, s, warnings);
   return all;
 }
 

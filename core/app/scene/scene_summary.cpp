@@ -60,7 +60,8 @@ void add_contacts(const LevelModel& model, const Positions& start, SceneSummary&
     const std::vector<TriangleMesh> meshes = contact->obstacles();
     for (std::size_t k = 0; k < gaps.size(); ++k) {
       if (is_inside(points, meshes[k])) summary.enclosing = gaps[k].obstacle;
-      summary.obstacles.push_back({std::move(gaps[k]), extents(meshes[k].vertices)});
+      summary.obstacles.push_back({std::move(gaps[k]), extents(meshes[k].vertices),
+                                   start.col(2).minCoeff() - meshes[k].vertices.col(2).maxCoeff()});
     }
   }
 }
@@ -112,8 +113,7 @@ std::string text_of(const SceneSummary& s) {
                      (s.level > 0 ? " on level " + std::to_string(s.level) : "") + ", " + mass_text(s.mass);
   if (s.bending_length) text += ", bending length " + edges_text(*s.bending_length, s);
   if (s.dhat > 0) text += ", d̂ " + edges_text(s.dhat, s);
-  const auto nearest = std::ranges::min_element(
-      s.obstacles, {}, [](const ObstacleSummary& obstacle) { return obstacle.gap.gap; });
+  const auto nearest = s.nearest();
   if (nearest == s.obstacles.end()) return text;
   constexpr double steep = 0.5;  // the sine of 30°
   const double up = nearest->gap.direction.z();

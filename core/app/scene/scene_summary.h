@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <optional>
 #include <string>
 #include <vector>
@@ -13,6 +14,7 @@ namespace drape {
 struct ObstacleSummary {
   ObstacleGap gap;
   Eigen::Vector3d size;  ///< of its bounding box [m]
+  double drop = 0;       ///< how high the cloth's lowest vertex is above it [m]
 };
 
 /// The quantities of a scene that a person can judge, and that a wrong unit or axis changes.
@@ -27,6 +29,10 @@ struct SceneSummary {
   double start_stretch = 1;  ///< median of start over rest length of the coarsest level's edges [1]
   double dhat = 0;           ///< the largest d̂ of the contact models [m]; 0 without one
   std::vector<ObstacleSummary> obstacles;
+  /// The obstacle with the smallest gap; the end without any.
+  std::vector<ObstacleSummary>::const_iterator nearest() const {
+    return std::ranges::min_element(obstacles, {}, [](const ObstacleSummary& o) { return o.gap.gap; });
+  }
   std::string enclosing;  ///< an obstacle inside which a part of the cloth starts; "" without one
 };
 

@@ -212,11 +212,11 @@ TEST_CASE("Border vertices at one place are named, as long as they are not welde
                                 "levels: 1", levels));
   };
   // Two sheets side by side; the second one begins where the first one ends.
-  const TriangleMesh sheet = grid({0.3, 0.3}, 4, 4, Diagonals::one_way);
-  TriangleMesh both = both_of(sheet, sheet, {0.3, 1e-8, 0});
+  const TriangleMesh sheet = grid({0.2, 0.2}, 4, 4, Diagonals::one_way);
+  TriangleMesh both = both_of(sheet, sheet, {0.2, 1e-8, 0});
   CHECK_THAT(warnings(both),
              Contains("2: 4 border vertices lie on another one, as ") &&
-                 Contains("(counted from 0) at (0.3, 0, 0): the cloth is not joined there; if "
+                 Contains("(counted from 0) at (0.2, 0, 0): the cloth is not joined there; if "
                           "it should be, weld them in the file"));
   both.vertices.bottomRows(16).col(1).array() += 5e-6;  // near for the file's edges, far for a fine level's
   for (const char* levels : {"levels: 1", "levels: 4"})
@@ -231,6 +231,31 @@ TEST_CASE("check warns of an experiment and finds it valid all the same") {
   const Ended check = drape_ends("check e.yaml", folder);
   CHECK_THAT(check.err, Catch::StartsWith("warning: e.yaml:2:8: the cloth is 1000 × 1000 m; "));
   CHECK_THAT(check.out, Contains("\nRead: 1000 × 1000 m, 1 part, edges 100–140 m on level 1, "));
+}
+
+TEST_CASE(
+    "A start that is far from every obstacle gets a warning, as one high above an obstacle on its side") {
+  const auto body = [](const std::string& size, const std::string& middle) {
+    return scene_yaml(metre, "obstacles: [{name: body, meshed_shape: box, size: [" + size +
+                                 "], translate: [0.5, 0.5, " + middle + "]}]\n");
+  };
+  const std::string near = ", {shape: half_space, translate: [0, 0, -0.9]}]", far = ball_below(0.3, 1.2);
+  const std::string moves =
+      "schedule: {steps: 9, keys: [{parameter: obstacles.ball.translate, times: [0, 1], "
+      "values: [[0.5, 0.5, -1.5], [0.5, 0.5, -0.4]]}]}\n";
+  check_warnings({
+      {scene_yaml(metre, far),
+       "the cloth starts 1.2 m from the nearest obstacle, ball: sphere, farther than it is long (1 m); "},
+      {scene_yaml(metre, ball_below(0.3, 0.8)), ""},
+      {scene_yaml(metre, replaced(far, "]}]", "]}" + near)), ""},
+      {scene_yaml(metre, far + moves), ""},
+      {body("0.5, 1.7, 0.3", "-0.85"),
+       "the obstacle body is 1.7 m long and 0.3 m high, and the cloth starts 0.7 m above it: does it lie on "
+       "its side?"},
+      {body("0.5, 1.7, 0.3", "-0.17"), ""},
+      {body("0.5, 0.3, 1.7", "-0.87"), ""},
+      {body("1, 1.7, 0.01", "-0.85"), ""},  // a table's top
+  });
 }
 
 TEST_CASE("A pin nearest to a point far from the cloth gets a warning") {
