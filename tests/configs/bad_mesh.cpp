@@ -38,7 +38,8 @@ TEST_CASE("a valid mesh file runs, and its results can be run again from their o
   const std::pair<std::string, std::string> cases[] = {
       {"cloth.obj", "start: {scale: [0.9, 0.9, 1]"},
       {"cloth.obj, unit: inch, up: y, scale: 20, rotate: [0, 0, 90]",
-       "start: {file: cloth.obj, scale: [19, 20, 19]"}};
+       "start: {file: cloth.obj, scale: [19, 20, 19]"},
+      {"cloth.obj, edge_length: 0.3", "start: {scale: [0.9, 0.9, 1]"}};
   for (const auto& [cloth, start] : cases) {
     const Scratch folder(replaced(experiment_with(cloth), cases[0].second, start));
     folder.write("cloth.obj", sheet);

@@ -12,7 +12,7 @@
 #include "core/numerics/mesh/grain.h"
 #include "core/numerics/mesh/rotation.h"
 #include "core/numerics/mesh_files/io.h"
-#include "core/numerics/patterns/generate.h"
+#include "core/numerics/patterns/delaunay.h"
 
 namespace drape {
 
@@ -61,28 +61,82 @@ std::vector<std::string> cut(TriangleMesh& cloth, const ClothParameters& c) {
   return faults;
 }
 
-TriangleMesh make_cloth(const ClothParameters& c) {
-  if (c.shape == "file") {
-    if (c.file.empty()) throw std::runtime_error("\"shape: file\" needs \"file\", the mesh to read");
-    return read_cloth(c);
+std::string about(double number) { return number < 1e6 ? fixed_text(number, 0) : general_text(number, 2); }
+
+/// A polygon's outline and holes, in its unit.
+std::vector<Polygon> loops_of(const ClothParameters& c) {
+  std::vector<Polygon> loops;
+  for (std::size_t k = 0; k < c.loops.size(); ++k) {
+    const auto& p = c.loops[k].points;
+    if (p.size() % 2 != 0)
+      throw std::runtime_error("loop " + std::to_string(k) +
+                               " has an odd number of coordinates; give x and y of each point");
+    auto& loop = loops.emplace_back();
+    for (std::size_t i = 0; i + 1 < p.size(); i += 2) loop.emplace_back(p[i], p[i + 1]);
   }
-  if (c.shape == "disc") return disc(c.radius, c.vertices);
-  if (c.shape == "polygon") {
-    std::vector<std::vector<Eigen::Vector2d>> loops;
-    for (std::size_t k = 0; k < c.loops.size(); ++k) {
-      const auto& p = c.loops[k].points;
-      if (p.size() % 2 != 0)
-        throw std::runtime_error("loop " + std::to_string(k) +
-                                 " has an odd number of coordinates; give x and y of each point");
-      auto& loop = loops.emplace_back();
-      for (std::size_t i = 0; i + 1 < p.size(); i += 2) loop.emplace_back(p[i], p[i + 1]);
+  if (loops.empty()) throw std::runtime_error("\"shape: polygon\" needs \"loops\", its outline and holes");
+  return loops;
+}
+
+/// Area and border of a disc or a polygon.
+OutlineSize outline_of(const ClothParameters& c) {
+  if (c.shape == "disc") return {M_PI * c.radius * c.radius, 2 * M_PI * c.radius};
+  Positions metre = Eigen::RowVector3d::UnitX();
+  c.convert(metre);
+  OutlineSize outline;
+  for (const Polygon& loop : loops_of(c)) {
+    double area = 0;
+    for (std::size_t i = 0; i < loop.size(); ++i) {
+      const Eigen::Vector2d a = metre(0, 0) * loop[i], b = metre(0, 0) * loop[(i + 1) % loop.size()];
+      area += (a.x() * b.y() - a.y() * b.x()) / 2;
+      outline.border += (b - a).norm();
     }
-    if (loops.empty()) throw std::runtime_error("\"shape: polygon\" needs \"loops\", its outline and holes");
-    TriangleMesh mesh = delaunay_polygon(loops, c.vertices, c.seed);
+    outline.area = std::abs(outline.area - std::abs(area));  // less that of holes
+  }
+  return outline;
+}
+
+/// The number of vertices by the edge length. Throws std::runtime_error for too many.
+int vertices_within(const OutlineSize& outline, double edge_length) {
+  const double count = outline.vertices(edge_length);
+  if (count > bounds::most_vertices)
+    throw std::runtime_error("\"edge_length\" would give about " + about(count) +
+                             " vertices; a coarsest level has at most " + about(bounds::most_vertices));
+  return static_cast<int>(std::lround(std::max(count, 3.0)));
+}
+
+/// The number of vertices of a generated cloth but a grid.
+int vertices_of(const ClothParameters& c) {
+  return c.edge_length ? vertices_within(outline_of(c), *c.edge_length) : c.vertex_count();
+}
+
+double vertices_of_file(const ClothParameters& c) {
+  const TriangleMesh mesh = read_cloth(c);
+  return c.edge_length ? vertices_within(OutlineSize::of(mesh), *c.edge_length)
+                       : c.vertices.value_or(static_cast<int>(mesh.vertices.rows()));
+}
+
+/// A file's mesh, or, where that is asked for, a mesh within its outline. A faulty one stays as it is.
+TriangleMesh cloth_of_file(const ClothParameters& c) {
+  if (c.file.empty()) throw std::runtime_error("\"shape: file\" needs \"file\", the mesh to read");
+  TriangleMesh mesh = read_cloth(c);
+  if (!c.is_meshed_anew() || !check_mesh(mesh).empty()) return mesh;
+  const OutlineSize outline = OutlineSize::of(mesh);
+  if (c.edge_length) vertices_within(outline, *c.edge_length);
+  const double edge_length =
+      c.edge_length.value_or(even_spacing(outline.area, outline.border, c.vertex_count()));
+  return with_name(c.file, [&] { return mesh_outline(mesh, edge_length, c.seed); });
+}
+
+TriangleMesh make_cloth(const ClothParameters& c) {
+  if (c.shape == "file") return cloth_of_file(c);
+  if (c.shape == "disc") return disc(c.radius, vertices_of(c));
+  if (c.shape == "polygon") {
+    TriangleMesh mesh = delaunay_polygon(loops_of(c), vertices_of(c), c.seed);
     c.convert(mesh.vertices);
     return mesh;
   }
-  if (c.triangulation == "random") return random_triangulation(size_of(c), c.vertices, c.seed);
+  if (c.triangulation == "random") return random_triangulation(size_of(c), c.vertex_count(), c.seed);
   const Eigen::Vector2i counts = grid_counts(c);
   if (c.triangulation == "equilateral") return equilateral(size_of(c), counts.x(), counts.y());
   return grid(size_of(c), counts.x(), counts.y(),
@@ -98,8 +152,6 @@ constexpr double max_vertex_ratio = 2;
 // constant is that of the cube with a factor in double precision, which any solve may fall back on. The runs
 // in benchmarks/results/table1.json (peak_memory_bytes) and scale.json (peak_bytes) take 500 to 1300 bytes.
 constexpr double program = 1e8, bytes_each = 2000;
-
-std::string about(double number) { return number < 1e6 ? fixed_text(number, 0) : general_text(number, 2); }
 
 std::string levels_text(std::ptrdiff_t count) {
   return std::to_string(count) + (count == 1 ? " level" : " levels");
@@ -142,18 +194,19 @@ std::optional<TriangleMesh> start_mesh(const Experiment& e, ConfigErrors& errors
 
 Eigen::Vector2i grid_counts(const ClothParameters& c) {
   const Eigen::Vector2d size = size_of(c);
-  const double density = std::sqrt(c.vertices / size.prod());
+  const int vertices = c.vertex_count();
+  const double density = std::sqrt(vertices / size.prod());
   const auto along = [&](int set, double length) {
     return set > 0 ? set : std::max(2.0, std::round(density * length));
   };
   Eigen::Vector2d counts(along(c.columns, size.x()), along(c.rows, size.y()));
   if (c.triangulation == "equilateral")
-    counts = equilateral_counts(size, c.vertices, c.columns, c.rows).cast<double>();
+    counts = equilateral_counts(size, vertices, c.columns, c.rows).cast<double>();
   const double all = counts.prod();
   const std::string made = about(counts.x()) + " × " + about(counts.y());
   if (c.columns == 0 && c.rows == 0 &&
-      (all > max_vertex_ratio * c.vertices || max_vertex_ratio * all < c.vertices))
-    throw std::runtime_error(c.shape + ": about " + std::to_string(c.vertices) +
+      (all > max_vertex_ratio * vertices || max_vertex_ratio * all < vertices))
+    throw std::runtime_error(c.shape + ": about " + std::to_string(vertices) +
                              " vertices are asked for, but its grid of even cells has " + made + " = " +
                              about(all) + "; set columns and rows, or ask for another number of vertices");
   if (all > bounds::most_vertices)
@@ -168,9 +221,7 @@ std::vector<double> estimated_vertices(const ExperimentParameters& p) {
   try {
     const bool grid = is_grid(p.cloth);
     const Eigen::Vector2i counts = grid ? grid_counts(p.cloth) : Eigen::Vector2i(0, 0);
-    const double coarsest = p.cloth.shape == "file"
-                                ? static_cast<double>(read_mesh(p.cloth.file).vertices.rows())
-                                : p.cloth.vertices;
+    const double coarsest = p.cloth.shape == "file" ? vertices_of_file(p.cloth) : vertices_of(p.cloth);
     for (int l = 0; l < p.levels; ++l) {
       const double cells = std::pow(2.0, l);  // of the level, along a cell of the coarsest one
       vertices.push_back(grid ? (cells * (counts.x() - 1) + 1) * (cells * (counts.y() - 1) + 1)

@@ -31,15 +31,18 @@ void check_cloth_keys(const Experiment& e, ConfigErrors& errors) {
   };
   const bool grid = c.shape == "square" || c.shape == "rectangle",
              random = grid && c.triangulation == "random";
-  if (c.seed != ClothParameters().seed && c.shape != "polygon" && !random)
-    refuse("seed", "by this cloth; it is that of \"triangulation: random\" or of a polygon");
+  if (c.seed != ClothParameters().seed && c.shape != "polygon" && !random && !c.is_meshed_anew())
+    refuse("seed",
+           "by this cloth; it is that of \"triangulation: random\", of a polygon or of a file that "
+           "\"vertices\" or \"edge_length\" mesh anew");
+  if (c.vertices && c.edge_length) refuse("edge_length", "beside \"vertices\"; leave one out");
   if (!grid) return;
   if (random) {
     const std::string why = "with \"triangulation: random\"; \"vertices\" counts them";
     if (c.columns > 0) refuse("columns", why);
     if (c.rows > 0) refuse("rows", why);
   } else if ((c.triangulation == "equilateral" ? c.columns > 0 || c.rows > 0 : c.columns > 0 && c.rows > 0) &&
-             c.vertices != ClothParameters().vertices) {
+             c.vertex_count() != ClothParameters().vertex_count()) {
     refuse("vertices", "beside \"columns\" and \"rows\"; leave it out, or set them to 0");
   }
 }

@@ -106,9 +106,14 @@ void ClothParameters::declare(Declaration<ClothParameters>& d) {
       .choices({"one_way", "criss_cross", "equilateral", "random"})
       .only_with("shape", {"square", "rectangle"});
   d.add("vertices", &ClothParameters::vertices,
-        "approximate number of vertices of the coarsest level; not beside `columns` and `rows`")
-      .between(3, bounds::most_vertices)
-      .only_with("shape", {"square", "rectangle", "disc", "polygon"});
+        "approximate number of vertices of the coarsest level, 1024 by default; not beside `columns` and "
+        "`rows`; a file's flat pieces are then meshed anew within their outlines")
+      .between(3, bounds::most_vertices);
+  d.add("edge_length", &ClothParameters::edge_length,
+        "length of the coarsest level's edges, in place of `vertices`")
+      .unit("m")
+      .between(bounds::smallest_length, bounds::largest_length)
+      .only_with("shape", {"disc", "polygon", "file"});
   natural(d.add("columns", &ClothParameters::columns,
                 "number of vertices along the width of a grid; 0 derives it from `vertices`"),
           bounds::most_vertices)
@@ -117,7 +122,8 @@ void ClothParameters::declare(Declaration<ClothParameters>& d) {
                 "number of vertices along the height of a grid; 0 derives it from `vertices`"),
           bounds::most_vertices)
       .only_with("shape", {"square", "rectangle"});
-  natural(d.add("seed", &ClothParameters::seed, "seed of a random triangulation or a polygon's"));
+  natural(d.add("seed", &ClothParameters::seed,
+                "seed of a random triangulation, a polygon's, or a file's that is meshed anew"));
   angle(d.add(
       "grain", &ClothParameters::grain,
       "direction of warp on the rest shape, from `grain_along` counter-clockwise seen from the "

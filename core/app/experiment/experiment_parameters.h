@@ -45,12 +45,15 @@ struct ClothParameters : FileCoordinates {
   double scale = 1;
   Eigen::Vector3d rotate{0, 0, 0};
   std::string triangulation = "one_way";
-  int vertices = 1024;
+  std::optional<int> vertices;
+  std::optional<double> edge_length;
   int columns = 0, rows = 0;
   int seed = 1;
   std::optional<double> grain;
   GrainAxis grain_along = GrainAxis::x;
   std::vector<GrainRegionParameters> grain_regions;
+  bool is_meshed_anew() const { return shape == "file" && (vertices || edge_length); }
+  int vertex_count() const { return vertices.value_or(1024); }  ///< about that of a generated cloth
   static void declare(Declaration<ClothParameters>& d);
 };
 

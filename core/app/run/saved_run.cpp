@@ -106,6 +106,9 @@ ConfigNode saved_config(const Experiment& experiment) {
     cloth.up = as_written.up;
     cloth.scale = as_written.scale;
     cloth.rotate = as_written.rotate;
+    cloth.vertices = as_written.vertices;  // meshed as it was asked for
+    cloth.edge_length = as_written.edge_length;
+    cloth.seed = as_written.seed;
     cloth.grain = as_written.grain;  // its faces have warp as it was cut
     cloth.grain_along = as_written.grain_along;
     cloth.grain_regions.clear();

@@ -16,6 +16,28 @@ Triangles delaunay_triangulation(const std::vector<Eigen::Vector2d>& points);
 /// constant).
 double even_spacing(double area, double border_length, int vertices);
 
+/// A region that is meshed with triangles of even size.
+struct OutlineSize {
+  double area = 0, border = 0;  ///< [m²], [m]
+  static OutlineSize of(const TriangleMesh& mesh);
+  /// The inverse of even_spacing: the number of vertices of a mesh with edges of this length.
+  double vertices(double edge_length) const;
+};
+
+/// Whether a mesh must have about the vertices that are asked for, or may have more where corners and angles
+/// need them.
+enum class VertexCount { about, at_least_about };
+TriangleMesh delaunay_polygon(const std::vector<Polygon>& loops, int vertices_about, unsigned seed,
+                              VertexCount count);
+
+/// A flat mesh whose parts are meshed anew within their outlines, with edges of about this length [m]; the
+/// mesh is valid (check_mesh), its parts need not lie in one plane. Border vertices that are nearer to each
+/// other and at which the border turns by less than 30° are left out. Keeps texture coordinates that are an
+/// affine function of the place in each part, and warp that is the same all over it. Throws
+/// std::runtime_error naming the part that is not flat to a thousandth of its diagonal, or whose triangles
+/// face both ways.
+TriangleMesh mesh_outline(const TriangleMesh& flat, double edge_length, unsigned seed);
+
 /// Random numbers that are equal for every standard library.
 class Random {
  public:

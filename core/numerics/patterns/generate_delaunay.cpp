@@ -195,7 +195,8 @@ Triangles delaunay_triangulation(const std::vector<Eigen::Vector2d>& points) {
   return in_order(std::move(triangles));
 }
 
-TriangleMesh delaunay_polygon(const std::vector<Polygon>& loops, int vertices_about, unsigned seed) {
+TriangleMesh delaunay_polygon(const std::vector<Polygon>& loops, int vertices_about, unsigned seed,
+                              VertexCount count) {
   const std::vector<Ring> rings = checked_rings(loops);
   if (vertices_about < 3) throw std::runtime_error("polygon: at least three vertices are needed");
   double inner_area = 0, border = 0;
@@ -223,8 +224,12 @@ TriangleMesh delaunay_polygon(const std::vector<Polygon>& loops, int vertices_ab
     if (attempt == 0 || miss(*mesh) < miss(best)) best = std::move(*mesh);
     if (miss(best) < 0.02) break;
   }
-  if (miss(best) > 0.15) refuse(std::to_string(best.vertices.rows()));
+  if (miss(best) > 0.15 && count == VertexCount::about) refuse(std::to_string(best.vertices.rows()));
   return best;
+}
+
+TriangleMesh delaunay_polygon(const std::vector<Polygon>& loops, int vertices_about, unsigned seed) {
+  return delaunay_polygon(loops, vertices_about, seed, VertexCount::about);
 }
 
 }  // namespace drape
