@@ -16,6 +16,7 @@ constexpr double least_garment = 0.3, largest_garment = 3;      // longest exten
 constexpr double least_weight = 3e-3, largest_weight = 10;      // [kg/m²]
 constexpr double shortest_bending = 2e-4, longest_bending = 2;  // bending length [m]
 constexpr double fewest_edges = 0.02, most_edges = 1000;        // bending length over an edge
+constexpr double fewest_of_outline = 0.1;                       // the same of a file's pieces or a polygon
 constexpr double largest_dhat = 1.5;                            // d̂ over an edge
 constexpr double largest_obstacle = 100;                        // diagonal [m]
 constexpr double largest_ratio = 50;                            // of that to the cloth's
@@ -32,6 +33,9 @@ class Warnings {
   ConfigErrors& all_;
 };
 
+/// Whether a cloth's shape comes from another program or from a list of points.
+bool is_drawn(const ClothParameters& cloth) { return cloth.shape == "file" || cloth.shape == "polygon"; }
+
 /// The units in which the numbers of a cloth with this longest extent [m] would be those of a garment, each
 /// with what to do; "" if there is none.
 std::string other_units(const ClothParameters& cloth, double longest) {
@@ -43,7 +47,7 @@ std::string other_units(const ClothParameters& cloth, double longest) {
   static constexpr Unit units[] = {{"centimetres", "cm", 1e-2, "divide every length by 100"},
                                    {"millimetres", "mm", 1e-3, "divide every length by 1000"},
                                    {"inches", "inch", 0.0254, "multiply every length by 0.0254"}};
-  const bool has_unit = cloth.shape == "file" || cloth.shape == "polygon";
+  const bool has_unit = is_drawn(cloth);
   double own = 1;
   for (const Unit& unit : units)
     if (has_unit && cloth.unit == unit.key) own = unit.metres;
@@ -87,12 +91,13 @@ void check_material(const ExperimentParameters& p, const SceneSummary& s, Warnin
     warnings.add("material", "the bending length of " + length_text(length) + " is " +
                                  rounded_text(edges, 2) + " edges" + on +
                                  "; 2 to 20 are usual; take fewer vertices or levels, or check " + moduli);
-  else if (edges < fewest_edges && s.size.norm() <= largest_cloth)
-    warnings.add("cloth", "the bending length of " + length_text(length) + " is " + rounded_text(edges, 2) +
-                              " edges" + on +
-                              ", so no fold of the cloth can form; 2 to 20 are usual; take more vertices or "
-                              "levels, or check " +
-                              moduli);
+  else if (edges < (is_drawn(p.cloth) ? fewest_of_outline : fewest_edges) && s.size.norm() <= largest_cloth)
+    warnings.add(
+        "cloth",
+        "the bending length of " + length_text(length) + " is " + rounded_text(edges, 2) + " edges" + on +
+            ", so no fold of the cloth can form; 2 to 20 are usual; take more vertices or "
+            "levels, or check " +
+            moduli + (is_drawn(p.cloth) ? "; \"edge_length\" in cloth meshes flat pieces anew" : ""));
 }
 
 /// Obstacles that the cloth will hardly meet, or not as they should lie.

@@ -159,6 +159,12 @@ TEST_CASE("What no fabric or scene has gets a warning that says what is usual, b
        "of level 0; 2 to 20 are usual"},
       {scene_yaml("shape: square, side: 30, vertices: 25"),
        "2: the bending length of 7.7 mm is 0.001 edges of level 0"},
+      {scene_yaml("shape: polygon, edge_length: 0.11, loops: [{points: [0, 0, 1, 0, 1, 1, 0, 1]}]"),
+       "so no fold of the cloth can form; 2 to 20 are usual; take more vertices or levels, or check "
+       "\"bending_modulus\" (in Pa) and \"thickness\" (in metres, to the third power); \"edge_length\" in "
+       "cloth "
+       "meshes flat pieces anew\n"},
+      {scene_yaml("shape: polygon, edge_length: 0.06, loops: [{points: [0, 0, 1, 0, 1, 1, 0, 1]}]"), ""},
       {edited_scene("[ipc, shapes]", "[{type: ipc, dhat: 0.1}]"),
        "contact distance dhat of 0.1 m is longer than most edges of level 0 (53 mm)"},
   });
