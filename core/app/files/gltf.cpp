@@ -20,6 +20,10 @@ using Rows = Eigen::Matrix<Number, Eigen::Dynamic, columns, columns == 1 ? Eigen
 constexpr int float_component = 5126, unsigned_int_component = 5125;
 constexpr int vertex_data = 34962, index_data = 34963, other_data = 0;
 
+/// Texture coordinates that span more are no tiles of a picture, as of UDIM, but lengths, as a CAD program
+/// writes them.
+constexpr double most_tiles = 10;
+
 constexpr float seconds_between_states = 0.25f;  // of an animation
 
 /// From z upwards to y upwards: a rotation, so triangles keep their orientation.
@@ -38,12 +42,17 @@ class GlbWriter {
         {"attributes", attributes(surface.state)},
         {"indices", accessor<std::uint32_t, 3>(surface.triangles.cast<std::uint32_t>(), index_data)},
         {"material", static_cast<int>(surface.material)}};
+    Json mesh = {{"name", surface.name}};
     if (surface.uv.rows() > 0) {
       Rows<double, 2> uv = surface.uv;
+      const Eigen::RowVector2d least = uv.colwise().minCoeff();
+      if (const double extent = (uv.colwise().maxCoeff() - least).maxCoeff(); extent > most_tiles) {
+        uv = (uv.rowwise() - least) / extent;
+        mesh["extras"]["texcoordScale"] = 1 / extent;
+      }
       uv.col(1) = 1 - uv.col(1).array();
       primitive["attributes"]["TEXCOORD_0"] = accessor<float, 2>(uv.cast<float>(), vertex_data);
     }
-    Json mesh = {{"name", surface.name}};
     if (!surface.earlier.empty()) {
       primitive["targets"] = Json::array();
       Json names = Json::array();
@@ -53,7 +62,7 @@ class GlbWriter {
         names.push_back("state " + std::to_string(names.size()));
       }
       mesh["weights"] = std::vector<double>(surface.earlier.size(), 0.0);
-      mesh["extras"] = {{"targetNames", names}};  // where Blender and three.js look for them
+      mesh["extras"]["targetNames"] = names;  // where Blender and three.js look for them
       animate(node, surface);
     }
     mesh["primitives"] = Json::array({primitive});

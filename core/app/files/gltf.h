@@ -33,8 +33,10 @@ struct GltfScene {
 };
 
 /// A binary glTF 2.0 file (Khronos Group, "glTF 2.0 Specification", ISO/IEC 12113). The last scene is the one
-/// that viewers show. Axes become glTF's: y upwards, v downwards. Earlier states are morph targets of an
-/// animation that ends with `state`. Throws std::runtime_error beyond 4 GiB, which the format cannot hold.
+/// that viewers show. Axes become glTF's: y upwards, v downwards. Texture coordinates that span more than 10,
+/// as in millimetres, begin at 0 and are scaled to 1 at most, both by the mesh's `extras.texcoordScale`.
+/// Earlier states are morph targets of an animation that ends with `state`. Throws std::runtime_error beyond
+/// 4 GiB, which the format cannot hold.
 std::string glb_bytes(const std::vector<GltfSurface>& surfaces, const std::vector<GltfScene>& scenes);
 
 }  // namespace drape

@@ -81,3 +81,27 @@ TEST_CASE("a surface has y upwards, and its earlier states as morph targets, sho
   CHECK((glb.floats(sampler.at("output")) == std::vector<float>{1, 0, 0, 1, 0, 0}));
   CHECK(accessor(sampler["input"]).contains("min"));
 }
+
+TEST_CASE("texture coordinates in a length's unit are scaled to 0 … 1 by a factor that the file states") {
+  const auto coordinates = [](double low, double high) {
+    GltfSurface cloth;
+    cloth.triangles = grid({1, 0.5}, 3, 3, Diagonals::one_way).triangles;
+    cloth.state = lifted_sheet(0);
+    cloth.uv = (low + (high - low) * cloth.state.positions.leftCols<2>().array()).matrix();
+    const Glb glb(glb_bytes({cloth}, {{"one", {0}}}));
+    const auto& mesh = glb.json["meshes"][0];
+    std::vector<float> uv = glb.floats(mesh["primitives"][0]["attributes"]["TEXCOORD_0"]);
+    for (std::size_t i = 1; i < uv.size(); i += 2) uv[i] = 1 - uv[i];
+    return std::pair(uv, mesh.contains("extras") ? mesh["extras"] : nlohmann::json());
+  };
+  const auto [plain, nothing] = coordinates(0, 1);
+  CHECK(nothing.is_null());
+  for (const auto& [low, high] : {std::pair(0., 840.), {-300., 540.}}) {
+    const auto [uv, extras] = coordinates(low, high);
+    CHECK(uv == plain);
+    CHECK((extras == nlohmann::json{{"texcoordScale", 1 / 840.}}));
+  }
+  const auto [tiles, none] = coordinates(0, 10);  // as of UDIM
+  CHECK(none.is_null());
+  CHECK(*std::ranges::max_element(tiles) == 10);
+}
