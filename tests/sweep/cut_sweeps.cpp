@@ -79,10 +79,10 @@ TEST_CASE("a run that another process is resuming stays, and is one of the resul
 
 TEST_CASE("a sweep that was cut while its runs' files were written goes on") {
   const SmallSweep folder;
-  fs::create_directories(folder / "out/runs/base/seed_1.yaml.part");  // no file can be written here
+  fs::create_directories(folder / "out/runs/base/seed_1.yaml");  // no file can be written here
   folder.write("out/sweep.lock", "");
   CHECK(drape_with("sweep s.yaml --out out", folder.path).exit_code > 1);
-  fs::remove_all(folder / "out/runs/base/seed_1.yaml.part");
+  fs::remove_all(folder / "out/runs/base/seed_1.yaml");
   folder.sweep();
 }
 

@@ -90,7 +90,7 @@ int write_first_experiment(std::filesystem::path file) {
                              ": exists already; name another file, as in drape new " + printable(name) +
                              "_2.yaml");
   try {
-    write_file(file, text_of(file.string(), name));
+    write_file(file, text_of(file.string(), name), Existing::kept);
   } catch (const WriteError& error) {
     throw std::runtime_error(error.what());  // a refusal: no run was begun
   }

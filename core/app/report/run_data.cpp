@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <regex>
 #include <stdexcept>
 
 #include "core/app/experiment/exit_codes.h"
@@ -122,6 +124,13 @@ SnapshotFile RunData::snapshots(const LevelRecord& level, Eigen::Index n) const 
                              ": results.json has other numbers of iterations and seconds");
   return {folder / name, iterations.size(), n,
           checksum.is_number_unsigned() ? std::optional(checksum.get<std::uint32_t>()) : std::nullopt};
+}
+
+bool is_file_of_run(const std::string& folder, const std::string& name) {
+  if (folder.empty()) return std::ranges::find(own_files, name) != std::end(own_files);
+  return std::ranges::any_of(own_folders, [&](const auto& own) {
+    return folder == own.first && std::regex_match(name, std::regex(own.second));
+  });
 }
 
 std::string rest_file(int level) { return "rest/l" + std::to_string(level) + ".ply"; }

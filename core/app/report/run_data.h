@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "core/app/experiment/declared_metrics.h"
@@ -12,6 +13,21 @@
 #include "core/kernel/interfaces/triangle_mesh.h"
 
 namespace drape {
+
+// Names that a run writes, the only ones that --overwrite may remove: files, and patterns of those in its
+// folders. Its method may have had any name.
+inline constexpr const char* own_files[] = {"config.yaml", "results.json", "report.html", "iterations.csv",
+                                            "log.jsonl",   "errors.csv",   "start.ply",   "reference.ply"};
+inline constexpr std::pair<const char*, const char*> own_folders[] = {
+    {"levels", R"(.+_l\d+\.(ply|vtp)|.+\.pvd)"},
+    {"fields", R"(.+_l\d+_l\d+\.ply)"},
+    {"rest", R"(l\d+\.ply)"},
+    {"pictures", R"(.+_l\d+(_.+)?\.png)"},
+    {"obstacles", R"(\d+\.ply)"},
+    {"snapshots", R"(.+_l\d+\.bin)"},
+    {"checkpoint", R"((state|previous|next)\.bin)"}};
+/// Whether the name is one of these, in that folder of a run; "" is the run's own.
+bool is_file_of_run(const std::string& folder, const std::string& name);
 
 /// An object of results.json, whose numbers are in SI units.
 struct Values {

@@ -15,6 +15,7 @@
 #include "core/kernel/files/string_utils.h"
 #include "core/numerics/mesh/texture_coordinates.h"
 #include "core/numerics/mesh_files/io.h"
+#include "core/numerics/mesh_files/io_formats.h"
 
 namespace drape {
 
@@ -137,24 +138,6 @@ std::string gltf_of(const RunData& run, const MethodRecord& method,
   return glb_bytes(surfaces, scenes);
 }
 
-/// Throws std::runtime_error if a file cannot be written there, is there already and not to be replaced, or
-/// would first be written over another one.
-void refuse_target(const fs::path& file, bool overwrite) {
-  std::error_code error;
-  const fs::path folder = file.has_parent_path() ? file.parent_path() : fs::path(".");
-  if (!fs::is_directory(folder, error)) refuse_path(folder, "is no folder; make it, or name another file");
-  if (access(folder.c_str(), W_OK | X_OK) != 0)
-    refuse_path(folder, "cannot be written to; name another file");
-  if (fs::is_directory(file, error)) refuse_path(file, "is a folder; name a file");
-  if (!overwrite && fs::exists(fs::symlink_status(file, error)))
-    refuse_path(file, "exists already; name another file, or replace it with --overwrite");
-  fs::path part = file;
-  part += ".part";
-  if (fs::exists(fs::symlink_status(part, error)))
-    refuse_path(part,
-                "exists already, and a file is first written under that name; move it, or name another file");
-}
-
 /// FILE_0000.png, FILE_0001.png, …
 fs::path numbered(const fs::path& file, std::size_t k) {
   std::string number = std::to_string(k);
@@ -190,7 +173,7 @@ std::vector<fs::path> export_pictures(const RunData& run, const MethodRecord& me
   for (std::size_t k = 0; k < states.size(); ++k) {
     Image image = scene.draw(states[k], options.picture.xray);
     if (coarsest) scene.draw_outline(image, *coarsest);
-    write_file(files[k], encode_png(image));
+    write_file(files[k], encode_png(image), options.existing());
   }
   // Pictures of an earlier, longer series would be read as this one's.
   for (std::size_t k = files.size(); options.frames && fs::is_regular_file(numbered(file, k)); ++k)
@@ -214,6 +197,17 @@ void check_options(const fs::path& file, const ExportOptions& options) {
 
 }  // namespace
 
+void refuse_target(const fs::path& file, bool overwrite) {
+  std::error_code error;
+  const fs::path folder = file.has_parent_path() ? file.parent_path() : fs::path(".");
+  if (!fs::is_directory(folder, error)) refuse_path(folder, "is no folder; make it, or name another file");
+  if (access(folder.c_str(), W_OK | X_OK) != 0)
+    refuse_path(folder, "cannot be written to; name another file");
+  if (fs::is_directory(file, error)) refuse_path(file, "is a folder; name a file");
+  if (!overwrite && fs::exists(fs::symlink_status(file, error)))
+    refuse_path(file, "exists already; name another file, or replace it with --overwrite");
+}
+
 std::vector<fs::path> export_run(const fs::path& folder, const fs::path& file, const ExportOptions& options) {
   check_options(file, options);
   const std::string extension = lower_extension(file);
@@ -224,12 +218,13 @@ std::vector<fs::path> export_run(const fs::path& folder, const fs::path& file, c
   if (!all_levels) levels = {levels.back()};
   if (extension == ".png") return export_pictures(run, method, levels, file, options);
   refuse_target(file, options.overwrite);
-  if (extension == ".glb")
-    write_file(file, gltf_of(run, method, levels, options.frames));
-  else if (extension == ".vtp")
-    write_file(file, vtp_text(run.mesh(levels[0]->mesh), read_ply_fields(run.folder / levels[0]->mesh)));
-  else
-    write_mesh(file, cloth_mesh(run, *levels[0]));
+  const LevelRecord& level = *levels[0];
+  write_file(file,
+             extension == ".glb"   ? gltf_of(run, method, levels, options.frames)
+             : extension == ".vtp" ? vtp_text(run.mesh(level.mesh), read_ply_fields(run.folder / level.mesh))
+             : extension == ".obj" ? obj_text(cloth_mesh(run, level))
+                                   : ply_bytes(cloth_mesh(run, level)),
+             options.existing());
   return {file};
 }
 

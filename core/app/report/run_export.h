@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "core/kernel/files/file.h"
+
 namespace drape {
 
 /// How exported pictures look; the defaults are a report's, at twice the size.
@@ -23,7 +25,11 @@ struct ExportOptions {
   bool frames = false;  ///< the recorded snapshots: of one level, as an animation in a .glb; or as pictures
   PictureOptions picture;  ///< of a .png alone
   bool overwrite = false;  ///< replace existing files
+  Existing existing() const { return overwrite ? Existing::replaced : Existing::kept; }
 };
+
+/// Throws std::runtime_error if a file cannot be written there, or is there already and not to be replaced.
+void refuse_target(const std::filesystem::path& file, bool overwrite);
 
 /// Writes states of a method from a run's folder, by the file's extension, and returns the files. A .glb has
 /// each level as a scene, the obstacles included, and opens on the finest. A .obj, .ply or .vtp has the cloth

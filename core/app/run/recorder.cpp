@@ -60,15 +60,15 @@ Json program_and_machine() {
 }  // namespace
 
 Recorder::Recorder(const RunFolder& folder, const Experiment& experiment, const Scene& scene,
-                   std::ios::openmode mode)
+                   std::uint64_t iterations_bytes, std::uint64_t log_bytes)
     : folder_(folder),
       experiment_(experiment),
       scene_(scene),
-      iterations_(folder.file("iterations.csv"), mode),
-      log_(folder.file("log.jsonl"), mode) {}
+      iterations_(own_file(folder.file("iterations.csv"), iterations_bytes), std::ios::app),
+      log_(own_file(folder.file("log.jsonl"), log_bytes), std::ios::app) {}
 
 Recorder::Recorder(const RunFolder& folder, const Experiment& experiment, const Scene& scene)
-    : Recorder(folder, experiment, scene, std::ios::out) {
+    : Recorder(folder, experiment, scene, 0, 0) {
   iterations_ << "method";
   for (const auto& [name, cell] : cells_of({}, {})) iterations_ << ',' << name;
   iterations_ << std::endl;
@@ -93,9 +93,7 @@ Recorder::Recorder(const RunFolder& folder, const Experiment& experiment, const 
 
 Recorder::Recorder(const RunFolder& folder, const Experiment& experiment, const Scene& scene,
                    const Recorder::State& state)
-    : Recorder(folder, experiment, scene, std::ios::app) {
-  truncate_file(folder.file("iterations.csv"), state.iterations_bytes);
-  truncate_file(folder.file("log.jsonl"), state.log_bytes);
+    : Recorder(folder, experiment, scene, state.iterations_bytes, state.log_bytes) {
   s_ = state;
   results_ = parse_json(std::exchange(s_.results, ""));
   const Json now = program_and_machine(),

@@ -83,7 +83,7 @@ class Recorder : public Observer {
 
  private:
   Recorder(const RunFolder& folder, const Experiment& experiment, const Scene& scene,
-           std::ios::openmode mode);
+           std::uint64_t iterations_bytes, std::uint64_t log_bytes);
   /// Writes a file of the folder unless it has these bytes already; `written_` takes its name.
   void write(const std::string& name, const std::string& bytes);
   void write_scene();

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstring>
 #include <fstream>
+#include <limits>
 
 #include "core/app/files/json_file.h"
 #include "core/app/report/run_data.h"
@@ -13,6 +14,20 @@
 #include "core/numerics/mesh_files/io.h"
 
 namespace drape {
+
+namespace {
+
+/// As write_file, unless the file has these bytes already. Returns whether it wrote.
+bool write_where_other(const std::filesystem::path& path, std::string_view bytes) {
+  std::error_code none;
+  if (std::filesystem::is_regular_file(path, none) &&
+      std::filesystem::file_size(path, none) == bytes.size() && read_file(path) == bytes)
+    return false;
+  write_file(path, bytes);
+  return true;
+}
+
+}  // namespace
 
 std::string number_cell(const std::optional<double>& value, int digits) {
   return value && std::isfinite(*value) ? general_text(*value, digits) : "";
@@ -29,14 +44,19 @@ double wall_clock() {
 std::uint64_t size_of_file(const std::filesystem::path& file) {
   std::error_code error;
   const std::uint64_t bytes = std::filesystem::file_size(file, error);
-  if (error) throw WriteError("cannot write " + file.string() + ": " + error.message());
+  if (error) throw WriteError(file, error.value());
   return bytes;
 }
 
-void truncate_file(const std::filesystem::path& file, std::uint64_t bytes) {
+std::filesystem::path own_file(const std::filesystem::path& file, std::uint64_t bytes) {
   std::error_code error;
+  if (bytes == 0)
+    write_file(file, "");
+  else if (std::filesystem::is_symlink(file) || std::filesystem::hard_link_count(file) > 1)
+    write_file(file, read_file(file, std::numeric_limits<std::uintmax_t>::max()));
   std::filesystem::resize_file(file, bytes, error);
-  if (error) throw WriteError("cannot write " + file.string() + ": " + error.message());
+  if (error) throw WriteError(file, error.value());
+  return file;
 }
 
 std::vector<std::string> write_rest(const std::filesystem::path& folder, const Scene& scene) {
@@ -57,7 +77,7 @@ void refuse_short_files(const RunFolder& folder, const Recorder::State& state) {
   for (const auto& [name, bytes] :
        {std::pair("iterations.csv", state.iterations_bytes), {"log.jsonl", state.log_bytes}}) {
     const std::filesystem::path file = folder.file(name);
-    if (!std::filesystem::exists(file))
+    if (!std::filesystem::is_regular_file(file))  // a pipe would block the resumed run
       refuse_path(
           file,
           "is missing, and the run cannot be resumed without: put it back, or run the experiment again");
@@ -75,7 +95,8 @@ void record_abort(const RunFolder& folder, const std::string& cause) {
     for (auto& [name, method] : results.at("methods").items())
       if (method.at("status").get<std::string>() == "running") method["status"] = "aborted";
     write_file(folder.file("results.json"), json_text(results, 1) + "\n");
-    std::ofstream(folder.file("log.jsonl"), std::ios::app)
+    const std::filesystem::path log = folder.file("log.jsonl");
+    std::ofstream(own_file(log, size_of_file(log)), std::ios::app)
         << json_text({{"event", "run_aborted"}, {"message", cause}, {"time", wall_clock()}}) << std::endl;
   } catch (const std::exception&) {
     // The cause of the abort may prevent this write too; message and exit code remain.

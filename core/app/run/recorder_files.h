@@ -24,7 +24,9 @@ double wall_clock();
 
 // These throw WriteError.
 std::uint64_t size_of_file(const std::filesystem::path& file);  ///< [bytes]
-void truncate_file(const std::filesystem::path& file, std::uint64_t bytes);
+/// Makes a file that is to be appended to, of the first `bytes` of the one that is there. Returns its path. A
+/// link, or a file with a second name, is replaced by a copy: the other file may be somebody else's.
+std::filesystem::path own_file(const std::filesystem::path& file, std::uint64_t bytes);
 
 /// Writes the rest shapes that differ from their files in a run's folder, and returns their names.
 std::vector<std::string> write_rest(const std::filesystem::path& folder, const Scene& scene);

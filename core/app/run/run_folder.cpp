@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "core/app/files/json_file.h"
+#include "core/app/report/run_data.h"
 #include "core/kernel/files/file.h"
 
 namespace drape {
@@ -18,47 +19,34 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Names that a run writes, the only ones that --overwrite may remove: files, and patterns of those in its
-// folders. Its method may have had any name.
-constexpr const char* own_files[] = {"config.yaml", "results.json", "report.html", "iterations.csv",
-                                     "log.jsonl",   "errors.csv",   "start.ply",   "reference.ply"};
-constexpr std::pair<const char*, const char*> own_folders[] = {
-    {"levels", R"(.+_l\d+\.(ply|vtp)|.+\.pvd)"},
-    {"fields", R"(.+_l\d+_l\d+\.ply)"},
-    {"rest", R"(l\d+\.ply)"},
-    {"pictures", R"(.+_l\d+(_.+)?\.png)"},
-    {"obstacles", R"(\d+\.ply)"},
-    {"snapshots", R"(.+_l\d+\.bin)"},
-    {"checkpoint", R"((state|previous|next)\.bin)"}};
-constexpr const char* unfinished = ".part";  // ends the name of a file that is being written
 constexpr const char* lock_name = "checkpoint/lock";
 /// Longest ending of a method's file names, which begin with the method's name: a picture's.
-constexpr std::size_t longest_ending = std::string_view("_l10_on_l11.png.part").size();
+constexpr std::size_t longest_ending = std::string_view("_l10_on_l11.png.99.part").size();
 
 /// Whether it is a run's folder: a run creates its lock first and never removes it. Without the lock,
 /// results.json may be of another program.
 bool is_of_a_run(const RunFolder& folder) {
   const fs::path results = folder.file("results.json");
-  return fs::exists(folder.file(lock_name)) ||
+  return fs::is_regular_file(fs::symlink_status(folder.file(lock_name))) ||
          (fs::is_regular_file(results) &&
           text_member(parse_json(read_file(results)), "version").starts_with("drape "));
 }
 
-/// The files there with names that a run writes, finished or not.
-std::vector<fs::path> files_of_run(const RunFolder& folder) {
+/// The files there with names that a run writes: all, or those that were not written to their end.
+std::vector<fs::path> files_of_run(const RunFolder& folder, bool unfinished_alone = false) {
   std::vector<fs::path> files;
-  for (const char* own : own_files)
-    for (const char* ending : {"", unfinished})
-      if (fs::path path = folder.file(std::string(own) + ending); fs::exists(fs::symlink_status(path)))
-        files.push_back(std::move(path));
-  for (const auto& [own, pattern] : own_folders) {
-    const fs::path path = folder.file(own);
-    if (!fs::is_directory(path)) continue;
-    const std::regex own_name("(?:" + std::string(pattern) + ")(?:\\" + unfinished + ")?");
-    for (const auto& entry : fs::directory_iterator(path))
-      if (!entry.is_directory() && std::regex_match(entry.path().filename().string(), own_name))
+  const std::regex unfinished(R"((\.\d+)?\.part$)");
+  const auto add = [&](const std::string& own) {
+    for (const auto& entry : fs::directory_iterator(folder.file(own))) {
+      const std::string name = entry.path().filename().string(),
+                        whole = std::regex_replace(name, unfinished, "");
+      if (!entry.is_directory() && is_file_of_run(own, whole) && !(unfinished_alone && name == whole))
         files.push_back(entry.path());
-  }
+    }
+  };
+  add("");
+  for (const auto& [own, pattern] : own_folders)
+    if (fs::is_directory(folder.file(own))) add(own);
   return files;
 }
 
@@ -99,11 +87,21 @@ void refuse_what_must_stay(const RunFolder& folder, const std::vector<fs::path>&
     }
 }
 
+/// A run writes into folders of its own: the files that a link leads to are not a run's, whatever their
+/// names.
+void refuse_linked_folders(const RunFolder& folder) {
+  for (const auto& [own, pattern] : own_folders)
+    if (const fs::path path = folder.file(own); fs::is_symlink(path))
+      refuse_path(path,
+                  "is a link, and a run writes into folders of its own; remove it, or make it a folder");
+}
+
 /// Files may be replaced only if they are a run's and `overwrite` is set.
 void refuse_what_is_there(const RunFolder& folder, bool overwrite, const std::vector<fs::path>& inputs) {
   for (const char* name : {"sweep.json", "sweep.lock"})
     if (fs::exists(folder.file(name)))
       refuse_path(folder.path(), "is a sweep's folder; name another results folder with --out");
+  refuse_linked_folders(folder);
   const fs::path left = left_there(folder);
   if (left.empty()) return;
   if (!is_of_a_run(folder))
@@ -125,7 +123,7 @@ std::vector<fs::path> missing_folders(const fs::path& folder) {
   return missing;
 }
 
-void make_writable(const RunFolder& folder) {
+void make_results_folder(const RunFolder& folder) {
   std::error_code error;
   fs::create_directories(folder.path(), error);
   if (fs::is_symlink(folder.path()) && !fs::exists(folder.path()))
@@ -134,26 +132,22 @@ void make_writable(const RunFolder& folder) {
   if (error || !fs::is_directory(folder.path()))
     refuse_path(folder.path(), "cannot make the results folder" +
                                    (error ? " (" + error.message() + ")" : "") + "; name another with --out");
-  std::string probe = folder.file("writable_XXXXXX").string();
-  const int made = mkstemp(probe.data());  // under a name that no file has
-  const bool writable = made >= 0 && write(made, "\n", 1) == 1;
-  if (made >= 0) {
-    close(made);
-    fs::remove(probe, error);
-  }
-  if (!writable) refuse_path(folder.path(), "cannot write to the results folder; name another with --out");
 }
 
-/// Removes the files of an earlier run; those that others have put into its folders stay.
-void clear(const RunFolder& folder) {
-  for (const fs::path& file : files_of_run(folder)) {
+void remove_files(const std::vector<fs::path>& files) {
+  for (const fs::path& file : files) {
     std::error_code error;
     fs::remove(file, error);
     if (error) throw WriteError(file.string() + ": cannot be removed (" + error.message() + ")");
   }
+}
+
+/// Removes the files of an earlier run; those that others have put into its folders stay.
+void clear(const RunFolder& folder) {
+  remove_files(files_of_run(folder));
   for (const auto& [own, pattern] : own_folders) {
     std::error_code error;
-    if (const fs::path path = folder.file(own); !fs::is_symlink(path)) fs::remove(path, error);  // if empty
+    fs::remove(folder.file(own), error);  // if empty
   }
 }
 
@@ -192,14 +186,14 @@ RunFolder::RunFolder(std::filesystem::path path, bool overwrite,
     : path_(std::move(path)) {
   const std::vector<fs::path> made = missing_folders(path_);
   try {
-    make_writable(*this);
+    make_results_folder(*this);
     refuse_what_is_there(*this, overwrite, inputs);
+    lock();
   } catch (...) {
     std::error_code error;
     for (const fs::path& folder : made) fs::remove(folder, error);  // removes only empty ones
     throw;
   }
-  lock();
   refuse_what_is_there(*this, overwrite, inputs);  // by another run that has just finished
   clear(*this);
   for (const char* folder : {"levels", "fields", "rest", "obstacles"}) make_folder(file(folder));
@@ -208,16 +202,17 @@ RunFolder::RunFolder(std::filesystem::path path, bool overwrite,
 RunFolder RunFolder::of_run(std::filesystem::path path) {
   RunFolder folder(std::move(path));
   if (!is_of_a_run(folder)) refuse_path(folder.path_, "holds no run; give the results folder of one");
+  refuse_linked_folders(folder);
   folder.lock();
-  // A pipe in their place would block the resumed run.
-  for (const char* name : {"iterations.csv", "log.jsonl"})
-    if (const fs::path file = folder.file(name); fs::exists(file) && !fs::is_regular_file(file))
-      refuse_path(file, "is no file on a disk; run the experiment again");
   return folder;
 }
 
+void RunFolder::remove_unfinished() const { remove_files(files_of_run(*this, true)); }
+
 void RunFolder::lock() {
-  std::filesystem::create_directories(file("checkpoint"));
+  std::error_code error;
+  fs::create_directories(file("checkpoint"), error);
+  if (error) refuse_path(path_, "cannot write to the results folder; name another with --out");
   lock_ = std::make_unique<FileLock>(file(lock_name));
   if (!lock_->acquire(0)) refuse_path(path_, lock_->holder() + " uses this folder; wait for it, or stop it");
 }

@@ -26,6 +26,9 @@ class RunFolder {
   /// running.
   static RunFolder of_run(std::filesystem::path path);
 
+  /// Removes what a process that was killed has not written to its end. Throws WriteError.
+  void remove_unfinished() const;
+
   const std::filesystem::path& path() const { return path_; }
   std::filesystem::path file(const std::string& name) const { return path_ / name; }
 

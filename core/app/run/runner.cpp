@@ -196,6 +196,7 @@ bool resume_experiment(const Experiment& experiment, const Scene& scene, const R
   require_fitting(checkpoint, experiment, scene);
   refuse_short_files(folder, checkpoint.recorder);
   return with_folder(folder, options, [&] {
+    folder.remove_unfinished();
     Recorder recorder(folder, experiment, scene, checkpoint.recorder);
     if (!recorder.restored().empty())
       std::fprintf(stderr, "warning: %s\n", written_again_text(recorder.restored()).c_str());

@@ -35,7 +35,7 @@ namespace {
   sigprocmask(SIG_SETMASK, &unblocked, nullptr);
   prctl(PR_SET_PDEATHSIG, SIGKILL);
   const auto redirect = [](const char* file, int flags, int to) {
-    const int from = open(file, flags | O_CLOEXEC, 0644);
+    const int from = open(file, flags | O_NOFOLLOW | O_CLOEXEC, 0644);
     return from >= 0 && dup2(from, to) == to;
   };
   const bool alone = getppid() != parent;  // the parent died before it could be watched

@@ -65,7 +65,7 @@ bool is_resumable(const RunFiles& files, const RunStatus& status, int threads) {
 /// run is then refused. The run itself replaces the other files.
 void discard_states(const RunFiles& files) {
   const std::filesystem::path states = files.folder / "checkpoint";
-  if (!std::filesystem::is_directory(states)) return;
+  if (!std::filesystem::is_directory(std::filesystem::symlink_status(states))) return;
   FileLock lock(states / "lock");
   if (!lock.acquire(0)) return;
   remove_checkpoints(files.folder);
@@ -78,7 +78,7 @@ RunStatus begin(const RunFiles& files, int threads, bool resumes) {
   // First: cut between the two, a run that is marked as running would resume from what should be gone.
   if (before.starts > 0 && !resumes) discard_states(files);
   write_status(files, status);
-  std::filesystem::remove(files.log());
+  write_file(files.log(), "");
   return status;
 }
 

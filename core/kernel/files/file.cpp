@@ -28,11 +28,10 @@ struct Descriptor {
   }
 };
 
-WriteError unwritten(const std::filesystem::path& path, int error) {
-  return WriteError("cannot write " + path.string() + ": " + std::generic_category().message(error));
-}
-
 }  // namespace
+
+WriteError::WriteError(const std::filesystem::path& path, int error)
+    : runtime_error("cannot write " + path.string() + ": " + std::generic_category().message(error)) {}
 
 void refuse_path(const std::filesystem::path& path, const std::string& fault) {
   throw std::runtime_error(path.string() + ": " + fault);
@@ -72,36 +71,34 @@ std::string read_file(const std::filesystem::path& path, std::uintmax_t most) {
   }
 }
 
-void write_file(const std::filesystem::path& path, std::string_view bytes) {
-  std::filesystem::path part = path;
-  part += ".part";
-  File file(std::fopen(part.c_str(), "wb"));
-  if (!file) throw unwritten(path, errno);
+void write_file(const std::filesystem::path& path, std::string_view bytes, Existing existing) {
+  std::string part;
+  File file;
+  for (int k = 0; !file; ++k) {
+    part = path.string() + (k > 0 ? "." + std::to_string(k) : "") + ".part";
+    file.reset(std::fopen(part.c_str(), "wbxe"));  // x: no file is opened that was there, and no link
+    if (!file && errno != EEXIST) throw WriteError(path, errno);
+  }
   const bool written = std::fwrite(bytes.data(), 1, bytes.size(), file.get()) == bytes.size();
   const bool closed = std::fclose(file.release()) == 0;  // the last bytes may fail only here
-  if (written && closed && std::rename(part.c_str(), path.c_str()) == 0) return;
+  const bool whole = written && closed, kept = existing == Existing::kept;
+  // Unlike a rename, a second name replaces nothing; some file systems do not have such names.
+  const bool named = whole && kept && link(part.c_str(), path.c_str()) == 0;
+  if (whole && !named && !(kept && errno == EEXIST) && std::rename(part.c_str(), path.c_str()) == 0) return;
   const int error = errno;
   std::remove(part.c_str());
-  throw unwritten(path, error);
-}
-
-bool write_where_other(const std::filesystem::path& path, std::string_view bytes) {
-  std::error_code none;
-  if (std::filesystem::is_regular_file(path, none) &&
-      std::filesystem::file_size(path, none) == bytes.size() && read_file(path) == bytes)
-    return false;
-  write_file(path, bytes);
-  return true;
+  if (!named) throw WriteError(path, error);
 }
 
 void make_folder(const std::filesystem::path& path) {
   std::error_code error;
   std::filesystem::create_directories(path, error);
-  if (error) throw unwritten(path, error.value());
+  if (error) throw WriteError(path, error.value());
+  if (std::filesystem::is_symlink(path)) throw WriteError(path.string() + ": is a link; make it a folder");
 }
 
 void rename_file(const std::filesystem::path& from, const std::filesystem::path& to) {
-  if (std::rename(from.c_str(), to.c_str()) != 0) throw unwritten(to, errno);
+  if (std::rename(from.c_str(), to.c_str()) != 0) throw WriteError(to, errno);
 }
 
 std::uint32_t checksum_of(std::string_view bytes) {
@@ -111,9 +108,9 @@ std::uint32_t checksum_of(std::string_view bytes) {
 
 void sync_to_disk(const std::filesystem::path& path) {
   const Descriptor file{open(path.c_str(), O_RDONLY | O_CLOEXEC)};
-  if (file.number < 0) throw unwritten(path, errno);
+  if (file.number < 0) throw WriteError(path, errno);
   // EINVAL, EROFS: there is nothing behind this file that could be flushed.
-  if (fsync(file.number) != 0 && errno != EINVAL && errno != EROFS) throw unwritten(path, errno);
+  if (fsync(file.number) != 0 && errno != EINVAL && errno != EROFS) throw WriteError(path, errno);
 }
 
 }  // namespace drape

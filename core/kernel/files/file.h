@@ -35,6 +35,7 @@ inline constexpr std::uintmax_t largest_file = 2'000'000'000, largest_config = 8
 class WriteError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
+  WriteError(const std::filesystem::path& path, int error);  ///< of this errno
 };
 
 /// The whole file as bytes. Every file that a user names or can change goes through this function. Throws
@@ -42,14 +43,17 @@ class WriteError : public std::runtime_error {
 /// bytes.
 std::string read_file(const std::filesystem::path& path, std::uintmax_t most = largest_file);
 
-/// Writes path + ".part" and renames it: the final name never has an incomplete file. Throws WriteError
-/// naming path and cause, after removing the part.
-void write_file(const std::filesystem::path& path, std::string_view bytes);
+/// What becomes of a file that has the name already.
+enum class Existing { replaced, kept };
 
-/// As write_file, unless the file has these bytes already. Returns whether it wrote.
-bool write_where_other(const std::filesystem::path& path, std::string_view bytes);
+/// Every file of drape's own comes about here. Writes a new file under a name that none has, path + ".part"
+/// or path + ".1.part", and renames it: the final name never has an incomplete file, and what had a name
+/// before is never written into, nor what a link leads to. Throws WriteError naming path and cause, after
+/// removing the part; also if the name is taken and `existing` is kept.
+void write_file(const std::filesystem::path& path, std::string_view bytes,
+                Existing existing = Existing::replaced);
 
-/// Makes the folder and its parents if they do not exist. Throws WriteError.
+/// Makes the folder and its parents if they do not exist. Throws WriteError, also for a link in its place.
 void make_folder(const std::filesystem::path& path);
 
 /// Renames a file; replaces one of the new name. Throws WriteError.
