@@ -132,3 +132,19 @@ TEST_CASE("report, view and export write through no link, and take no name that 
               "both.html: is there already, and no report of ");
   check_untouched("export out --to cloth.ply --overwrite", "cloth.ply");
 }
+
+TEST_CASE("export replaces no result of a run, by whatever way it is named") {
+  const Scratch folder(small_experiment());
+  run_into("out", folder, "--levels 1 --method newton");
+  drape_ends("report out --width 90", folder);
+  fs::create_directory_symlink("out/levels", folder / "short");
+  for (const std::string name :
+       {"out/levels/newton_l0.ply", "out/levels/../levels/newton_l0.vtp", "short/newton_l0.ply",
+        "out/rest/l0.ply", "out/pictures/newton_l0.png", "out/start.ply"})
+    check_error(refused(folder, "export out --overwrite --to " + name),
+                name + ": is the name of a run's own result; name another file\n");
+  // A name of the user's own stays theirs, in the run's folder too.
+  for (const std::string name : {"out/mine.ply", "out/pictures/mine.png", "out/levels/mine.obj"})
+    for (const std::string overwrite : {"", " --overwrite"})
+      drape_ends("export out --to " + name + overwrite, folder);
+}

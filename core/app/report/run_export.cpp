@@ -138,6 +138,16 @@ std::string gltf_of(const RunData& run, const MethodRecord& method,
   return glb_bytes(surfaces, scenes);
 }
 
+/// Whether the file is in a run's folder, under a name that a run writes.
+bool is_result(const fs::path& file) {
+  const fs::path folder = fs::canonical(fs::absolute(file).parent_path());
+  const auto is_run = [](const fs::path& p) {
+    return fs::exists(p / "results.json") || fs::exists(p / "checkpoint/lock");
+  };
+  return (is_run(folder) && is_file_of_run("", file.filename())) ||
+         (is_run(folder.parent_path()) && is_file_of_run(folder.filename(), file.filename()));
+}
+
 /// FILE_0000.png, FILE_0001.png, …
 fs::path numbered(const fs::path& file, std::size_t k) {
   std::string number = std::to_string(k);
@@ -206,6 +216,7 @@ void refuse_target(const fs::path& file, bool overwrite) {
   if (fs::is_directory(file, error)) refuse_path(file, "is a folder; name a file");
   if (!overwrite && fs::exists(fs::symlink_status(file, error)))
     refuse_path(file, "exists already; name another file, or replace it with --overwrite");
+  if (is_result(file)) refuse_path(file, "is the name of a run's own result; name another file");
 }
 
 std::vector<fs::path> export_run(const fs::path& folder, const fs::path& file, const ExportOptions& options) {

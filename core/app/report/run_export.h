@@ -28,7 +28,8 @@ struct ExportOptions {
   Existing existing() const { return overwrite ? Existing::replaced : Existing::kept; }
 };
 
-/// Throws std::runtime_error if a file cannot be written there, or is there already and not to be replaced.
+/// Throws std::runtime_error if a file cannot be written there, if it is there already and not to be
+/// replaced, or if it is a run's own.
 void refuse_target(const std::filesystem::path& file, bool overwrite);
 
 /// Writes states of a method from a run's folder, by the file's extension, and returns the files. A .glb has
