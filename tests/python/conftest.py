@@ -30,9 +30,9 @@ SMALL = {
 }
 
 
-def command(*words, code=0):
+def command(*words, code=0, **process):
     """Runs drape, which must end with this exit code, and returns it with its output."""
-    ended = subprocess.run([pathlib.Path(os.environ["DRAPE_BIN"]) / "drape", *words], capture_output=True, text=True)
+    ended = subprocess.run([pathlib.Path(os.environ["DRAPE_BIN"]) / "drape", *words], capture_output=True, text=True, **process)
     assert ended.returncode == code, ended.stderr
     return ended
 

@@ -1,6 +1,8 @@
 """`drape figures`: what it writes of a run and of a sweep."""
 
 import csv
+import os
+import sys
 
 import numpy
 import pandas
@@ -58,6 +60,41 @@ def test_figures_of_a_run(written, tmp_path):
     table = files["table.tex"].read_text()
     assert table.startswith(r"\begin{tabular}{l") and r"\toprule" in table
     assert "pcs & 1 of 1 & " in table
+
+
+@pytest.fixture
+def small_run(tmp_path):
+    command("run", SMALL_FILE, "--method", "newton", "--levels", "1", "-o", tmp_path / "run", "--no-report", "-q")
+    return tmp_path / "run"
+
+
+@pytest.mark.parametrize("environment", [{}, {"PYTHONPATH": ""}, {"PYTHONPATH": os.pathsep}, {"DRAPE_PYTHON": "python3"}])
+def test_nothing_of_the_current_folder_is_run(small_run, tmp_path, environment):
+    here = tmp_path / "here"
+    here.mkdir()
+    for name in ("sitecustomize", "usercustomize", "numpy", "json", "argparse", "pandas", "matplotlib", "pathlib", "drape", "os"):
+        (here / f"{name}.py").write_text("open('run', 'a').write(__name__)\n")
+    (here / "python3").write_text("#!/bin/sh\necho python3 > run\n")
+    (here / "python3").chmod(0o755)
+    path = f"{os.path.dirname(sys.executable)}:{os.environ['PATH']}"
+    command("figures", small_run, "-o", "figures", cwd=here, env={**os.environ, "PATH": path, **environment})
+    assert not (here / "run").exists() and (here / "figures/table.tex").exists()
+
+
+@pytest.mark.parametrize("name", ["table.tex", "convergence.svg", "newton_end.png", "errors.csv"])
+def test_files_that_are_there_stay_unless_they_are_to_be_replaced(small_run, tmp_path, name):
+    out, victim = tmp_path / "out", tmp_path / "victim"
+    out.mkdir()
+    victim.write_text("mine")
+    (out / name).write_text("mine")
+    assert f"{name}: exists already; " in command("figures", small_run, "-o", out, code=2).stderr
+    assert [file.name for file in out.iterdir()] == [name] and (out / name).read_text() == "mine"
+    (out / name).unlink()
+    (out / name).symlink_to(victim)
+    (out / f"{name}.part").symlink_to(victim)
+    assert f"{name}: exists already; " in command("figures", small_run, "-o", out, code=2).stderr
+    command("figures", small_run, "-o", out, "--overwrite")
+    assert victim.read_text() == "mine" and not (out / name).is_symlink()
 
 
 def test_a_sweep_is_one_table_and_has_figures(written, swept):

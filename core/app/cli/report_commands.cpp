@@ -60,7 +60,10 @@ int export_states(const std::string& folder, const std::string& file, const Expo
   return exit_done;
 }
 
+// Python would look into the current folder first, and for an empty part of PYTHONPATH, which -E keeps from
+// it until here: what lies there is not to be run.
 constexpr const char* figures_program = R"(import sys
+sys.path = [part for part in [*sys.argv.pop(1).split(':'), *sys.path] if part]
 try:
     import matplotlib
     import drape.figures as figures
@@ -73,20 +76,22 @@ sys.exit(figures.main())
 
 /// Becomes python3, whose exit code is the command's. Throws std::runtime_error for a folder without results,
 /// and if python3 does not start.
-int make_figures(const std::string& folder, const std::string& out) {
+int make_figures(const std::string& folder, const std::string& out, bool overwrite) {
   require_run_or_sweep(folder);
+  const char* given = std::getenv("PYTHONPATH");
+  std::string path = given ? given : "";
   // The package lies beside bin/ in the build tree, in lib/ once installed, and around the command in a
   // wheel.
   const fs::path root = own_program().parent_path().parent_path();
   for (const fs::path& place : {root / "python", root / "lib/python3/dist-packages", root.parent_path()}) {
     if (!fs::exists(place / "drape/__init__.py")) continue;
-    const char* path = std::getenv("PYTHONPATH");
-    setenv("PYTHONPATH", (place.string() + (path && *path ? std::string(":") + path : "")).c_str(), 1);
+    path = place.string() + ":" + path;
     break;
   }
   const char* python = std::getenv("DRAPE_PYTHON");
   python = python && *python ? python : "/usr/bin/python3";  // for which `make python` builds the module
-  execl(python, python, "-c", figures_program, folder.c_str(), "--out", out.c_str(), nullptr);
+  execlp(python, python, "-E", "-c", figures_program, path.c_str(), folder.c_str(), "--out", out.c_str(),
+         overwrite ? "--overwrite" : nullptr, nullptr);
   throw std::runtime_error(std::string(python) + ": cannot be started; name a Python in DRAPE_PYTHON");
 }
 
@@ -162,13 +167,16 @@ void add_export_command(Commands& commands) {
 void add_figures_command(Commands& commands) {
   struct Options {
     std::string folder, out;
+    bool overwrite = false;
   };
   const auto o = std::make_shared<Options>();
-  CLI::App& command = commands.add(
-      "figures", "write a paper's figures of a run or a sweep: SVG, PNG, CSV and LaTeX",
-      "drape figures results/sphere -o figures", [o] { return make_figures(o->folder, o->out); });
+  CLI::App& command =
+      commands.add("figures", "write a paper's figures of a run or a sweep: SVG, PNG, CSV and LaTeX",
+                   "drape figures results/sphere -o figures",
+                   [o] { return make_figures(o->folder, o->out, o->overwrite); });
   command.add_option("folder", o->folder, "results folder, or a sweep's")->required();
   add_option(command, "-o,--out DIR", o->out, "folder of the figures, which is made")->required();
+  command.add_flag("--overwrite", o->overwrite, "replace existing files");
 }
 
 void add_report_commands(Commands& commands) {

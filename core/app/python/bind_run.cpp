@@ -12,6 +12,7 @@
 #include "core/app/run/runner.h"
 #include "core/app/run/saved_run.h"
 #include "core/app/view/page.h"
+#include "core/kernel/files/file.h"
 #include "core/kernel/files/number_text.h"
 #include "core/numerics/mesh_files/io.h"
 #include "core/numerics/stability/stability_test.h"
@@ -173,6 +174,13 @@ void bind_results(py::module_& m) {
         return std::pair(std::move(mesh.vertices), std::move(mesh.triangles));
       },
       py::arg("file"));
+  m.def("_refuse_target", &refuse_target, py::arg("file"), py::arg("overwrite"));
+  m.def(
+      "_write_file",
+      [](const fs::path& file, const std::string& bytes, bool overwrite) {
+        write_file(file, bytes, overwrite ? Existing::replaced : Existing::kept);
+      },
+      py::arg("file"), py::arg("bytes"), py::arg("overwrite"));
   m.def("_solver_style", &solver_style, py::arg("solver"),
         "Index of the colour and the mark that the solver has in every plot.");
 }

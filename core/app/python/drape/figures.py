@@ -8,6 +8,7 @@ from __future__ import annotations
 import argparse
 import pathlib
 import sys
+import tempfile
 
 import pandas
 
@@ -123,9 +124,9 @@ def _sweep_figures(rows: pandas.DataFrame, out: pathlib.Path) -> list[pathlib.Pa
     return files
 
 
-def figures(results, out) -> list[pathlib.Path]:
+def figures(results, out, overwrite: bool = False) -> list[pathlib.Path]:
     """Writes the figures of a run or a sweep to a folder, which is made, and returns the files. Raises RuntimeError for a
-    folder without results."""
+    folder without results, and for a file that exists."""
     import matplotlib
 
     matplotlib.use("Agg")
@@ -135,19 +136,29 @@ def figures(results, out) -> list[pathlib.Path]:
     if "method" not in rows or (rows["method"].fillna("") == "").all():  # a run without results has no method
         raise RuntimeError(f"{folder}: no run has written results yet")
     out.mkdir(parents=True, exist_ok=True)
-    rows.to_csv(out / "table.csv", index=False)
-    (out / "table.tex").write_text(latex_table(rows), encoding="utf-8")
-    files = [out / "table.csv", out / "table.tex"]
-    return files + (_run_figures(folder, out) if (folder / "results.json").exists() else _sweep_figures(rows, out))
+    _core._refuse_target(out / "table.csv", overwrite)  # before anything is drawn
+    with tempfile.TemporaryDirectory(prefix="drape_figures_") as made:
+        files = [pathlib.Path(made, "table.csv"), pathlib.Path(made, "table.tex")]
+        rows.to_csv(files[0], index=False)
+        files[1].write_text(latex_table(rows), encoding="utf-8")
+        of_run = (folder / "results.json").exists()
+        files += _run_figures(folder, pathlib.Path(made)) if of_run else _sweep_figures(rows, pathlib.Path(made))
+        written = [out / file.name for file in files]
+        for target in written:
+            _core._refuse_target(target, overwrite)
+        for file, target in zip(files, written):
+            _core._write_file(target, file.read_bytes(), overwrite)
+    return written
 
 
 def main() -> int:
     parser = argparse.ArgumentParser(prog="drape figures", description=__doc__)
     parser.add_argument("results", help="results folder of a run, or a sweep's")
     parser.add_argument("-o", "--out", required=True, help="folder of the figures")
+    parser.add_argument("--overwrite", action="store_true", help="replace existing files")
     arguments = parser.parse_args()
     try:
-        for file in figures(arguments.results, arguments.out):
+        for file in figures(arguments.results, arguments.out, arguments.overwrite):
             print(file)
     except (RuntimeError, OSError) as error:
         print(f"error: {error}", file=sys.stderr)
