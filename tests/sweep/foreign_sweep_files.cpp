@@ -1,10 +1,11 @@
-// What somebody else has put where a sweep writes.
+// What somebody else has put where a sweep writes, and names that a shell or Slurm would read otherwise.
 
 #include <catch2/catch.hpp>
 
 #include "tests/support/sweep_runs.h"
 
 namespace fs = std::filesystem;
+using Catch::Contains;
 
 namespace {
 
@@ -41,4 +42,21 @@ TEST_CASE("a sweep's lock is none that a link leads to, and a run's log is a new
   folder.link("out/sweep.json.part");
   folder.sweep();
   CHECK(text_of(folder / "victim") == "mine");
+}
+
+TEST_CASE("a folder's name becomes no line of a job's script, and no pattern of Slurm's") {
+  const SmallSweep folder;
+  for (const std::string name : {"a$'\\n'touch", "'a\"b'", "100%a", "'a\\b'", "a$'\\x7f'"})
+    CHECK_THAT(refused_by("sweep s.yaml --engine slurm --out " + name, folder.path),
+               Contains("its name has a control character, \", \\ or %, which the scripts of Slurm's jobs"));
+  CHECK(std::distance(fs::directory_iterator(folder.path), fs::directory_iterator()) == 2);
+}
+
+TEST_CASE("what is cancelled is a job's number") {
+  const SmallSweep folder;
+  folder.sweep();
+  fs::create_directory(folder / "out/slurm");
+  folder.write("out/slurm/jobs.json", R"({"array": "--user=me", "collector": "8"})");
+  CHECK_THAT(refused_by("sweep s.yaml --out out --engine slurm --cancel", folder.path),
+             Contains("jobs.json: a job is a number, not --user=me; see which of its jobs are in the queue"));
 }

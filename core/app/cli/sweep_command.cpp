@@ -88,6 +88,7 @@ int run_local(const Sweep& sweep, const SweepFolder& folder, SweepRequest r) {
 }
 
 int run_on_slurm(const Sweep& sweep, const SweepFolder& folder, const SweepRequest& r) {
+  refuse_in_scripts(folder);
   if (r.cancel) {
     cancel_jobs(folder, r);
     folder.refresh();

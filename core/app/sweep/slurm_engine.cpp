@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <boost/algorithm/string/replace.hpp>
+#include <boost/algorithm/string/trim.hpp>
 #include <chrono>
 #include <cmath>
 #include <thread>
@@ -34,9 +35,8 @@ std::string quoted(const std::string& text) {
   return "'" + boost::replace_all_copy(text, "'", "'\\''") + "'";
 }
 
-std::string one_line(std::string text) {
-  while (!text.empty() && text.back() == '\n') text.pop_back();
-  return boost::replace_all_copy(text, "\n", " ");
+std::string one_line(const std::string& text) {
+  return boost::replace_all_copy(boost::trim_right_copy(text), "\n", " ");
 }
 
 std::string directives(const std::vector<std::string>& options) {
@@ -86,11 +86,25 @@ std::optional<SlurmJobs> submitted_jobs(const SweepFolder& folder) {
   const Json json = parse_json(text_of_file(folder.jobs()));
   if (!json.is_object()) return std::nullopt;
   const JsonFile file(folder.jobs(), "see which of its jobs are in the queue (`squeue`), then remove it");
-  return SlurmJobs{file.find<std::string>(json, "array").value_or(""),
-                   file.find<std::string>(json, "collector").value_or("")};
+  SlurmJobs jobs{file.find<std::string>(json, "array").value_or(""),
+                 file.find<std::string>(json, "collector").value_or("")};
+  for (const std::string& id : {jobs.array, jobs.collector})  // others would be options of scancel
+    if (id.find_first_not_of("0123456789") != id.npos) file.refuse("a job is a number, not " + excerpt(id));
+  return jobs;
 }
 
 }  // namespace
+
+void refuse_in_scripts(const SweepFolder& folder) {
+  for (const fs::path& path : {folder.path(), fs::absolute(folder.path()), own_program()})
+    if (std::ranges::any_of(path.string(), [](unsigned char c) {
+          return c < ' ' || c == '\x7f' || c == '"' || c == '\\' || c == '%';
+        }))
+      refuse_path(
+          path,
+          "its name has a control character, \", \\ or %, which the scripts of Slurm's jobs cannot have; "
+          "name another folder with --out");
+}
 
 void refuse_while_queued(const SweepFolder& folder) {
   const auto jobs = submitted_jobs(folder);

@@ -12,6 +12,10 @@ struct SlurmJobs {
 /// Throws std::runtime_error while jobs of the folder are queued or running.
 void refuse_while_queued(const SweepFolder& folder);
 
+/// Throws std::runtime_error for a folder, or a path of this program, that sbatch would read otherwise: in a
+/// script's directives a line ends the text, and % begins what Slurm puts in its place.
+void refuse_in_scripts(const SweepFolder& folder);
+
 /// Writes slurm/job.sh and slurm/collect.sh and submits them. Throws std::runtime_error with sbatch's
 /// message.
 SlurmJobs submit(const Sweep& sweep, const SweepFolder& folder, const std::vector<std::size_t>& missing,
