@@ -195,7 +195,7 @@ TEST_CASE("A full disk aborts the run with its own code; once there is room it c
   for (const auto& [name, bytes] : files_in(folder / "out")) CHECK_FALSE(name.ends_with(".part"));
 
   const std::string resume = "run --resume out --quiet --no-report --threads 1";
-  CHECK(drape_ends(resume, folder, drape::exit_not_converged).err == "");
+  CHECK_THAT(drape_ends(resume, folder, drape::exit_not_converged).err, Catch::Matches(shortfalls));
   CHECK_FALSE(results_in(folder / "out").contains("aborted"));
   check_same_files(folder / "out", folder / "whole", {"levels/pcs_l1.ply", "levels/newton_l1.ply"});
 

@@ -148,3 +148,12 @@ TEST_CASE("export replaces no result of a run, by whatever way it is named") {
     for (const std::string overwrite : {"", " --overwrite"})
       drape_ends("export out --to " + name + overwrite, folder);
 }
+
+TEST_CASE("an exit code of an error comes with a line, in a quiet run too") {
+  const Scratch folder(small_experiment());
+  const Ended stuck = run_into("out", folder, "--method newton,pcs --set newton.max_steps=2", 1);
+  CHECK_THAT(stuck.err, StartsWith("error: pcs: max_steps_reached; level 0 max_steps_reached: ") &&
+                            Contains("\nerror: newton: "));
+  CHECK(drape_ends("run --resume out -q", folder, 1).err == stuck.err);
+  CHECK(run_into("good", folder, "--method newton").err == "");
+}

@@ -76,6 +76,9 @@ inline std::string said_of(const std::string& experiment, const std::string& opt
   return refused(Scratch(experiment), "run e.yaml --out out " + options);
 }
 
+/// Standard error of a quiet run that has not converged: a line for each such method.
+inline const std::string shortfalls = "(error: [^\n]+; level [0-9] [^\n]+\n)+";
+
 /// Arguments of a command, and how its refusal begins after "error: ".
 using Refusals = std::vector<std::pair<std::string, std::string>>;
 

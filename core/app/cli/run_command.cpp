@@ -35,6 +35,20 @@ void show_other_methods(const Experiment& experiment, const std::string& run) {
     std::cerr << "only " << run << " was run; --method all adds " << joined(others) << "\n";
 }
 
+/// Says which methods have not converged, and why: a quiet run has told nothing of it.
+int exit_code_of(const RunData& run) {
+  for (const MethodRecord& method : run.methods) {
+    if (has_converged(method.status)) continue;
+    std::string line = "error: " + method.name + ": " + method.status;
+    for (const LevelRecord& level : method.levels)
+      if (!has_converged(level.status))
+        line += "; level " + std::to_string(level.level) + " " + level.status +
+                (level.message.empty() ? "" : ": " + level.message);
+    std::cerr << printable(line) << "\n";
+  }
+  return run.converged() ? exit_done : exit_not_converged;
+}
+
 int run(RunRequest& r, const Experiment& experiment, const Scene& scene,
         std::optional<InterruptedRun> interrupted = std::nullopt) {
   stop_on_signals();  // nothing to save before this point
@@ -63,7 +77,7 @@ int run(RunRequest& r, const Experiment& experiment, const Scene& scene,
     std::cerr << "stopped on request; everything up to then is in " << r.out.string() << "\n";
     return exit_by_signal + as_signal;
   }
-  return converged ? exit_done : exit_not_converged;
+  return converged ? exit_done : exit_code_of(read_run(r.out));
 }
 
 int run_config(RunRequest& r, const Registry& registry) {
@@ -88,7 +102,7 @@ int resume(RunRequest& r, const Registry& registry) {
   require_none(errors);
   if (!saved->interrupted) {
     std::cout << r.resumed << ": the run is complete; there is nothing to resume\n";
-    return read_run(r.out).converged() ? exit_done : exit_not_converged;
+    return exit_code_of(read_run(r.out));
   }
   r.methods = saved->interrupted->checkpoint.methods;
   return run(r, saved->experiment, *saved->scene, std::move(saved->interrupted));
