@@ -41,6 +41,12 @@ class LiveClient {
     return ::send(socket_, text.data(), text.size(), MSG_NOSIGNAL | MSG_DONTWAIT) == ssize_t(text.size());
   }
 
+  /// Whether the server has closed the connection.
+  bool is_ended() const {
+    char byte;
+    return recv(socket_, &byte, 1, MSG_PEEK | MSG_DONTWAIT) == 0;
+  }
+
   /// The bytes that come until the server closes the connection. ctest's limit ends a wait in vain.
   std::string answer() const {
     std::string all;

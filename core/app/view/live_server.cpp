@@ -8,12 +8,18 @@
 #include <atomic>
 #include <cerrno>
 #include <chrono>
+#include <condition_variable>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <iterator>
+#include <map>
+#include <mutex>
 #include <random>
+#include <set>
 #include <stdexcept>
 #include <thread>
+#include <vector>
 
 namespace drape {
 
@@ -47,20 +53,72 @@ void refuse(Response& response, int status, const std::string& why) {
   response.set_content(why + "\n", "text/plain");
 }
 
-constexpr std::size_t largest_body = 1024;  // [bytes]; no request of the page has one
-constexpr int threads = 16;                 // concurrent connections
+constexpr std::size_t largest_body = 1024;    // [bytes]; no request of the page has one
+constexpr std::size_t most_connections = 16;  // at a time, each with a thread of its own
 
-/// Disconnects everyone from a port of this process: the library ends its connections only between reads, so
-/// that a peer which sends a byte now and then would delay the end for ever.
-void disconnect_all(int port) {
+/// The connections to a port of this process: their sockets, by the ports of their peers. The library tells
+/// nobody its sockets; those beyond 1024 cannot be its own, since it has so few.
+std::map<int, int> connections_to(int port) {
+  std::map<int, int> sockets;
   for (int socket = 3; socket < 1024; ++socket) {
-    sockaddr_in own{};
-    socklen_t size = sizeof own;
-    if (getsockname(socket, reinterpret_cast<sockaddr*>(&own), &size) == 0 && own.sin_family == AF_INET &&
-        ntohs(own.sin_port) == port)
-      ::shutdown(socket, SHUT_RDWR);
+    sockaddr_in own{}, peer{};
+    socklen_t own_size = sizeof own, peer_size = sizeof peer;
+    if (getsockname(socket, reinterpret_cast<sockaddr*>(&own), &own_size) == 0 && own.sin_family == AF_INET &&
+        ntohs(own.sin_port) == port &&
+        getpeername(socket, reinterpret_cast<sockaddr*>(&peer), &peer_size) == 0)
+      sockets[ntohs(peer.sin_port)] = socket;
   }
+  return sockets;
 }
+
+/// The library's threads for connections. The library accepts any number of them, and each that waits for a
+/// thread takes a descriptor that the run may need. Here the next one is not accepted before there is room.
+/// The oldest connection that has not asked for anything of the live view makes room: it is ended.
+class ConnectionQueue final : public httplib::ThreadPool {
+ public:
+  explicit ConnectionQueue(const int& port) : ThreadPool(most_connections), port_(port) {}
+
+  /// Called by the thread that accepts connections, once for each.
+  void enqueue(std::function<void()> serve) override {
+    std::unique_lock lock(mutex_);
+    const std::map<int, int> sockets = connections_to(port_);
+    const auto is_closed = [&](int peer) { return !sockets.contains(peer); };
+    std::erase_if(peers_, is_closed);
+    std::erase_if(served_, is_closed);
+    for (const auto& [peer, socket] : sockets)
+      if (std::ranges::find(peers_, peer) == peers_.end()) peers_.push_back(peer);
+    if (peers_.size() > most_connections) {
+      const auto newest = std::prev(peers_.end()),
+                 idle =
+                     std::find_if(peers_.begin(), newest, [&](int peer) { return !served_.contains(peer); });
+      if (idle != newest) ::shutdown(sockets.at(*idle), SHUT_RDWR);
+    }
+    has_room_.wait(lock, [&] { return open_ < most_connections; });
+    ++open_;
+    ThreadPool::enqueue([this, serve = std::move(serve)] {
+      serve();
+      {
+        const std::lock_guard ended(mutex_);
+        --open_;
+      }
+      has_room_.notify_one();
+    });
+  }
+
+  /// The connection of this peer has asked for something of the live view.
+  void keep(int peer) {
+    const std::lock_guard lock(mutex_);
+    served_.insert(peer);
+  }
+
+ private:
+  const int& port_;
+  std::mutex mutex_;
+  std::condition_variable has_room_;
+  std::size_t open_ = 0;    // connections that have a thread
+  std::vector<int> peers_;  // ports of the peers, the oldest first
+  std::set<int> served_;    // of these, those that are kept
+};
 
 }  // namespace
 
@@ -69,6 +127,7 @@ struct LiveServer::Impl {
   std::thread thread;
   std::atomic<bool> ended = false;
   int port = 0;
+  ConnectionQueue* queue = nullptr;  // the server's, while it listens
   const std::string base = "/" + random_token() + "/";
 
   /// Whether the request is for the printed address. This stops DNS rebinding and cross-site requests.
@@ -85,12 +144,14 @@ struct LiveServer::Impl {
 LiveServer::LiveServer(int port, const LiveAnswers& answers, double patience)
     : impl_(std::make_unique<Impl>()) {
   httplib::Server& server = impl_->server;
-  server.new_task_queue = [] { return new httplib::ThreadPool(threads); };
+  server.new_task_queue = [this] { return impl_->queue = new ConnectionQueue(impl_->port); };
   server.set_keep_alive_max_count(1);
   server.set_read_timeout(std::chrono::duration<double>(patience));
   server.set_write_timeout(std::chrono::duration<double>(patience));
   // The library's default would let two programs listen on one port.
-  server.set_socket_options([](socket_t socket) {
+  int listening = -1;
+  server.set_socket_options([&listening](socket_t socket) {
+    listening = socket;
     const int yes = 1;
     setsockopt(socket, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);
   });
@@ -105,7 +166,10 @@ LiveServer::LiveServer(int port, const LiveAnswers& answers, double patience)
   server.set_pre_routing_handler([this](const Request& request, Response& response) {
     // Before the body is read: only the page may send one.
     const bool ours = impl_->is_ours(request);
-    if (ours && request.path.starts_with(impl_->base)) return httplib::Server::HandlerResponse::Unhandled;
+    if (ours && request.path.starts_with(impl_->base)) {
+      impl_->queue->keep(request.remote_port);
+      return httplib::Server::HandlerResponse::Unhandled;
+    }
     refuse(response, ours ? 404 : 403,
            ours ? "There is nothing here."
                 : "Refused: the request comes from elsewhere than the live view's own page. A port that is "
@@ -156,6 +220,8 @@ LiveServer::LiveServer(int port, const LiveAnswers& answers, double patience)
     throw std::runtime_error(
         "--port " + std::to_string(port) + ": cannot listen on 127.0.0.1:" + std::to_string(port) + " (" +
         std::strerror(errno) + "); name another port, or leave --port out for one that is free");
+  // The library has the system let five connections wait; a sixth would come back after a second or more.
+  ::listen(listening, SOMAXCONN);
   impl_->port = bound;
   url_ = "http://127.0.0.1:" + std::to_string(bound) + base;
   impl_->thread = std::thread([this] {
@@ -168,8 +234,10 @@ LiveServer::~LiveServer() {
   // A server that does not listen yet would miss the stop.
   while (!impl_->server.is_running() && !impl_->ended) std::this_thread::yield();
   impl_->server.stop();
+  // The library ends its connections only between reads: a peer that sends a byte now and then would delay
+  // the end for ever.
   while (!impl_->ended) {
-    disconnect_all(impl_->port);
+    for (const auto& [peer, socket] : connections_to(impl_->port)) ::shutdown(socket, SHUT_RDWR);
     std::this_thread::sleep_for(std::chrono::milliseconds(5));
   }
   impl_->thread.join();

@@ -3,6 +3,8 @@
 #include "core/app/view/live_server.h"
 
 #include <catch2/catch.hpp>
+#include <filesystem>
+#include <iterator>
 #include <memory>
 #include <optional>
 
@@ -62,6 +64,26 @@ TEST_CASE("peers that are slow, or read none of their answer, delay neither the 
   for (int k = 0; k < 4; ++k)
     deaf.emplace_back(connected())->send(served.address.request("GET", served.address.path + "block/b"));
   CHECK(served.status("GET", "/") == 404);
+  served.server.reset();
+}
+
+TEST_CASE("idle connections take few descriptors, and delay neither the page nor the shutdown") {
+  const auto descriptors = [] {
+    return std::distance(std::filesystem::directory_iterator("/proc/self/fd"), {});
+  };
+  Served served(for_ever);
+  REQUIRE(served.serves_page());
+  const auto before = descriptors();
+  constexpr int count = 300;
+  std::vector<std::unique_ptr<LiveClient>> idle;
+  while (idle.size() < count) idle.push_back(std::make_unique<LiveClient>(served.address.port));
+  const Stopwatch watch;
+  CHECK(served.serves_page());
+  CHECK(watch.seconds() < 60);  // each idle connection alone would keep a thread of 16 for 5 s
+  CHECK(descriptors() - before < count + 40);
+  int ended = 0;
+  for (const std::unique_ptr<LiveClient>& client : idle) ended += client->is_ended();
+  CHECK(ended > count - 40);
   served.server.reset();
 }
 
