@@ -133,10 +133,18 @@ TEST_CASE("Resuming a complete run returns its exit code and checks its files") 
   CHECK_THAT(refused(folder, "run --resume good --level 0 --out x"), Contains("missing: levels/pcs_l0.ply"));
 }
 
-TEST_CASE("A description that is a folder's name is no input") {
-  const Scratch folder(small_experiment());
-  const Overrides named = {{"description", folder.path.string()}};
-  CHECK(files_of(saved_config(experiment_in(folder / "e.yaml", named))).empty());
+TEST_CASE("Only keys that name files are inputs, whatever the values of others are") {
+  const Scratch folder(R"({name: start.ply, description: /tmp, cloth: {vertices: 9}, levels: 1,
+ energies: [neo_hookean, gravity], methods: {newton: {}, rest: {type: newton}},
+ start: {translate: [0, 0, 1]}, contact: [shapes, ipc],
+ obstacles: [{name: /dev/null, shape: sphere, radius: 0.1}, {name: /tmp, mesh: body.obj},
+             {name: rest/l0.ply, animation: [body.obj, other.obj], translate: [0, 0, -9]}]})");
+  for (const char* name : {"body.obj", "other.obj"})
+    folder.write(name, "v 0 0 -3\nv 1 0 -3\nv 0 1 -3\nv 0 0 -4\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n");
+  const fs::path body = fs::canonical(folder / "body.obj"), other = fs::canonical(folder / "other.obj");
+  CHECK((files_of(saved_config(experiment_in(folder / "e.yaml"))) == std::vector{body, body, other}));
+  run_into("out", folder, "--method newton -q --set newton.max_steps=1", 1);
+  CHECK(fs::exists(folder / "out/results.json"));
 }
 
 TEST_CASE("A run whose schedule selects ever more pinned vertices resumes while they are blocked") {

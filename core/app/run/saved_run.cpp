@@ -1,7 +1,6 @@
 #include "core/app/run/saved_run.h"
 
 #include <algorithm>
-#include <iterator>
 
 #include "core/app/files/json_file.h"
 #include "core/app/files/yaml_file.h"
@@ -17,23 +16,17 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// A file's bytes, or those of the files in a folder, in the order of their names.
 FileFingerprint fingerprint_of(const fs::path& path) {
-  std::string bytes;
-  if (fs::is_directory(path)) {
-    std::vector<fs::path> files;
-    for (const auto& entry : fs::directory_iterator(path))
-      if (entry.is_regular_file()) files.push_back(entry.path());
-    std::sort(files.begin(), files.end());
-    for (const fs::path& file : files) bytes += file.filename().string() + "\n" + read_file(file);
-  } else {
-    bytes = read_file(path);
-  }
+  const std::string bytes = read_file(path);
   return {path.string(), bytes.size(), checksum_of(bytes)};
 }
 
-/// Copies of inputs in a results folder, as its config.yaml names them.
-constexpr const char* copies[] = {"rest/l0.ply", "reference.ply", "start.ply"};
+/// The value of a key of config.yaml that names a copy in the run's folder.
+ConfigNode copy_named(const char* name) {
+  ConfigNode node = ConfigNode::of(name);
+  node.names_file = true;
+  return node;
+}
 
 /// Throws std::runtime_error naming every mesh of a complete run, or of one of its methods, whose checksum
 /// differs from results.json.
@@ -97,7 +90,7 @@ ConfigNode saved_config(const Experiment& experiment) {
     start.unit = own.unit;
     start.up = own.up;
     set_path(config, "start", schema_of<StartParameters>().write(&start));
-    set_path(config, "start.file", ConfigNode::of("start.ply"));
+    set_path(config, "start.file", copy_named("start.ply"));
   }
   if (p.cloth.shape == "file") {
     ClothParameters cloth = p.cloth;
@@ -113,29 +106,27 @@ ConfigNode saved_config(const Experiment& experiment) {
     cloth.grain_along = as_written.grain_along;
     cloth.grain_regions.clear();
     set_path(config, "cloth", schema_of<ClothParameters>().write(&cloth));
-    set_path(config, "cloth.file", ConfigNode::of("rest/l0.ply"));
+    set_path(config, "cloth.file", copy_named("rest/l0.ply"));
   }
-  if (!p.reference.file.empty()) set_path(config, "reference.file", ConfigNode::of("reference.ply"));
+  if (!p.reference.file.empty()) set_path(config, "reference.file", copy_named("reference.ply"));
   return config;
 }
 
 std::vector<fs::path> files_of(const ConfigNode& saved) {
   std::vector<fs::path> files;
-  const std::string& path = saved.scalar;  // absolute, but for the copies
-  if ((path.starts_with('/') && fs::exists(path)) || std::ranges::find(copies, path) != std::end(copies))
-    files.emplace_back(path);
+  if (saved.names_file) files.emplace_back(saved.scalar);
   const auto add = [&](const ConfigNode& part) {
     for (fs::path& file : files_of(part)) files.push_back(std::move(file));
   };
   for (const ConfigNode& item : saved.items) add(item);
-  for (const auto& [key, value] : saved.entries)
-    if (key != "description") add(value);
+  for (const auto& [key, value] : saved.entries) add(value);
   return files;
 }
 
 std::vector<FileFingerprint> fingerprints_of_files(const ConfigNode& saved, const fs::path& folder) {
   std::vector<FileFingerprint> fingerprints;
   for (const fs::path& file : files_of(saved)) {
+    if (!fs::is_regular_file(folder / file)) continue;      // as a folder, or what a plugin writes
     fingerprints.push_back(fingerprint_of(folder / file));  // an absolute path stays as it is
     fingerprints.back().path = file;
   }

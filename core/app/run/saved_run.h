@@ -15,7 +15,8 @@ namespace drape {
 /// The config.yaml of an experiment: resolved, with paths to the copies of mesh files in the results folder.
 ConfigNode saved_config(const Experiment& experiment);
 
-/// The files that a config.yaml names; those of its results folder have relative paths.
+/// The files that the keys of a saved_config name (Parameter::path); those of its results folder have
+/// relative paths.
 std::vector<std::filesystem::path> files_of(const ConfigNode& saved);
 
 /// Fingerprints of those files.

@@ -29,6 +29,7 @@ struct ConfigNode {
   Location where;
   std::string scalar;             ///< scalar only
   bool quoted = false;            ///< scalar only: a text even if it looks like a number
+  bool names_file = false;        ///< written from a parameter that is a path, or an item of one
   std::vector<ConfigNode> items;  ///< list only
   std::vector<std::pair<std::string, ConfigNode>> entries;  ///< map only, in order of writing
   std::vector<Location> key_locations;                      ///< map only, one per entry

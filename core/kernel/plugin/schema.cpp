@@ -11,11 +11,12 @@ namespace {
 
 using NodeKind = ConfigNode::Kind;
 
-/// A path, or each of a list, as an absolute one. Links are followed: ".." after one leads up from the folder
-/// that it names.
+/// A path, or each of a list, as an absolute one that is marked as such. Links are followed: ".." after one
+/// leads up from the folder that it names.
 ConfigNode absolute_path(ConfigNode path) {
   for (ConfigNode& item : path.items) item = absolute_path(item);
-  if (path.scalar.empty()) return path;
+  path.names_file = !path.scalar.empty();
+  if (!path.names_file) return path;
   const std::filesystem::path whole = std::filesystem::absolute(path.scalar);
   std::error_code unknown;  // as where a folder may not be searched
   const std::filesystem::path followed = std::filesystem::weakly_canonical(whole, unknown);
