@@ -66,10 +66,13 @@ auto call(const std::string& path, const char* what, const Call& function) {
 
 void load(Registry& registry, const fs::path& library) {
   const std::string path = library.string();
-  const std::string unfit = fault_of(library);
-  if (!unfit.empty()) refuse_path(library, "cannot be loaded: " + unfit);
-  // A name without a slash would be looked for in the system's folders.
-  void* handle = dlopen(fs::absolute(library).c_str(), RTLD_NOW | RTLD_LOCAL);
+  if (const std::string unfit = fault_of(library); !unfit.empty())
+    refuse_path(library, "cannot be loaded: " + unfit);
+  // The pointer hides from the compiler that dlopen is declared to throw nothing: static initialisers may. A
+  // name without a slash would be looked for in the system's folders.
+  void* (*volatile const open)(const char*, int) = dlopen;
+  const auto load = [&] { return open(fs::absolute(library).c_str(), RTLD_NOW | RTLD_LOCAL); };
+  void* handle = call(path, "static initialiser", load);
   if (!handle) refuse_path(library, std::string("cannot be loaded: ") + dlerror());
   const auto entry_point =
       reinterpret_cast<const DrapePluginDescriptor* (*)()>(dlsym(handle, "drape_plugin"));
@@ -80,8 +83,8 @@ void load(Registry& registry, const fs::path& library) {
   if (!entry_point) refuse("it exports no function drape_plugin");
   const DrapePluginDescriptor* descriptor = call(path, "function drape_plugin", entry_point);
   if (!descriptor) refuse("its function drape_plugin returns null");
-  const std::string fault = mismatch(*descriptor);
-  if (!fault.empty()) refuse_path(library, "does not fit this drape, rebuild it: " + fault);
+  if (const std::string fault = mismatch(*descriptor); !fault.empty())
+    refuse_path(library, "does not fit this drape, rebuild it: " + fault);
   if (!descriptor->register_entries) refuse("its descriptor has no function that names its entries");
   registry.current_library = path;
   const std::size_t before = registry.entries().size();

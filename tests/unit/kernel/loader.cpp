@@ -116,6 +116,7 @@ TEST_CASE("a library that is no plugin of this drape, or a faulty one, is refuse
   check("no_entries", "names no entries; add some in its DRAPE_PLUGIN");
   check("no_name", "registers a refiner without a name; give it one");
   check("throwing", "its DRAPE_PLUGIN throws: out of luck");
+  check("static_initialiser", "its static initialiser throws: out of luck");
 }
 
 TEST_CASE("a plugin cut short at any length is refused, and ends no process") {
