@@ -134,3 +134,44 @@ TEST_CASE("What is no plugin's source, or cannot be compiled, is refused") {
                  EndsWith("for the library (No such file or directory); name a folder for it in the variable "
                           "XDG_CACHE_HOME\n"));
 }
+
+TEST_CASE("A library is kept where only this user can write, and loaded from nowhere else") {
+  const PluginFolder folder;
+  const fs::path temporary = folder / "tmp", cache = temporary / ("drape-cache-" + std::to_string(geteuid()));
+  fs::create_directory(temporary);
+  const std::string homeless = "HOME= XDG_CACHE_HOME= TMPDIR=" + temporary.string(),
+                    command = listed + "rubber.cpp";
+  const auto refusal = [&] { return refused_by(command, folder.path, homeless); };
+  CHECK_THAT(drape_with(command, folder.path, homeless).out, Contains("rubber"));
+  CHECK(fs::is_directory(cache));
+  const fs::path library = *fs::directory_iterator(cache);
+  for (const fs::path& own : {cache, library}) {
+    fs::permissions(own, fs::perms::all);
+    CHECK_THAT(drape_with(command, folder.path, homeless).err, !Contains("compiling"));
+    CHECK((fs::status(own).permissions() & (fs::perms::group_write | fs::perms::others_write)) ==
+          fs::perms::none);
+    fs::rename(own, folder / "elsewhere");
+    fs::create_directory_symlink(folder / "elsewhere", own);
+    CHECK_THAT(refusal(), Contains("another user may have put a library into " + own.string()) &&
+                              Contains("name a folder for it in the variable XDG_CACHE_HOME"));
+    fs::remove(own);
+    fs::rename(folder / "elsewhere", own);
+    if (geteuid() != 0) continue;  // only root can give folders away
+    REQUIRE(lchown(own.c_str(), 1, 1) == 0);
+    CHECK_THAT(refusal(), Contains("another user may have put a library into " + own.string()));
+    REQUIRE(lchown(own.c_str(), 0, 0) == 0);
+  }
+  CHECK_THAT(drape_with(command, folder.path, homeless).err, !Contains("compiling"));
+}
+
+TEST_CASE("A colon in the name of a plugin's source does no harm, and in the cache's it is refused") {
+  const PluginFolder folder;
+  fs::create_directory(folder / "a:b");
+  fs::rename(folder / "rubber.cpp", folder / "a:b/rub:ber.cpp");
+  fs::copy_file(folder / "stiffness.h", folder / "a:b/stiffness.h");
+  const std::string command = listed + "a:b/rub:ber.cpp";
+  CHECK_THAT(folder.with(command).out, Contains("  rubber "));
+  const std::string cache = (folder / "a:b").string();
+  CHECK_THAT(folder.refused(command, "XDG_CACHE_HOME=" + cache),
+             Contains("separates the folders of DRAPE_PLUGIN_PATH, so that it cannot name " + cache));
+}

@@ -1,5 +1,7 @@
+#include <sys/stat.h>
 #include <unistd.h>
 
+#include <boost/algorithm/string/replace.hpp>
 #include <cstdlib>
 #include <functional>
 #include <iostream>
@@ -39,16 +41,30 @@ fs::path temporary_folder() {
 fs::path cache_folder() {
   const std::string own = variable("XDG_CACHE_HOME"), home = variable("HOME");
   if (!own.empty()) return fs::path(own) / "drape";
-  return home.empty() ? temporary_folder() / "drape-cache" : fs::path(home) / ".cache" / "drape";
+  return home.empty() ? temporary_folder() / ("drape-cache-" + std::to_string(geteuid()))
+                      : fs::path(home) / ".cache" / "drape";
 }
 
-/// Makes a folder in the cache. Throws std::runtime_error, which names the variable, if it cannot be made.
+/// Makes a folder in the cache, both for this user alone. Throws std::runtime_error, which names the
+/// variable, if it cannot be made, if another user may have put a library there, or if DRAPE_PLUGIN_PATH
+/// cannot name it.
 void make_cache(const fs::path& folder) {
+  const auto refuse = [&](const std::string& why) {
+    throw std::runtime_error("--plugin: " + why + "; name a folder for it in the variable XDG_CACHE_HOME");
+  };
   std::error_code error;
   fs::create_directories(folder, error);
-  if (error)
-    throw std::runtime_error("--plugin: cannot make " + folder.string() + " for the library (" +
-                             error.message() + "); name a folder for it in the variable XDG_CACHE_HOME");
+  if (error) refuse("cannot make " + folder.string() + " for the library (" + error.message() + ")");
+  for (const fs::path& own : {folder.parent_path(), folder}) {
+    struct stat status {};
+    const bool is_folder = lstat(own.c_str(), &status) == 0 && S_ISDIR(status.st_mode);
+    if (!is_folder || (status.st_uid != geteuid() && status.st_uid != 0))
+      refuse("another user may have put a library into " + own.string());
+    if (status.st_mode & (S_IWGRP | S_IWOTH) && chmod(own.c_str(), S_IRWXU) != 0)
+      refuse("other users may write to " + own.string());
+  }
+  if (folder.string().find(':') != std::string::npos)
+    refuse("\":\" separates the folders of DRAPE_PLUGIN_PATH, so that it cannot name " + folder.string());
 }
 
 /// The compiler and its options, without input and output. DRAPE_… are those of this build
@@ -90,12 +106,13 @@ fs::path compiled(const fs::path& source) {
   const std::string key = read_file(source) + joined(words) + run_program(preprocess).out +
                           std::to_string(fs::last_write_time(kernel).time_since_epoch().count());
   std::ostringstream name;
-  name << source.stem().string() << '-' << std::hex << std::hash<std::string>()(key);
+  name << boost::replace_all_copy(source.stem().string(), ":", "_") << '-' << std::hex
+       << std::hash<std::string>()(key);
   fs::path folder = cache_folder() / name.str();
   const fs::path library = folder / (source.stem().string() + ".so");
+  make_cache(folder);
   if (fs::exists(library)) return folder;
 
-  make_cache(folder);
   const fs::path made = folder / (std::to_string(getpid()) + ".part");
   words.insert(words.end(), {"-o", made.string(), "-L" + libraries.string(), "-ldrape"});
   std::cerr << "compiling " << printable(source.string()) << std::flush;
