@@ -50,10 +50,18 @@ class KeyReader {
       : e_(experiment), keys_(experiment.parameters.schedule.keys), errors_(errors) {}
 
   void read_all() {
+    constexpr std::size_t most_keys = 200, most_times = 1000;
+    if (keys_.size() > most_keys) return refuse_many("keys", keys_.size(), most_keys);
     for (ScheduleKey& key : keys_) read_values(key);
     if (!errors_.empty()) return;
     for (ScheduleKey& key : keys_) find_targets(key);
-    if (errors_.empty()) refuse_repeated_keys();
+    if (!errors_.empty()) return;
+    std::size_t times = 0;  // at which every level is checked
+    for (const ScheduleKey& key : keys_)
+      if (key.targets[0].part != LoadPart::contact) times += key.times.size();
+    if (times > most_times)
+      return refuse_many("times in the keys of material, energies, pins and handles", times, most_times);
+    refuse_repeated_keys();
     if (errors_.empty()) refuse_keys_of_following_pins();
     if (!errors_.empty()) return;
     for (const ScheduleKey& key : keys_) check_values(key);
@@ -64,6 +72,12 @@ class KeyReader {
   void refuse(const ScheduleKey& key, const std::string& what) {
     const ConfigNode& keys = *e_.source.find("schedule")->find("keys");
     errors_.push_back({keys.items[&key - keys_.data()].where, name(key) + " " + what});
+  }
+
+  void refuse_many(const std::string& what, std::size_t count, std::size_t most) {
+    errors_.push_back(
+        {e_.source.find("schedule")->where_of("keys"),
+         "\"schedule\" has " + std::to_string(count) + " " + what + ", of at most " + std::to_string(most)});
   }
 
   void read_values(ScheduleKey& key) {
@@ -220,7 +234,9 @@ void ScheduleParameters::declare(Declaration<ScheduleParameters>& d) {
   d.add("equilibrate", &ScheduleParameters::equilibrate,
         "solve for equilibrium after every increment; otherwise take one implicit step, and equilibrate only "
         "after the last increment");
-  d.add_sections("keys", &ScheduleParameters::keys, "parameters that change");
+  d.add_sections("keys", &ScheduleParameters::keys,
+                 "parameters that change, at most 200; those of material, energies, pins and handles have at "
+                 "most 1000 times in all");
 }
 
 std::vector<double> ScheduleKey::at(double time) const {

@@ -87,23 +87,37 @@ std::string text_of(const Eigen::Vector3d& p) {
   return "(" + general_text(p.x(), 6) + ", " + general_text(p.y(), 6) + ", " + general_text(p.z(), 6) + ")";
 }
 
-/// How two selections conflict on a level; empty if they share no vertex, or want each that they share at the
-/// same place but for round-off.
-std::string conflict(const VertexSelection& one, const VertexSelection& other, const Level& level,
-                     const Level& coarsest, const Positions& placed) {
-  std::vector<int> shared;
-  std::ranges::set_intersection(selected_vertices(one, level, coarsest),
-                                selected_vertices(other, level, coarsest), std::back_inserter(shared));
+/// Whether two targets of a vertex differ by more than round-off, on a cloth that is so large [m].
+bool differ(const Eigen::Vector3d& a, const Eigen::Vector3d& b, double diagonal) {
   constexpr double rounding = 1e-9;
-  const double diagonal = shared.empty() ? 0 : bounding_box_diagonal(level.rest.vertices);
-  for (const int v : shared) {
-    const Eigen::Vector3d a = target_of(one, v, level, placed), b = target_of(other, v, level, placed);
-    if ((a - b).norm() > rounding * (diagonal + a.norm()))
-      return "both select vertex " + std::to_string(v) + " of level " + std::to_string(level.index) +
-             ", at rest at " + text_of(level.rest.vertices.row(v)) + ", but want it at " + text_of(a) +
-             " and at " + text_of(b) + "; let their regions share no vertex, or give both the same target";
-  }
-  return "";
+  return (a - b).norm() > rounding * (diagonal + a.norm());
+}
+
+std::string conflict(int vertex, const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Level& level) {
+  return "both select vertex " + std::to_string(vertex) + " of level " + std::to_string(level.index) +
+         ", at rest at " + text_of(level.rest.vertices.row(vertex)) + ", but want it at " + text_of(a) +
+         " and at " + text_of(b) + "; let their regions share no vertex, or give both the same target";
+}
+
+/// Adds the conflicts of a level's pins, or of its handles, to those of coarser ones. Each is compared with
+/// the first that selects the vertex, and only where they differ with the others that do: all pairs would be
+/// many.
+void add_conflicts(const ExperimentParameters& p, LoadPart part, const Level& level, const Level& coarsest,
+                   const Positions& placed, Conflicts& conflicts) {
+  constexpr std::size_t most = 40;  // that anybody reads
+  const double diagonal = bounding_box_diagonal(level.rest.vertices);
+  std::vector<std::vector<int>> holders(level.vertex_count());
+  const int count = static_cast<int>(part == LoadPart::pins ? p.pins.size() : p.handles.size());
+  const auto target = [&](int k, int v) { return target_of(selection(p, part, k), v, level, placed); };
+  for (int k = 0; k < count; ++k)
+    for (const int v : selected_vertices(selection(p, part, k), level, coarsest)) {
+      const Eigen::Vector3d own = target(k, v);
+      if (conflicts.size() < most && !holders[v].empty() && differ(own, target(holders[v][0], v), diagonal))
+        for (const int other : holders[v])
+          if (differ(own, target(other, v), diagonal))
+            conflicts.try_emplace({part, k, other}, Conflict{level.index, v, own, target(other, v)});
+      holders[v].push_back(k);
+    }
 }
 
 /// Appends the errors of check_selections for pin or handle k.
@@ -190,39 +204,45 @@ void check_selections(const Experiment& e, const ExperimentParameters& load, con
   });
 }
 
-void check_shared_vertices(const Experiment& e, const ExperimentParameters& load,
-                           const std::vector<Level>& levels, const std::vector<Positions>& placed,
-                           ConfigErrors& errors, const KeyTarget* only) {
-  for_each_condition(e, only, [&](LoadPart part, std::size_t k, const std::vector<ConfigNode>& written) {
-    const auto name = [&](std::size_t of) {
-      return name_of(load, part, of, only ? 0 : written[of].where.line);
+Conflicts conflicts_of(const ExperimentParameters& load, const std::vector<Level>& levels,
+                       const std::vector<Positions>& placed) {
+  Conflicts conflicts;
+  for (const LoadPart part : {LoadPart::pins, LoadPart::handles})
+    for (const Level& level : levels)
+      add_conflicts(load, part, level, levels[0], placed[level.index], conflicts);
+  return conflicts;
+}
+
+void report(const Conflicts& conflicts, const Experiment& e, const std::vector<Level>& levels,
+            ConfigErrors& errors, const KeyTarget* only) {
+  for (const auto& [between, c] : conflicts) {
+    auto [part, one, other] = between;
+    auto [level, vertex, target, others] = c;
+    if (only && (part != only->part || (only->item != one && only->item != other))) continue;
+    if (only && only->item == other) std::swap(one, other), std::swap(target, others);
+    const auto& written = e.source.find(part == LoadPart::pins ? "pins" : "handles")->items;
+    const auto name = [&](std::size_t k) {
+      return name_of(e.parameters, part, k, only ? 0 : written[k].where.line);
     };
-    for (std::size_t j = 0; j < (only ? written.size() : k); ++j)  // without a key each pair once
-      for (std::size_t l = 0; l < levels.size() && j != k; ++l) {
-        const std::string why =
-            conflict(selection(load, part, k), selection(load, part, j), levels[l], levels[0], placed[l]);
-        if (why.empty()) continue;
-        errors.push_back({written[k].where, name(k) + " and " + name(j) + " " + why});
-        break;
-      }
-  });
+    errors.push_back({written[one].where, name(one) + " and " + name(other) + " " +
+                                              conflict(vertex, target, others, levels[level])});
+  }
 }
 
 std::vector<DirichletVertex> dirichlet_vertices(const ExperimentParameters& p, const Level& level,
                                                 const Level& coarsest, const Positions& placed) {
+  const double diagonal = bounding_box_diagonal(level.rest.vertices);
   std::vector<DirichletVertex> by_vertex(level.vertex_count(), {-1, {}, 0});
   for (std::size_t k = 0; k < p.pins.size(); ++k) {
     const std::vector<int> selected = selected_vertices(p.pins[k], level, coarsest);
     require_vertices(selected, "pin " + std::to_string(k), level);
-    std::vector<char> compared(k, 0);  // pins before it that have a vertex in common
     for (const int v : selected) {
-      if (const int other = by_vertex[v].pin; by_vertex[v].vertex >= 0 && !compared[other]) {
-        compared[other] = 1;
-        if (const std::string why = conflict(p.pins[k], p.pins[other], level, coarsest, placed); !why.empty())
-          throw std::runtime_error("pin " + std::to_string(k) + " and pin " + std::to_string(other) + " " +
-                                   why);
-      }
-      by_vertex[v] = {v, target_of(p.pins[k], v, level, placed), static_cast<int>(k)};
+      const Eigen::Vector3d target = target_of(p.pins[k], v, level, placed);
+      if (const DirichletVertex& other = by_vertex[v];
+          other.vertex >= 0 && differ(target, other.target, diagonal))
+        throw std::runtime_error("pin " + std::to_string(k) + " and pin " + std::to_string(other.pin) + " " +
+                                 conflict(v, target, other.target, level));
+      by_vertex[v] = {v, target, static_cast<int>(k)};
     }
   }
   std::vector<DirichletVertex> dirichlet;

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <map>
+#include <tuple>
+
 #include "core/app/scene/scene.h"
 
 namespace drape {
@@ -16,13 +19,25 @@ void check_selections(const Experiment& experiment, const ExperimentParameters& 
                       const std::vector<Level>& levels, ConfigErrors& errors,
                       const KeyTarget* only = nullptr);
 
-/// Appends an error for every two pins, and every two handles, that select the same vertex of a level and
-/// have different targets for it, under such a load. `placed` has the positions, n×3 [m] for each level,
-/// where those without a transform hold. With `only`, compares that one with the others; the messages then
-/// give no lines of pins, because the error is about the key.
-void check_shared_vertices(const Experiment& experiment, const ExperimentParameters& load,
-                           const std::vector<Level>& levels, const std::vector<Positions>& placed,
-                           ConfigErrors& errors, const KeyTarget* only = nullptr);
+/// A vertex of a level that two pins, or two handles, want at different places [m].
+struct Conflict {
+  int level, vertex;
+  Eigen::Vector3d target, other_target;
+};
+
+/// The first conflict of each two pins, and of each two handles, by what they are and their indices, the
+/// later one's first. Without conflicts beyond some 40, which nobody reads.
+using Conflicts = std::map<std::tuple<LoadPart, std::size_t, std::size_t>, Conflict>;
+
+/// The conflicts under a load with these parameters. `placed` has the positions, n×3 [m] for each level,
+/// where pins and handles without a transform hold.
+Conflicts conflicts_of(const ExperimentParameters& load, const std::vector<Level>& levels,
+                       const std::vector<Positions>& placed);
+
+/// Appends an error for every conflict. With `only`, for those of that pin or handle; the messages then give
+/// no lines of pins, because the error is about the key.
+void report(const Conflicts& conflicts, const Experiment& experiment, const std::vector<Level>& levels,
+            ConfigErrors& errors, const KeyTarget* only = nullptr);
 
 /// The Dirichlet vertices of a level with their targets [m]. Of several pins that select a vertex the last
 /// one counts. Throws std::runtime_error naming two pins that want it at different places, or a pin that

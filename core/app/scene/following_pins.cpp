@@ -93,28 +93,36 @@ std::optional<std::size_t> followed_by(const Experiment& e, std::size_t pin) {
   return obstacles && !named.empty() ? obstacles->index_of(named) : std::nullopt;
 }
 
-/// Another pin that shares vertices with this one on a level and does not follow as it does; empty without
-/// one.
-std::string conflict(const Experiment& e, int pin, const Level& level, const Level& coarsest) {
+/// For each pin that follows, another one that shares vertices with it on a level and does not follow as it
+/// does; empty without one. Each is compared with the first that selects the vertex.
+std::vector<std::string> conflicts(const Experiment& e, const Level& level, const Level& coarsest) {
   const std::vector<PinParameters>& pins = e.parameters.pins;
-  std::vector<char> own(level.vertex_count(), 0);
-  for (const int v : selected_vertices(pins[pin], level, coarsest)) own[v] = 1;
-  for (std::size_t k = 0; k < pins.size(); ++k) {
-    const bool same = followed_by(e, k) == followed_by(e, pin);
-    if (same && pins[k].follow.vertices == pins[pin].follow.vertices) continue;
-    const char* how = same ? " follows by other vertices" : " does not follow";
-    for (const int v : selected_vertices(pins[k], level, coarsest))
-      if (own[v])
-        return "pin " + std::to_string(k) + how + ", but both select vertex " + std::to_string(v) +
-               " of level " + std::to_string(level.index) + "; let their regions share no vertex";
-  }
-  return "";
+  std::vector<std::string> found(pins.size());
+  std::vector<int> first(level.vertex_count(), -1);
+  std::vector<std::optional<std::size_t>> followed;
+  for (std::size_t k = 0; k < pins.size(); ++k) followed.push_back(followed_by(e, k));
+  const auto add = [&](int pin, int other, int vertex) {
+    if (pins[pin].follow.obstacle.empty() || !found[pin].empty()) return;
+    const bool same = followed[pin] == followed[other];
+    found[pin] = "pin " + std::to_string(other) + (same ? " follows by other vertices" : " does not follow") +
+                 ", but both select vertex " + std::to_string(vertex) + " of level " +
+                 std::to_string(level.index) + "; let their regions share no vertex";
+  };
+  for (int k = 0; k < std::ssize(pins); ++k)
+    for (const int v : selected_vertices(pins[k], level, coarsest)) {
+      const int j = first[v] < 0 ? first[v] = k : first[v];
+      if (followed[j] == followed[k] && pins[j].follow.vertices == pins[k].follow.vertices) continue;
+      add(k, j, v);
+      add(j, k, v);
+    }
+  return found;
 }
 
 /// Attaches a pin's vertices on one level to the mesh of the obstacle at this place; returns the first fault,
 /// empty without one.
 std::string attach(const Experiment& e, int pin, const Scene& scene, const LevelModel& model,
-                   const TriangleMesh& mesh, Eigen::Index place, FollowingVertices& attached) {
+                   const TriangleMesh& mesh, Eigen::Index place, const std::string& conflict,
+                   FollowingVertices& attached) {
   const FollowParameters& follow = e.parameters.pins[pin].follow;
   const std::vector<TriangleMesh> finest = obstacles_of(scene.models.back()->contacts());
   if (!follow.vertices.empty() && mesh.vertices.rows() != finest[place].vertices.rows())
@@ -130,8 +138,7 @@ std::string attach(const Experiment& e, int pin, const Scene& scene, const Level
     if (v >= mesh.vertices.rows())
       return "has no vertex " + std::to_string(v) + "; they go from 0 to " +
              std::to_string(mesh.vertices.rows() - 1);
-  if (std::string other = conflict(e, pin, model.level(), scene.hierarchy.levels[0]); !other.empty())
-    return other;
+  if (!conflict.empty()) return conflict;
   const FollowedSurface surface(mesh, follow.vertices);
   const double size = bounding_box_diagonal(model.level().rest.vertices);
   for (const DirichletVertex& d : model.dirichlet()) {
@@ -148,7 +155,9 @@ std::string attach(const Experiment& e, int pin, const Scene& scene, const Level
 }
 
 /// The same on every level.
-std::string attach(const Experiment& e, const Scene& scene, int pin, std::vector<FollowingVertices>& levels) {
+std::string attach(const Experiment& e, const Scene& scene, int pin,
+                   const std::vector<std::vector<std::string>>& conflicts,
+                   std::vector<FollowingVertices>& levels) {
   const std::string& obstacle = e.parameters.pins[pin].follow.obstacle;
   const std::optional<std::size_t> index = followed_by(e, pin);
   if (!index) return unknown_obstacle(e, obstacle);
@@ -159,7 +168,7 @@ std::string attach(const Experiment& e, const Scene& scene, int pin, std::vector
     const std::vector<TriangleMesh> meshes = obstacles_of(model.contacts());
     if (meshes.size() != order.size() || meshes[place].triangles.rows() == 0)
       return "has no surface that a pin can follow: its contact model shows no mesh of it";
-    std::string fault = attach(e, pin, scene, model, meshes[place], place, levels[l]);
+    std::string fault = attach(e, pin, scene, model, meshes[place], place, conflicts[l][pin], levels[l]);
     if (!fault.empty()) return fault;
   }
   return "";
@@ -170,10 +179,16 @@ std::string attach(const Experiment& e, const Scene& scene, int pin, std::vector
 std::vector<FollowingVertices> following_vertices(const Experiment& e, const Scene& scene,
                                                   ConfigErrors& errors) {
   std::vector<FollowingVertices> levels(scene.models.size());
+  const bool any = std::ranges::any_of(e.parameters.pins,
+                                       [](const PinParameters& pin) { return !pin.follow.obstacle.empty(); });
+  if (!any) return levels;
+  std::vector<std::vector<std::string>> others;  // on each level, for each pin
+  for (const Level& level : scene.hierarchy.levels)
+    others.push_back(conflicts(e, level, scene.hierarchy.levels[0]));
   for (std::size_t k = 0; k < e.parameters.pins.size(); ++k) {
     const FollowParameters& follow = e.parameters.pins[k].follow;
     if (follow.obstacle.empty()) continue;
-    const std::string fault = attach(e, scene, static_cast<int>(k), levels);
+    const std::string fault = attach(e, scene, static_cast<int>(k), others, levels);
     if (fault.empty()) continue;
     errors.push_back(
         {e.source.find("pins")->items[k].where_of("follow"),

@@ -1,6 +1,7 @@
 #include "core/app/scene/load_schedule.h"
 
 #include <algorithm>
+#include <map>
 #include <stdexcept>
 
 #include "core/app/experiment/read_experiment.h"
@@ -54,6 +55,7 @@ std::vector<double> times_with_between(const std::vector<double>& times) {
 void check_on_levels(const Experiment& e, const Scene& scene, const LoadSchedule& schedule,
                      ConfigErrors& errors) {
   const std::vector<Level>& levels = scene.hierarchy.levels;
+  std::map<double, Conflicts> conflicts;  // of all pins and handles, at the times of their keys
   for (const ScheduleKey& key : e.parameters.schedule.keys) {
     const LoadPart part = key.targets[0].part;
     if (part == LoadPart::contact) continue;
@@ -64,9 +66,7 @@ void check_on_levels(const Experiment& e, const Scene& scene, const LoadSchedule
       for (const double time : times) {
         ConfigErrors own;
         try {
-          // With the values that all other keys have at that time: two keys may move the bounds of one
-          // region.
-          check(*schedule.at(schedule.keys().values_at(time)), own);
+          check(time, own);
         } catch (const std::runtime_error& problem) {
           own.push_back({where, problem.what()});
         }
@@ -77,15 +77,20 @@ void check_on_levels(const Experiment& e, const Scene& scene, const LoadSchedule
       }
       return true;
     };
-    const bool bound = hold_at(key.times, [&](const LoadState& load, ConfigErrors& own) {
+    // With the values that all other keys have at that time: two keys may move the bounds of one region.
+    const auto load_at = [&](double time) { return schedule.at(schedule.keys().values_at(time)); };
+    const bool bound = hold_at(key.times, [&](double time, ConfigErrors& own) {
+      const LoadState load = *load_at(time);
       if (of_vertices) check_selections(e, *load.parameters, levels, own, &key.targets[0]);
       if (!own.empty() || part == LoadPart::pins) return;
       for (const auto& first : scene.models)  // throws for an energy that load stepping could not bind
         LevelModel(first->level(), load.parameters->material, load.energies, {}, {}, first.get());
     });
     if (bound && of_vertices)
-      hold_at(times_with_between(key.times), [&](const LoadState& load, ConfigErrors& own) {
-        check_shared_vertices(e, *load.parameters, levels, scene.placed, own, &key.targets[0]);
+      hold_at(times_with_between(key.times), [&](double time, ConfigErrors& own) {
+        const auto [found, is_new] = conflicts.try_emplace(time);
+        if (is_new) found->second = conflicts_of(*load_at(time)->parameters, levels, scene.placed);
+        report(found->second, e, levels, own, &key.targets[0]);
       });
   }
 }
@@ -193,16 +198,18 @@ class ScheduleStepping final : public LoadStepping {
 
 }  // namespace
 
-LoadSchedule::LoadSchedule(const Experiment& e, const Scene& scene) : scene_(scene) {
+LoadSchedule::LoadSchedule(const Experiment& e, const Scene& scene)
+    : scene_(scene), keys_(e.parameters.schedule) {
   std::size_t first = 0;
   for (const ScheduleKey& key : e.parameters.schedule.keys) {
     for (const KeyTarget& target : key.targets)
       change_of(e, target).numbers.emplace_back(target.numbers, first);
     first += key.values[0].size();
   }
+  const auto parameters = std::make_shared<ExperimentParameters>(e.parameters);
+  parameters->schedule = {};  // of which each load would have a copy
   first_ = std::make_shared<const LoadState>(
-      LoadState{e.parameters.schedule.values_at(0),
-                std::make_shared<const ExperimentParameters>(e.parameters), scene.energies, e.contacts});
+      LoadState{keys_.values_at(0), parameters, scene.energies, e.contacts});
 }
 
 LoadSchedule::Change& LoadSchedule::change_of(const Experiment& e, const KeyTarget& target) {

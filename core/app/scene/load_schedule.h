@@ -21,7 +21,7 @@ class LoadSchedule {
   LoadSchedule(const Experiment& experiment, const Scene& scene);
 
   /// The keys and their times.
-  const ScheduleParameters& keys() const { return first_->parameters->schedule; }
+  const ScheduleParameters& keys() const { return keys_; }
   /// The values of all keys at the end of an increment.
   std::vector<double> values(int increment) const { return keys().values_at(keys().time(increment)); }
 
@@ -49,6 +49,7 @@ class LoadSchedule {
   Change& change_of(const Experiment& experiment, const KeyTarget& target);
 
   const Scene& scene_;
+  const ScheduleParameters keys_;
   std::vector<Change> changes_;
   std::shared_ptr<const LoadState> first_;
 };

@@ -188,7 +188,7 @@ std::unique_ptr<Scene> build_scene(const Experiment& e, ConfigErrors& errors, La
   scene->energies = e.energies;
   for (const Level& level : scene->hierarchy.levels)
     scene->placed.push_back(make_start(level.rest.vertices, shapes[level.index], p.start, 0));
-  check_shared_vertices(e, p, scene->hierarchy.levels, scene->placed, errors);
+  report(conflicts_of(p, scene->hierarchy.levels, scene->placed), e, scene->hierarchy.levels, errors);
   if (!errors.empty()) return nullptr;
   if (auto handles = handles_energy(p, coarsest, scene->placed))
     scene->energies.push_back({"handles", std::move(handles)});

@@ -5,6 +5,7 @@
 #include <unistd.h>
 #include <zlib.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstdio>
 #include <memory>
@@ -56,10 +57,11 @@ std::string read_file(const std::filesystem::path& path, std::uintmax_t most) {
     if (size > most)
       refuse("is larger than " + std::to_string(most / 1'000'000) + " MB, the most that is read of it");
   };
-  // The size is a hint: /proc says 0, and a file may grow.
-  refuse_if_larger(static_cast<std::uintmax_t>(status.st_size));
+  // The size is a hint: /proc says 0, also of what has no end, and a file may grow.
   std::string bytes;
+  refuse_if_larger(static_cast<std::uintmax_t>(status.st_size));
   bytes.reserve(static_cast<std::size_t>(status.st_size));
+  most = std::min<std::uintmax_t>(most, bytes.capacity() + 16'000'000);
   char buffer[1 << 16];
   while (true) {
     const ssize_t n = read(file.number, buffer, sizeof buffer);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "core/kernel/files/message_text.h"
 #include "core/kernel/plugin/bounds.h"
@@ -165,6 +166,8 @@ std::vector<std::string> check_mesh(const TriangleMesh& mesh) {
   if (mesh.vertices.rows() == 0) lines.push_back("the mesh has no vertices");
   if (mesh.triangles.rows() == 0) lines.push_back("the mesh has no triangles");
   if (!check_indices(mesh, lines)) return lines;
+  const int count = static_cast<int>(mesh.vertices.rows());
+  if (std::string fault = crowded_vertex(mesh.triangles, count); !fault.empty()) return {std::move(fault)};
   const Lines coordinates = check_coordinates(mesh.vertices);
   const bool is_sound = coordinates.empty();  // elsewise no shape can be computed
   lines.insert(lines.end(), coordinates.begin(), coordinates.end());
@@ -174,7 +177,7 @@ std::vector<std::string> check_mesh(const TriangleMesh& mesh) {
   std::vector<char> removed(mesh.triangles.rows(), 0);  // by the remedy of another fault
   for (const int t : faults.repeating_triangles) removed[t] = 1;
   for (const MeshFaults::Pair& pair : faults.doubled_triangles) removed[pair.element] = 1;
-  faults.find_connectivity(mesh.triangles, static_cast<int>(mesh.vertices.rows()), removed);
+  faults.find_connectivity(mesh.triangles, count, removed);
   check_elements(faults, mesh.triangles, lines);
   check_connectivity(faults, lines);
   if (is_sound) check_borders(mesh, lines);

@@ -134,6 +134,17 @@ void MeshFaults::find_connectivity(const Triangles& triangles, int vertex_count,
     if (fan_count[v] > 1) shared_vertices.push_back({v, fan_count[v]});
 }
 
+std::string crowded_vertex(const Triangles& triangles, int vertex_count) {
+  constexpr int most = 5000;
+  std::vector<int> counts(vertex_count, 0);
+  for (const int v : triangles.reshaped()) ++counts[v];
+  const auto largest = std::ranges::max_element(counts);
+  if (largest == counts.end() || *largest <= most) return "";
+  return "vertex " + std::to_string(largest - counts.begin()) + " has " + std::to_string(*largest) +
+         " triangles, of at most " + std::to_string(most) +
+         " (counted from 0); take a mesh of other triangles there";
+}
+
 std::vector<int> border_half_edges(const Triangles& triangles, int vertex_count) {
   std::vector<int> border;
   for_each_edge(triangles, vertex_count, {}, [&](const std::vector<int>& sides) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "core/kernel/interfaces/triangle_mesh.h"
@@ -35,6 +36,10 @@ struct MeshFaults {
   /// Finds the last three kinds. Triangles with `ignored` are left out; none may repeat a vertex otherwise.
   void find_connectivity(const Triangles& triangles, int vertex_count, const std::vector<char>& ignored);
 };
+
+/// Says which vertex has more triangles than can be computed with, "" if none has: pairs of triangles at a
+/// vertex are many, and CGAL goes through all of them.
+std::string crowded_vertex(const Triangles& triangles, int vertex_count);
 
 /// The sides of triangles that no other triangle shares, as half-edge numbers, ascending.
 std::vector<int> border_half_edges(const Triangles& triangles, int vertex_count);

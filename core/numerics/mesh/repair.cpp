@@ -82,6 +82,9 @@ std::size_t weld(std::vector<TriangleMesh>& frames) {
 
 RepairedMesh repair_mesh(std::vector<TriangleMesh> frames) {
   const std::size_t welded = weld(frames);
+  const int count = static_cast<int>(frames[0].vertices.rows());
+  if (const std::string fault = crowded_vertex(frames[0].triangles, count); !fault.empty())
+    throw std::runtime_error(fault);
   const MeshFaults elements = MeshFaults::of_elements(frames[0]);
   std::vector<char> dropped(frames[0].triangles.rows(), 0);
   std::size_t doubled = 0;

@@ -1,6 +1,6 @@
 #include "core/numerics/mesh_files/ply_header.h"
 
-#include <algorithm>
+#include <set>
 #include <string_view>
 #include <utility>
 
@@ -40,11 +40,6 @@ PlyFormat read_format(const TextReader& reader) {
   reader.fail("expected 'format ascii|binary_little_endian|binary_big_endian 1.0'");
 }
 
-template <class Named>
-bool is_named(const std::vector<Named>& all, const std::string& name) {
-  return std::any_of(all.begin(), all.end(), [&](const Named& one) { return one.name == name; });
-}
-
 }  // namespace
 
 PlyHeader read_ply_header(TextReader& reader) {
@@ -52,6 +47,7 @@ PlyHeader read_ply_header(TextReader& reader) {
     reader.fail("a PLY file begins with a line 'ply'");
   std::optional<PlyFormat> format;
   std::vector<PlyElement> elements;
+  std::set<std::string> names, properties;  // of the elements, and of the last one's properties
   while (reader.next_line()) {
     const auto& words = reader.words();
     if (words[0] == "end_header") {
@@ -66,12 +62,13 @@ PlyHeader read_ply_header(TextReader& reader) {
     } else if (words[0] == "element") {
       if (words.size() != 3) reader.fail("expected 'element NAME COUNT'");
       const std::string name(words[1]), shown = "'" + excerpt(name) + "'";
-      if (is_named(elements, name)) reader.fail("element " + shown + " is declared twice");
+      if (!names.insert(name).second) reader.fail("element " + shown + " is declared twice");
+      properties.clear();
       elements.push_back({name, reader.count(words[2], "elements " + shown), {}});
     } else if (words[0] == "property") {
       if (elements.empty()) reader.fail("a property stands before the first element");
       PlyProperty property = read_property(reader);
-      if (is_named(elements.back().properties, property.name))
+      if (!properties.insert(property.name).second)
         reader.fail("property '" + excerpt(property.name) + "' is declared twice");
       elements.back().properties.push_back(std::move(property));
     } else {

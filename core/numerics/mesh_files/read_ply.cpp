@@ -49,7 +49,8 @@ template <class OnNumber, class OnList, class OnEnd>
 void read_element(PlyBody& body, const PlyElement& element, const OnNumber& on_number, const OnList& on_list,
                   const OnEnd& on_end) {
   std::vector<double> values;
-  for (int i = 0; i < element.count; ++i) {
+  const int count = element.properties.empty() ? 0 : element.count;  // these take no byte, so any number fits
+  for (int i = 0; i < count; ++i) {
     body.enter(element, i);
     for (const PlyProperty& p : element.properties) {
       if (!p.count_type) {

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
+#include <set>
 #include <stdexcept>
 
 #include "core/kernel/files/message_text.h"
@@ -79,18 +81,16 @@ double LevelModel::load_pressure(const Positions& x) const {
   return square > 0 ? load_norm(x) / std::sqrt(square) : 0;
 }
 
-std::string LevelModel::unused_name(const std::string& type) const {
-  const auto is_used = [&](const std::string& name) {
-    return name == contact_part ||
-           std::any_of(terms_.begin(), terms_.end(), [&](const Term& term) { return term.name == name; });
-  };
-  std::string name = type;
-  for (int number = 2; is_used(name); ++number) name = type + " " + std::to_string(number);
-  return name;
-}
-
 void LevelModel::bind_energies(const std::vector<NamedEnergy>& energies, const LevelModel* before) {
   std::vector<Stencils> stencils;
+  std::set<std::string> names = {contact_part};
+  std::map<std::string, int> numbers;  // the last one of each type
+  const auto unused_name = [&](const std::string& type) {
+    std::string name = type;
+    for (int& number = numbers.try_emplace(type, 1).first->second; names.contains(name);)
+      name = type + " " + std::to_string(++number);
+    return name;
+  };
   for (std::size_t t = 0; t < energies.size(); ++t) {
     const NamedEnergy& e = energies[t];
     const Term* old = before ? &before->terms_.at(t) : nullptr;
@@ -109,6 +109,7 @@ void LevelModel::bind_energies(const std::vector<NamedEnergy>& energies, const L
       stencils.push_back(std::move(own));
       terms_.push_back(std::move(term));
     }
+    names.insert(terms_.back().name);
     if (terms_.back().role == EnergyRole::limit) limits_.push_back(terms_.back().energy.get());
   }
   if (before) {

@@ -126,7 +126,6 @@ class LevelModel {
     double at_origin = 0;  // value at x = 0
   };
 
-  std::string unused_name(const std::string& type) const;  // by terms_ and the contacts' part
   void bind_energies(const std::vector<NamedEnergy>& energies, const LevelModel* before);
   void bind_contacts(const std::vector<std::shared_ptr<ContactModel>>& contacts, const LevelModel* before);
   double external_force_norm(const Positions& x) const;

@@ -1,0 +1,150 @@
+// Input that is large in one respect, of which the time to check it must not grow with the square.
+
+#include <numbers>
+#include <sstream>
+
+#include "tests/configs/runs.h"
+
+namespace {
+
+const std::string rest_of_experiment = "energies: [neo_hookean, hinge]\nmethods: {newton: {}}\n";
+
+/// `drape check e.yaml`, which gets ten times the processor time that it may take, and a small part of what
+/// it would take with a time that grows with the square.
+Ended checked(const Scratch& folder) {
+  const Ended ended = Command("ulimit -t 20; exec " + drape_command + " check e.yaml", folder.path).wait();
+  INFO(ended.err.substr(0, 1000));
+  CHECK((ended.exit_code == 0 || ended.exit_code == 2));  // else a signal ended it
+  return ended;
+}
+
+/// The same of a cloth of this file.
+Ended checked_mesh(const std::string& name, const std::string& bytes) {
+  const Scratch folder("name: large\nlevels: 1\ncloth: {shape: file, file: " + name + "}\n" +
+                       rest_of_experiment);
+  folder.write(name, bytes);
+  return checked(folder);
+}
+
+/// The same of a flat square with these sections.
+Ended checked_square(const std::string& sections) {
+  return checked(
+      Scratch("name: large\nlevels: 2\ncloth: {shape: square, side: 1, columns: 50, rows: 50}\n" + sections));
+}
+
+std::string repeated(int count, const std::function<std::string(int)>& line) {
+  std::string text;
+  for (int k = 0; k < count; ++k) text += line(k);
+  return text;
+}
+
+std::string ply(const std::string& more_properties, const std::string& more_elements) {
+  return "ply\nformat ascii 1.0\n" + more_elements +
+         "element vertex 3\nproperty float x\nproperty float y\nproperty float z\n" + more_properties +
+         "element face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n";
+}
+
+/// A ball around each of the square's first vertices, one a line.
+std::string balls(int count, const std::string& more) {
+  return repeated(count, [&](int k) {
+    std::ostringstream line;
+    line << "  - {region: ball, point: [" << k % 50 / 49.0 << ", " << k / 50 % 50 / 49.0
+         << ", 0], radius: 1e-4" << more << "}\n";
+    return line.str();
+  });
+}
+
+/// Points around a circle, and triangles that join each two neighbours to the centre; or, upright, each to an
+/// axis.
+std::string around(int count, bool upright) {
+  std::ostringstream off;
+  off << "OFF\n" << count + 2 << " " << count << " 0\n0 0 0\n" << (upright ? "0 0 1\n" : "9 9 0\n");
+  for (int k = 0; k < count; ++k) {
+    const double angle = 2 * std::numbers::pi * k / count;
+    off << std::cos(angle) << " " << std::sin(angle) << (upright ? " 0.5\n" : " 0\n");
+  }
+  for (int k = 0; k < count; ++k)
+    off << "3 0 " << (upright ? 1 : 2 + (k + 1) % count) << " " << 2 + k << "\n";
+  return off.str();
+}
+
+}  // namespace
+
+TEST_CASE("A PLY file of many elements or properties is read in time") {
+  const auto element = [](const std::string& count) {
+    return [count](int k) { return "element e" + std::to_string(k) + " " + count + "\n"; };
+  };
+  CHECK(checked_mesh("a.ply", ply("", repeated(80000, element("0")))).exit_code == 0);
+  CHECK(checked_mesh("a.ply", ply("", repeated(50000, element("500000")))).exit_code ==
+        0);  // each takes no byte
+  CHECK(checked_mesh("a.ply", ply("", "comment " + std::string(2'000'000, 'x') + "\n")).exit_code == 0);
+  const auto property = [](int k) { return "property float p" + std::to_string(k) + "\n"; };
+  CHECK_THAT(checked_mesh("a.ply", ply(repeated(150000, property), "")).err,
+             Contains("the file ends where vertex"));
+}
+
+TEST_CASE("Many pins and handles are checked in time, each, all together and where all hold all vertices") {
+  for (const std::string list : {"pins:\n", "handles:\n"}) {
+    CHECK(checked_square(list + balls(5000, "") + rest_of_experiment).exit_code == 0);
+    CHECK(checked_square(list + repeated(1500, [](int) { return "  - {region: border}\n"; }) +
+                         rest_of_experiment)
+              .exit_code == 0);
+    const Ended apart =
+        checked_square(list + balls(5000, "") + balls(2500, ", translate: [0, 0, 1]") + rest_of_experiment);
+    CHECK_THAT(apart.err, Contains("both select vertex") && Contains("2500 (ball, line"));
+  }
+}
+
+TEST_CASE("A schedule of many keys or times is refused by its bounds; one within them is checked in time") {
+  const auto key = [](const std::string& parameter, int times, const std::string& value) {
+    const auto list = [&](const std::function<std::string(int)>& item) { return repeated(times, item); };
+    return "  - {parameter: " + parameter + ", times: [" +
+           list([](int k) { return std::to_string(k) + ", "; }) + "], values: [" +
+           list([&](int) { return value + ", "; }) + "]}\n";
+  };
+  const std::string schedule = "schedule:\n  keys:\n",
+                    pins = "pins:\n" + balls(2000, ", translate: [0, 0, 0]");
+  const auto keys_of_pins = [&](int count) {
+    return repeated(count,
+                    [&](int k) { return key("pins." + std::to_string(k) + ".translate", 2, "[0, 0, 0]"); });
+  };
+  CHECK_THAT(checked_square(pins + rest_of_experiment + schedule + keys_of_pins(2000)).err,
+             Contains("\"schedule\" has 2000 keys, of at most 200"));
+  CHECK(checked_square(pins + rest_of_experiment + schedule + keys_of_pins(200)).exit_code == 0);
+  for (const auto& [parameter, value] : {std::pair("material.density", "500"), {"pins.0.radius", "1e-3"}})
+    CHECK_THAT(
+        checked_square(pins + rest_of_experiment + schedule + key(parameter, 40000, value)).err,
+        Contains("has 40000 times in the keys of material, energies, pins and handles, of at most 1000"));
+  const std::string ball =
+      "contact: shapes\nobstacles: [{shape: sphere, radius: 0.1, translate: [0, 0, -1]}]\n";
+  CHECK(checked_square(ball + rest_of_experiment + schedule + key("obstacles.0.radius", 40000, "0.1"))
+            .exit_code == 0);
+}
+
+TEST_CASE("Many energies of one kind are checked in time") {
+  const std::string list =
+      "energies: [neo_hookean" + repeated(2000, [](int) { return ", constant_load"; }) + "]\n";
+  CHECK(checked_square(list + "methods: {newton: {}}\n").exit_code == 0);
+}
+
+TEST_CASE("A vertex or an edge of very many triangles is refused") {
+  const std::string most = " triangles, of at most 5000";
+  for (const bool upright : {false, true}) {
+    CHECK_THAT(checked_mesh("a.off", around(30000, upright)).err, Contains("vertex 0 has 30000" + most));
+    const Scratch folder(
+        "name: large\nlevels: 1\ncloth: {vertices: 9}\nstart: {translate: [0, 0, 3]}\ncontact: ipc\n"
+        "obstacles: [{mesh: a.off}]\n" +
+        rest_of_experiment);
+    folder.write("a.off", around(30000, upright));
+    CHECK_THAT(checked(folder).err, Contains("vertex 0 has 30000" + most));
+  }
+}
+
+TEST_CASE("A mesh or an experiment that is linked to a file without an end is refused") {
+  const Scratch folder("name: large\nlevels: 1\ncloth: {shape: file, file: a.ply}\n" + rest_of_experiment);
+  for (const std::string endless : {"/dev/zero", "/proc/self/pagemap"}) {
+    fs::create_symlink(endless, folder / "a.ply");
+    CHECK_THAT(checked(folder).err, Contains("a.ply: "));
+    fs::remove(folder / "a.ply");
+  }
+}
