@@ -42,14 +42,14 @@ int check_experiment(const ConfigArguments& arguments, const Registry& registry)
   ConfigErrors errors;
   refuse_infinite_energies(loaded.experiment, *loaded.scene, errors);
   require_none(errors);
-  std::cout << arguments.config << ": valid.";
+  std::cout << printable(arguments.config) << ": valid.";
   for (const Level& level : loaded.scene->hierarchy.levels)
     std::cout << (level.index ? ", " : " Vertices by level: ") << level.vertex_count();
   std::cout << "\nMemory to solve them, at most about:";
   for (const Level& level : loaded.scene->hierarchy.levels)
     std::cout << (level.index ? ", " : " ") << memory_text(estimated_memory(level.vertex_count()));
-  std::cout << "; this machine has " << memory_text(machine_memory()) << "\nRead: " << text_of(loaded.summary)
-            << "\n";
+  std::cout << "; this machine has " << memory_text(machine_memory())
+            << "\nRead: " << printable(text_of(loaded.summary)) << "\n";
   for (const std::string& line : remarks_of(loaded.experiment, *loaded.scene))
     std::cout << printable(line) << "\n";
   const Material& material = loaded.experiment.parameters.material;
@@ -87,9 +87,10 @@ int check_sweep(const ConfigArguments& arguments, const Registry& registry) {
       check_run(run, {file}, arguments.large_memory(), registry, errors);
   require_none(errors);
   const std::size_t runs = sweep->runs.size(), seeds = runs / variations.size();
-  std::cout << file << ": valid. A sweep of " << runs << (runs == 1 ? " run: " : " runs: ")
+  std::cout << printable(file) << ": valid. A sweep of " << runs << (runs == 1 ? " run: " : " runs: ")
             << variations.size() << (variations.size() == 1 ? " variation, " : " variations, ") << seeds
-            << (seeds == 1 ? " seed" : " seeds") << " each. `drape sweep " << file << "` runs it.\n";
+            << (seeds == 1 ? " seed" : " seeds") << " each. `drape sweep " << printable(file)
+            << "` runs it.\n";
   return exit_done;
 }
 
@@ -99,10 +100,10 @@ int check_energy(const std::string& energy, const Registry& registry) {
   const auto made = node ? make_from<Energy>(registry, *node, errors) : nullptr;
   require_none(errors);
   const DerivativeCheck check = check_derivatives(*made, Material());
-  std::cout << check.text() << "derivatives " << (check.agrees() ? "agree with" : "DIFFER from")
-            << " finite differences\n";
+  std::cout << printable_lines(check.text()) << "derivatives "
+            << (check.agrees() ? "agree with" : "DIFFER from") << " finite differences\n";
   const std::string jump = jump_of(*made, Material());
-  if (!jump.empty()) std::cout << "NOT SMOOTH: " << jump << "\n";
+  if (!jump.empty()) std::cout << "NOT SMOOTH: " << printable(jump) << "\n";
   return check.agrees() && jump.empty() ? exit_done : exit_not_converged;
 }
 

@@ -139,6 +139,11 @@ int Commands::run(int argc, char** argv) {
     std::cerr << app_.help();
     return exit_bad_input;
   }
+  for (const std::string& word : words)
+    if (word.empty() || (word.starts_with("--") && word.find('=') == word.size() - 1))
+      throw std::runtime_error((word.empty() ? "an argument" : word) +
+                               " is empty, as where a variable of the shell is not set; give it a value, or "
+                               "leave it out");
   if (!words[0].starts_with("-")) require_command(words[0]);
   std::reverse(words.begin(), words.end());  // as the parser takes them
   try {

@@ -11,6 +11,7 @@
 #include "core/app/experiment/exit_codes.h"
 #include "core/app/experiment/experiment_parameters.h"
 #include "core/app/experiment/fabrics.h"
+#include "core/kernel/files/message_text.h"
 #include "core/kernel/files/number_text.h"
 #include "core/kernel/files/string_utils.h"
 #include "core/numerics/elements/orthotropic_stiffness.h"
@@ -75,7 +76,7 @@ struct FabricOptions {
 int print_fabric(const FabricOptions& options) {
   if (options.name.empty()) {
     if (!options.file.empty()) {
-      for (const std::string& name : fabric_names(options.file)) std::cout << name << "\n";
+      for (const std::string& name : fabric_names(options.file)) std::cout << printable(name) << "\n";
       return exit_done;
     }
     for (const std::string& name : fabric_names()) {
@@ -99,11 +100,11 @@ int print_fabric(const FabricOptions& options) {
   MaterialParameters own;
   if (errors.empty()) schema_of<MaterialParameters>("material").read(&own, material, errors);
   require_none(errors);
-  std::cout << options.name;
-  if (const ConfigNode* source = values.find("source")) std::cout << ": " << source->scalar;
+  std::cout << printable(options.name);
+  if (const ConfigNode* source = values.find("source")) std::cout << ": " << printable(source->scalar);
   std::cout << "\n";
   print_sheet(own, values);
-  const std::string value = options.file.empty() ? options.name : fabric.one_line();
+  const std::string value = printable(options.file.empty() ? options.name : fabric.one_line());
   std::cout
       << "Where a figure is not known, the material's default stands for it: material: {fabric: " << value
       << "}\nDrape coefficient, by simulation: drape run configs/tests/cusick.yaml --set 'material.fabric="

@@ -149,9 +149,9 @@ int show_result(const SweepFolder& folder, const FitRequest& request, const FitR
             << digits(best->values.back()) << " in " << best->values.size() << " of " << setup.starts
             << " starts) with\n ";
   for (const ScaledKey& key : setup.keys)
-    std::cout << " --set " << key.path << "=" << ConfigNode::of(key.times(best->factor)).scalar;
-  std::cout << "\nexperiment: " << (folder.path() / "fitted.yaml").string() << "\n";
-  if (!reached) std::cerr << "error: " << shortfall(end, request, runs.samples()) << "\n";
+    std::cout << " --set " << printable(key.path) << "=" << ConfigNode::of(key.times(best->factor)).scalar;
+  std::cout << "\nexperiment: " << printable((folder.path() / "fitted.yaml").string()) << "\n";
+  if (!reached) std::cerr << "error: " << printable(shortfall(end, request, runs.samples())) << "\n";
   return reached && best->left_out.empty() ? exit_done : exit_not_converged;
 }
 

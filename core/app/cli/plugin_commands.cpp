@@ -24,7 +24,7 @@ int list(const std::string& asked, const Registry& registry) {
     if (!asked.empty() && kind != asked) continue;
     std::cout << kind << "\n";
     for (const RegistryEntry* entry : registry.of_kind(kind))
-      std::cout << "  " << padded(entry->name, 24) << " " << entry->summary << "\n";
+      std::cout << "  " << padded(entry->name, 24) << " " << printable(entry->summary) << "\n";
   }
   return exit_done;
 }
@@ -37,7 +37,8 @@ int describe_plugin(const std::string& name, const Registry& registry) {
     names.push_back(entry->name);
     if (entry->name == name) found.push_back(describe(*entry));
   }
-  for (std::size_t k = 0; k < found.size(); ++k) std::cout << (k > 0 ? "\n" : "") << found[k];
+  for (std::size_t k = 0; k < found.size(); ++k)
+    std::cout << (k > 0 ? "\n" : "") << printable_lines(found[k]);
   if (!found.empty()) return exit_done;
   throw std::runtime_error("no plugin is called \"" + excerpt(name) + "\"; " +
                            did_you_mean(name, names, "`drape list` names them all"));

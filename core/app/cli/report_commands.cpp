@@ -111,7 +111,7 @@ int report(const Folders& folders, fs::path page, std::optional<int> picture_wid
   } else {
     warn_of(write_report(folders.front(), {}, picture_width));
   }
-  std::cout << "report: " << page.string() << "\n";
+  std::cout << "report: " << printable(page.string()) << "\n";
   return exit_done;
 }
 

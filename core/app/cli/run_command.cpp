@@ -65,16 +65,16 @@ int run(RunRequest& r, const Experiment& experiment, const Scene& scene,
   if (r.methods.size() > 1 && r.verbosity != Verbosity::quiet && !stopped)
     std::cerr << printable_lines(methods_text(table_of(read_runs({r.out}))));
   if (r.report)
-    std::cout << "report: " << (r.out / "report.html").string() << "\n";
+    std::cout << "report: " << printable((r.out / "report.html").string()) << "\n";
   else
-    std::cout << "results: " << (r.out / "results.json").string() << "\n";
+    std::cout << "results: " << printable((r.out / "results.json").string()) << "\n";
   const int as_signal = stop_signal() ? stop_signal() : SIGINT;  // the view's Stop counts as Ctrl-C
   if (r.keep_view && !stop_signal()) {
     std::cout << "the view stays at " << view->url() << " until Ctrl-C" << std::endl;
     while (!stop_signal()) std::this_thread::sleep_for(std::chrono::milliseconds(50));
   }
   if (stopped) {
-    std::cerr << "stopped on request; everything up to then is in " << r.out.string() << "\n";
+    std::cerr << "stopped on request; everything up to then is in " << printable(r.out.string()) << "\n";
     return exit_by_signal + as_signal;
   }
   return converged ? exit_done : exit_code_of(read_run(r.out));
@@ -101,7 +101,7 @@ int resume(RunRequest& r, const Registry& registry) {
   warn_of(warnings);
   require_none(errors);
   if (!saved->interrupted) {
-    std::cout << r.resumed << ": the run is complete; there is nothing to resume\n";
+    std::cout << printable(r.resumed) << ": the run is complete; there is nothing to resume\n";
     return exit_code_of(read_run(r.out));
   }
   r.methods = saved->interrupted->checkpoint.methods;

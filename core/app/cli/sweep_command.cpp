@@ -34,7 +34,7 @@ int list_runs(const SweepFolder& folder) {
 /// Lists the runs without writing anything.
 int show_plan(const Sweep& sweep, const SweepFolder& folder, int threads) {
   std::printf("sweep %s: %zu runs in %s, each with %d thread%s\n", sweep.parameters.name.c_str(),
-              sweep.runs.size(), folder.path().c_str(), threads, threads == 1 ? "" : "s");
+              sweep.runs.size(), printable(folder.path().string()).c_str(), threads, threads == 1 ? "" : "s");
   const MemoryEstimate memory(sweep, folder);
   for (const SweepRun& run : sweep.runs) {
     const RunFiles files = folder.files(run.folder);
@@ -42,8 +42,8 @@ int show_plan(const Sweep& sweep, const SweepFolder& folder, int threads) {
     // Its results may have been damaged or removed since.
     if (status.has_results()) status = resolve_status(files, status);
     std::printf("%-10s %s  levels %d, about %.0f vertices, %.1f GB  %s\n", to_string(status.state),
-                run.folder.c_str(), run.levels, run.vertices, memory.bytes(run) / 1e9,
-                json_text(run.settings).c_str());
+                printable(run.folder).c_str(), run.levels, run.vertices, memory.bytes(run) / 1e9,
+                printable(json_text(run.settings)).c_str());
   }
   return exit_done;
 }
@@ -54,8 +54,8 @@ int begun(const SweepFolder& folder, const Action& action) {
   try {
     return action();
   } catch (const std::exception& error) {
-    std::cerr << "error: " << printable(reason_of(error)) << "; the sweep in " << folder.path().string()
-              << " is aborted; the same command runs what is missing\n";
+    std::cerr << "error: " << printable(reason_of(error)) << "; the sweep in "
+              << printable(folder.path().string()) << " is aborted; the same command runs what is missing\n";
     return exit_aborted;
   }
 }
@@ -105,7 +105,7 @@ int run_on_slurm(const Sweep& sweep, const SweepFolder& folder, const SweepReque
       jobs = submit(sweep, folder, missing, r);
       std::cout << "submitted: " << missing.size() << " runs as job array " << jobs->array
                 << ", collected by job " << jobs->collector << "; their output is in "
-                << (folder.slurm() / "logs").string() << std::endl;
+                << printable((folder.slurm() / "logs").string()) << std::endl;
       return exit_done;
     });
     if (submitted != exit_done) return submitted;

@@ -116,15 +116,16 @@ void check_motions(const Experiment& e, ConfigErrors& errors) {
 
 void check_name(const std::string& what, const std::string& name, const Location& where,
                 ConfigErrors& errors) {
-  const bool usable = !name.empty() && name[0] != '.' && std::ranges::all_of(name, [](unsigned char c) {
-    return c >= 0x80 || std::isalnum(c) || c == '_' || c == '-' || c == '.';
-  });
+  const bool usable = !name.empty() && name[0] != '.' && name[0] != '-' &&
+                      printable(name, SIZE_MAX) == name && std::ranges::all_of(name, [](unsigned char c) {
+                        return c >= 0x80 || std::isalnum(c) || c == '_' || c == '-' || c == '.';
+                      });
   const std::string fault = fault_of_file_name(name);
   if (!usable || !fault.empty())
     errors.push_back({where, what + " \"" + excerpt(name) + "\" names files: " +
                                  (usable ? "it " + fault
                                          : "write it with letters, digits, \"_\", \"-\" and \".\", not "
-                                           "beginning with \".\"")});
+                                           "beginning with \".\" or \"-\"")});
 }
 
 void sort_by_place(ConfigErrors& errors, const std::string& file) {

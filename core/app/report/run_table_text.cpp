@@ -28,9 +28,14 @@ std::string markdown_cell(const Json& value) {
   return boost::replace_all_copy(boost::replace_all_copy(cell_text(value, !counted), "|", "\\|"), "\n", "; ");
 }
 
+/// A text that a spreadsheet would compute, as "=1+1", gets an apostrophe in front, which it takes for a mark
+/// of texts. Numbers stay.
 std::string csv_cell(const Json& value) {
-  const std::string text = cell_text(value, false);
-  return text.find_first_of(",\"\n") == std::string::npos
+  std::string text = cell_text(value, false);
+  if (value.is_string() && std::string_view("=+-@\t\r").find(text[0]) != std::string_view::npos &&
+      !parse_number(text))
+    text.insert(0, "'");
+  return text.find_first_of(",\"\r\n") == std::string::npos
              ? text
              : "\"" + boost::replace_all_copy(text, "\"", "\"\"") + "\"";
 }
@@ -80,10 +85,10 @@ std::string table_text(const RunTable& table, std::vector<std::string> columns, 
   const auto line = [&](const auto& cell_of) {
     std::string text;
     for (const std::string& column : columns)
-      text += (csv ? (text.empty() ? "" : ",") : "| ") + cell_of(column) + (csv ? "" : " ");
+      text += (csv ? (&column == &columns[0] ? "" : ",") : "| ") + cell_of(column) + (csv ? "" : " ");
     return text + (csv ? "\n" : "|\n");
   };
-  std::string text = line([](const std::string& column) { return column; });
+  std::string text = line([&](const std::string& column) { return csv ? csv_cell(column) : column; });
   if (!csv)
     text +=
         line([&](const std::string& column) { return std::string(is_text(table, column) ? "---" : "---:"); });

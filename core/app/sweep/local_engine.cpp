@@ -9,6 +9,7 @@
 #include "core/app/files/machine.h"
 #include "core/app/sweep/process.h"
 #include "core/app/sweep/sweep_folder.h"
+#include "core/kernel/files/message_text.h"
 #include "core/kernel/threads/stopwatch.h"
 
 namespace drape {
@@ -74,7 +75,7 @@ class LocalEngine {
         if (!running_.empty()) return;
         std::fprintf(stderr,
                      "warning: %s, seed %d may need %.1f GB where %.1f GB are to be had; it runs alone\n",
-                     run.name.c_str(), run.seed, needed / 1e9, std::max(0.0, left) / 1e9);
+                     printable(run.name).c_str(), run.seed, needed / 1e9, std::max(0.0, left) / 1e9);
       }
       // Another program would give the sweep's later runs other results than the earlier ones.
       replaced_ = own_program_replaced();
@@ -118,8 +119,8 @@ class LocalEngine {
     if (rest > 0 && !stopping_)
       line += "; " + std::to_string(rest) + " to go, about " +
               duration_text(clock_.seconds() / double(ended_) * double(rest));
-    std::fprintf(stderr, "%s\n", line.c_str());
-    if (failed) std::fprintf(stderr, "%s\n", status.error.c_str());
+    std::fprintf(stderr, "%s\n", printable(line).c_str());
+    if (failed) std::fprintf(stderr, "%s\n", printable_lines(status.error).c_str());
   }
 
   const Sweep& sweep_;

@@ -124,6 +124,11 @@ def _sweep_figures(rows: pandas.DataFrame, out: pathlib.Path) -> list[pathlib.Pa
     return files
 
 
+def _cell(value):
+    """A cell of a CSV file as `drape table` writes it: no spreadsheet computes a text."""
+    return "'" + value if isinstance(value, str) and value[:1] in tuple("=+-@\t\r") else value
+
+
 def figures(results, out, overwrite: bool = False) -> list[pathlib.Path]:
     """Writes the figures of a run or a sweep to a folder, which is made, and returns the files. Raises RuntimeError for a
     folder without results, and for a file that exists."""
@@ -139,7 +144,7 @@ def figures(results, out, overwrite: bool = False) -> list[pathlib.Path]:
     _core._refuse_target(out / "table.csv", overwrite)  # before anything is drawn
     with tempfile.TemporaryDirectory(prefix="drape_figures_") as made:
         files = [pathlib.Path(made, "table.csv"), pathlib.Path(made, "table.tex")]
-        rows.to_csv(files[0], index=False)
+        rows.apply(lambda column: column.map(_cell)).to_csv(files[0], index=False)
         files[1].write_text(latex_table(rows), encoding="utf-8")
         of_run = (folder / "results.json").exists()
         files += _run_figures(folder, pathlib.Path(made)) if of_run else _sweep_figures(rows, pathlib.Path(made))
