@@ -1,5 +1,7 @@
 """What an experiment refuses, and where it says the faults are."""
 
+import pathlib
+
 import numpy
 import pytest
 
@@ -101,3 +103,40 @@ def test_what_the_module_can_use():
     assert level.edges.shape == (3, 2) and level.hinges.shape == (0, 4)
     for count in (2, 0):
         drape.set_threads(count)
+
+
+@pytest.mark.parametrize("call", [
+    lambda path: drape.Experiment(path),
+    lambda path: drape.Experiment(pathlib.Path(path)),
+    lambda path: drape.Result(path),
+    lambda path: drape.resume(path),
+    lambda path: drape.read_run(path),
+])
+def test_a_path_with_a_nul_character_is_refused(call):
+    with pytest.raises((ValueError, RuntimeError), match="NUL|null byte"):
+        call("a\0b")
+
+
+def test_an_object_whose_init_has_not_run_is_refused(small):
+    classes = [value for value in vars(drape._core).values() if isinstance(value, type) and value.__module__ == "drape._core"
+               and not issubclass(value, BaseException)]
+    assert len(classes) > 8
+    called = 0
+    for made in classes:
+        half = made.__new__(made)
+        for name, attribute in vars(made).items():
+            if isinstance(attribute, property):
+                with pytest.raises((TypeError, RuntimeError)):
+                    getattr(half, name)
+                called += 1
+            elif callable(attribute) and name not in ("__init__", "__new__", "__iter__") and not name.startswith("_pybind"):
+                with pytest.raises((TypeError, RuntimeError)):
+                    attribute(half)
+                called += 1
+    assert called > 50
+    with pytest.raises(TypeError, match="__init__ has not run"):
+        drape.Experiment.__new__(drape.Experiment).check()
+    model = drape.Experiment(small).scene()[0]
+    with pytest.raises(TypeError, match="__init__ has not run"):
+        type(model).__new__(type(model)).level
+    assert model.level.vertex_count > 0

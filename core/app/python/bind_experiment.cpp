@@ -1,5 +1,3 @@
-#include <pybind11/stl/filesystem.h>
-
 #include "core/app/experiment/cloth.h"
 #include "core/app/files/yaml_file.h"
 #include "core/app/python/module.h"

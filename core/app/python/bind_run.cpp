@@ -1,5 +1,3 @@
-#include <pybind11/stl/filesystem.h>
-
 #include <exception>
 #include <utility>
 

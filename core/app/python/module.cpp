@@ -66,6 +66,17 @@ void bind_errors(py::module_& m) {
   });
 }
 
+/// Has every method refuse an object whose __init__ has not run, as of Model.__new__(Model): pybind11 would
+/// give it memory that nothing was written to. It takes that memory here; what C++ makes has its own.
+void refuse_half_made(const py::module_& m) {
+  for (const auto& [name, entry] : py::dict(m.attr("__dict__")))
+    if (PyType_Check(entry.ptr()) != 0)
+      if (auto* type = py::detail::get_type_info(reinterpret_cast<PyTypeObject*>(entry.ptr())))
+        type->operator_new = [](std::size_t) -> void* {
+          throw py::type_error("the object is not complete: its __init__ has not run");
+        };
+}
+
 }  // namespace
 
 const Registry& registry() { return mutable_registry(); }
@@ -113,4 +124,5 @@ PYBIND11_MODULE(_core, m) {
   python::bind_bound_energy(m);
   python::bind_prototype_problem(m);
   python::bind_prototypes(m);
+  python::refuse_half_made(m);
 }

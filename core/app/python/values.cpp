@@ -30,6 +30,10 @@ py::array array_of_kind(const py::handle& values, const std::string& kinds, cons
 /// Deepest nesting, as of YAML files; a list that contains itself ends here.
 constexpr int max_depth = 100;
 
+[[noreturn]] void refuse_nul(const py::handle& value) {
+  throw py::value_error(shown(value) + " has a NUL character; take it out");
+}
+
 /// A str's text, which a config.yaml can hold.
 std::string text_of(const py::handle& value) {
   std::string text;
@@ -38,8 +42,7 @@ std::string text_of(const py::handle& value) {
   } catch (const py::cast_error&) {
     throw py::value_error(shown(value) + " is no text that UTF-8 can hold");
   }
-  if (text.find('\0') != std::string::npos)
-    throw py::value_error(shown(value) + " has a NUL character; take it out");
+  if (text.find('\0') != std::string::npos) refuse_nul(value);
   return text;
 }
 
@@ -134,6 +137,12 @@ py::object bsr_matrix(const BlockMatrix& matrix) {
 }
 
 ConfigNode node_of(const py::handle& value) { return nested_node(value, 0); }
+
+std::filesystem::path path_of(const py::handle& value) {
+  const std::string bytes = py::module_::import("os").attr("fsencode")(value).cast<py::bytes>();
+  if (bytes.find('\0') != std::string::npos) refuse_nul(value);
+  return bytes;
+}
 
 py::dict value_of(const ConfigNode& node) {
   return py::module_::import("json").attr("loads")(json_text(json_value(node)));

@@ -4,6 +4,7 @@
 #include <pybind11/numpy.h>
 #include <pybind11/stl.h>
 
+#include <filesystem>
 #include <string>
 
 #include "core/kernel/interfaces/block_sink.h"
@@ -54,6 +55,10 @@ py::object bsr_matrix(const BlockMatrix& matrix);
 /// arrays of them. Throws TypeError for anything else.
 ConfigNode node_of(const py::handle& value);
 
+/// A str, bytes or path of Python as a path. Throws ValueError for one with a NUL character, which the system
+/// would cut there.
+std::filesystem::path path_of(const py::handle& value);
+
 /// The node as Python's dict, list, str, int, float, bool or None.
 py::dict value_of(const ConfigNode& node);
 
@@ -82,6 +87,15 @@ struct type_caster<drape::python::State> {
   PYBIND11_TYPE_CASTER(drape::python::State, const_name("numpy.typing.ArrayLike"));
   bool load(handle source, bool) {
     value = drape::python::state_of(source);
+    return true;
+  }
+};
+
+template <>
+struct type_caster<std::filesystem::path> {
+  PYBIND11_TYPE_CASTER(std::filesystem::path, const_name("os.PathLike"));
+  bool load(handle source, bool) {
+    value = drape::python::path_of(source);
     return true;
   }
 };
