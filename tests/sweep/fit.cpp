@@ -83,8 +83,9 @@ TEST_CASE("a fit reports the median and the range over its starts") {
 TEST_CASE("a fit that misses its target says what it saw, and keeps the nearest") {
   const Scratch folder(specimen);
   const std::string bending = "fit e.yaml --starts 1 --by material.bending ";
-  CHECK_THAT(drape_ends(bending + "--to 145 -o high", folder, 1).err,
-             Catch::Contains("error: drape_coefficient 145 is out of reach: factors from 1 to 1024 gave 29.2"));
+  CHECK_THAT(
+      drape_ends(bending + "--to 145 -o high", folder, 1).err,
+      Catch::Contains("error: drape_coefficient 145 is out of reach: factors from 1 to 1024 gave 29.2"));
   CHECK(json_in(folder / "high/fit.json")["reached"] == false);
   const std::string bounded =
       "fit e.yaml --starts 1 --by material.poisson_ratio --set material.poisson_ratio=0.3 --to 90 ";

@@ -43,13 +43,11 @@ class WriteError : public std::runtime_error {
 /// bytes.
 std::string read_file(const std::filesystem::path& path, std::uintmax_t most = largest_file);
 
-/// What becomes of a file that has the name already.
-enum class Existing { replaced, kept };
+enum class Existing { replaced, kept };  ///< what becomes of a file that has the name already
 
-/// Every file of drape's own comes about here. Writes a new file under a name that none has, path + ".part"
-/// or path + ".1.part", and renames it: the final name never has an incomplete file, and what had a name
-/// before is never written into, nor what a link leads to. Throws WriteError naming path and cause, after
-/// removing the part; also if the name is taken and `existing` is kept.
+/// Writes each file of drape's own: under a name that no file has, path + ".part" or path + ".1.part", which
+/// is renamed. No file is ever incomplete, and nothing that was there is written into, nor followed as a
+/// link. Throws WriteError, after removing the part; also if the name is taken and `existing` is kept.
 void write_file(const std::filesystem::path& path, std::string_view bytes,
                 Existing existing = Existing::replaced);
 

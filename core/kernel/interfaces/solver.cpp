@@ -1,20 +1,15 @@
 #include "core/kernel/interfaces/solver.h"
 
-#include <iterator>
+#include <array>
 
 namespace drape {
 
 const char* to_string(Outcome outcome) {
-  constexpr const char* names[] = {"converged",
-                                   "converged_to_rounding",
-                                   "refined_early_on_request",
-                                   "saddle",
-                                   "max_steps_reached",
-                                   "stalled",
-                                   "infeasible",
-                                   "cancelled"};
+  constexpr auto names =
+      std::to_array<const char*>({"converged", "converged_to_rounding", "refined_early_on_request", "saddle",
+                                  "max_steps_reached", "stalled", "infeasible", "cancelled"});
   const auto index = static_cast<std::size_t>(outcome);
-  return index < std::size(names) ? names[index] : "";
+  return index < names.size() ? names[index] : "";
 }
 
 }  // namespace drape

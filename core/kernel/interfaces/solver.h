@@ -42,7 +42,7 @@ enum class Outcome {
 };
 /// Its name in results; empty for a number that is none.
 const char* to_string(Outcome outcome);
-/// Whether a level is at equilibrium.
+/// Whether a level is at rest.
 inline bool has_converged(Outcome outcome) { return outcome <= Outcome::converged_to_rounding; }
 
 /// One Newton iteration, for observers.
@@ -61,8 +61,7 @@ struct IterationRow {
   std::optional<double> smallest_gap;  ///< of them [m]; +∞ without one
 };
 
-/// Whether an equilibrium is a minimum of the objective, by its unprojected Hessian H there on the free
-/// vertices (docs/theory/method.md, section 2).
+/// Whether an equilibrium is a minimum, by its unprojected Hessian H (docs/theory/method.md, section 2).
 struct Stability {
   enum Verdict { stable, marginal, unstable } verdict = stable;
   double lowest_eigenvalue = 0;  ///< of M⁻¹H [1/s²]
