@@ -187,7 +187,7 @@ void check_nearest(const Experiment& e, const std::string& key, const Selections
 void check_joined(const Experiment& e, const Level& coarsest, Warnings& warnings) {
   if (const std::string unwelded = unwelded_fault(e, coarsest); !unwelded.empty())
     warnings.add("cloth", unwelded);
-  const int lines = e.parameters.cloth.shape == "file" ? lines_in(e.parameters.cloth.file) : 0;
+  const int lines = e.parameters.cloth.shape == "file" ? line_elements_in(e.parameters.cloth.file) : 0;
   if (lines > 0)
     warnings.add("cloth", std::to_string(lines) + (lines == 1 ? " line" : " lines") +
                               " between vertices (`l` in an OBJ file, `edge` in a PLY) " +

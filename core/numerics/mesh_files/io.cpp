@@ -43,7 +43,7 @@ TriangleMesh read_surface(const std::filesystem::path& path) {
   return read(path, MeshUse::surface, lines);
 }
 
-int lines_in(const std::filesystem::path& path) {
+int line_elements_in(const std::filesystem::path& path) {
   int lines = 0;
   read(path, MeshUse::surface, lines);
   return lines;

@@ -27,7 +27,7 @@ TriangleMesh read_surface(const std::filesystem::path& path);
 
 /// The number of lines between vertices (`l` of an OBJ, elements `edge` of a PLY) that a mesh file has beside
 /// its faces; neither function above reads them.
-int lines_in(const std::filesystem::path& path);
+int line_elements_in(const std::filesystem::path& path);
 
 /// All scalar vertex properties of a PLY other than x, y and z, in the file's order.
 VertexFields read_ply_fields(const std::filesystem::path& path);
