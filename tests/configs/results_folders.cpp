@@ -85,7 +85,7 @@ TEST_CASE("--overwrite removes no file that the new run reads, and may repeat a 
   const std::string mesh = (folder / "first/levels/pcs_l0.ply").string();
   check_error(
       refused(folder, "run e.yaml --overwrite --out first --set contact=[ipc] --set 'obstacles=[{mesh: " +
-                          mesh + ", translate: [0, 0, -9]}]'"),
+                          mesh + ", translate: [0, 0, -0.9]}]'"),
       mesh + ": is read by this experiment, and --overwrite would remove it; copy it, or name another ");
   run_into("out", folder, options + "--set start.file=first/rest/l0.ply");
   fs::copy(folder / "out", folder / "copy", fs::copy_options::recursive);

