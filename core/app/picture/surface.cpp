@@ -2,6 +2,8 @@
 
 #include <vector>
 
+#include "core/numerics/mesh/area_vectors.h"
+
 namespace drape {
 
 Positions smooth_normals(const TriangleMesh& mesh) {

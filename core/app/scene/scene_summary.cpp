@@ -5,6 +5,8 @@
 
 #include "core/kernel/files/number_text.h"
 #include "core/kernel/interfaces/contact_model.h"
+#include "core/numerics/collision_detection/components.h"
+#include "core/numerics/mesh/seams.h"
 #include "core/numerics/model/required.h"
 
 namespace drape {
@@ -43,8 +45,15 @@ double median(Eigen::VectorXd values) {
   return *middle;
 }
 
+/// The same at rest.
+Eigen::VectorXd rest_lengths(const Level& level) {
+  Eigen::VectorXd lengths(level.topology.edges.rows());
+  for (int e = 0; e < lengths.size(); ++e) lengths[e] = rest_length(level.rest, level.topology, e);
+  return lengths;
+}
+
 void add_edges(const Level& level, SceneSummary& summary) {
-  const Eigen::VectorXd lengths = edge_lengths(level, level.rest.vertices);
+  const Eigen::VectorXd lengths = rest_lengths(level);
   summary.shortest_edge = lengths.minCoeff();
   summary.median_edge = median(lengths);
   summary.longest_edge = lengths.maxCoeff();
@@ -52,7 +61,7 @@ void add_edges(const Level& level, SceneSummary& summary) {
 }
 
 void add_contacts(const LevelModel& model, const Positions& start, SceneSummary& summary) {
-  const Positions points = start(model.level().topology.components(), Eigen::all);
+  const Positions points = start(components(model.level().topology), Eigen::all);
   for (const auto& contact : model.contacts()) {
     summary.dhat = std::max(summary.dhat, contact->dhat());
     std::vector<ObstacleGap> gaps = contact->obstacle_gaps(start);
@@ -89,10 +98,10 @@ SceneSummary summary_of(const Scene& scene) {
   const Material& material = coarsest.material();
   SceneSummary summary;
   summary.size = extents(coarsest.level().rest.vertices);
-  summary.parts = static_cast<int>(coarsest.level().topology.components().size());
+  summary.parts = static_cast<int>(components(coarsest.level().topology).size());
   summary.mass = coarsest.masses().sum();
   add_edges(scene.hierarchy.levels.back(), summary);
-  const Eigen::VectorXd rest = edge_lengths(coarsest.level(), coarsest.level().rest.vertices);
+  const Eigen::VectorXd rest = rest_lengths(coarsest.level());
   summary.start_stretch = median(edge_lengths(coarsest.level(), scene.placed[0]).cwiseQuotient(rest));
   double stiffness = 0;
   for (const NamedEnergy& named : scene.energies)

@@ -8,6 +8,7 @@
 #include "core/app/scene/crossed_parts.h"
 #include "core/app/scene/scene.h"
 #include "core/kernel/files/message_text.h"
+#include "core/numerics/collision_detection/components.h"
 #include "core/numerics/mesh/mesh_faults.h"
 #include "core/numerics/model/required.h"
 
@@ -54,7 +55,7 @@ class TranslationSearch {
   explicit TranslationSearch(const Scene& scene)
       : scene_(scene),
         diagonal_(bounding_box_diagonal(scene.starts[0])),
-        points_(scene.starts[0](scene.hierarchy.levels[0].topology.components(), Eigen::all)),
+        points_(scene.starts[0](components(scene.hierarchy.levels[0].topology), Eigen::all)),
         obstacles_(obstacles_of(scene.model(0)->contacts())),
         crossed_(scene.hierarchy.levels[0], scene.starts[0], obstacles_) {
     const Level& level = scene.hierarchy.levels[0];

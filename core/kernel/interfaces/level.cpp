@@ -13,14 +13,13 @@ Level Level::of(int index, TriangleMesh rest) {
 
   level.vertex_area = Eigen::VectorXd::Zero(level.vertex_count());
   for (int t = 0; t < level.triangle_count(); ++t) {
-    const auto v = level.rest.triangles.row(t);
-    const Eigen::Vector3d a = level.rest.vertices.row(v[0]);
-    const Eigen::Vector3d b = level.rest.vertices.row(v[1]);
-    const Eigen::Vector3d c = level.rest.vertices.row(v[2]);
-    const double third = (b - a).cross(c - a).norm() / 6;
-    for (int k = 0; k < 3; ++k) level.vertex_area[v[k]] += third;
+    const Eigen::Matrix3d c = rest_corners(level.rest, t);
+    const double third = (c.col(1) - c.col(0)).cross(c.col(2) - c.col(0)).norm() / 6;
+    for (int k = 0; k < 3; ++k) level.vertex_area[level.rest.triangles(t, k)] += third;
   }
   level.hinges = level.topology.hinges(level.rest.triangles);
+  for (int e = 0; e < level.topology.edges.rows(); ++e)
+    if (level.topology.edge_triangles(e, 1) != -1) level.hinge_edges.push_back(e);
   level.triangle_order = ElementOrder::of(level.rest.triangles, level.rest.vertices);
   level.hinge_order = ElementOrder::of(level.hinges, level.rest.vertices);
   return level;

@@ -95,24 +95,6 @@ Topology Topology::of_any(const Triangles& triangles, int vertex_count) {
   return make_topology(triangles, vertex_count, false);
 }
 
-std::vector<int> Topology::components() const {
-  std::vector<char> seen(on_border.size(), 0);
-  std::vector<int> first, open;
-  for (int v = 0; v < static_cast<int>(seen.size()); ++v) {
-    if (seen[v]) continue;
-    first.push_back(v);
-    open = {v};
-    seen[v] = 1;
-    while (!open.empty()) {
-      const int from = open.back();
-      open.pop_back();
-      for (const int to : vertex_vertices.row(from))
-        if (!seen[to]) seen[to] = 1, open.push_back(to);
-    }
-  }
-  return first;
-}
-
 Eigen::Matrix<int, Eigen::Dynamic, 4, Eigen::RowMajor> Topology::hinges(const Triangles& triangles) const {
   const auto inner_count = (edge_triangles.col(1).array() != -1).count();
   Eigen::Matrix<int, Eigen::Dynamic, 4, Eigen::RowMajor> hinges(inner_count, 4);

@@ -80,9 +80,6 @@ struct Topology {
   /// The same of triangles that need not be manifold, as an obstacle's.
   static Topology of_any(const Triangles& triangles, int vertex_count);
 
-  /// The first vertex of each connected component, ascending.
-  std::vector<int> components() const;
-
   /// The corner of a triangle that lies opposite one of its edges, 0 … 2.
   int corner_opposite(int edge, int triangle) const {
     return triangle_edges(triangle, 0) == edge ? 0 : triangle_edges(triangle, 1) == edge ? 1 : 2;

@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -29,13 +30,34 @@ using Triangles = Eigen::Matrix<int, Eigen::Dynamic, 3, Eigen::RowMajor>;
 /// differ make a seam.
 using CornerUv = Eigen::Matrix<double, Eigen::Dynamic, 6, Eigen::RowMajor>;
 
+/// How a cloth of flat pieces rests: each triangle as its texture coordinates lie in the plane.
+struct Sewing {
+  double uv_length = 1;       ///< of one unit of the texture coordinates [m]
+  double seam_angle = 0;      ///< dihedral angle of folds along seams at rest [rad]
+  double seam_stiffness = 1;  ///< factor on the stiffness of these folds [1]
+};
+
 /// Vertices and triangles; a plain value.
 struct TriangleMesh {
-  Positions vertices;   ///< n×3 [m]
-  Triangles triangles;  ///< m×3
-  CornerUv uv = {};     ///< m×6, or without rows
-  Positions warp = {};  ///< m×3 unit vectors along a cloth's warp in its triangles; without rows, along x
+  Positions vertices;                 ///< n×3 [m]
+  Triangles triangles;                ///< m×3
+  CornerUv uv = {};                   ///< m×6, or without rows
+  Positions warp = {};                ///< m×3 unit vectors along warp in rest_corners; without rows, along x
+  std::optional<Sewing> sewing = {};  ///< of a cloth of flat pieces, which has uv
+  std::vector<int> piece = {};        ///< m indices of piece_names; or empty, as those are
+  std::vector<std::string> piece_names = {};
 };
+
+/// The corners of triangle t at rest, one a column [m]: in space, or in its flat piece, where z = 0.
+inline Eigen::Matrix3d rest_corners(const TriangleMesh& mesh, Eigen::Index t) {
+  Eigen::Matrix3d corners = Eigen::Matrix3d::Zero();
+  for (int k = 0; k < 3; ++k)
+    if (mesh.sewing)
+      corners.col(k).head<2>() = mesh.sewing->uv_length * mesh.uv.block<1, 2>(t, 2 * k).transpose();
+    else
+      corners.col(k) = mesh.vertices.row(mesh.triangles(t, k)).transpose();
+  return corners;
+}
 
 /// A named scalar per vertex.
 struct VertexField {
@@ -43,16 +65,5 @@ struct VertexField {
   Eigen::VectorXd values;  ///< n
 };
 using VertexFields = std::vector<VertexField>;
-
-/// m×3 normals of the triangles, of the length of twice the area [m²].
-inline Positions area_vectors(const TriangleMesh& mesh) {
-  Positions areas(mesh.triangles.rows(), 3);
-  for (Eigen::Index t = 0; t < areas.rows(); ++t) {
-    const Eigen::RowVector3d a = mesh.vertices.row(mesh.triangles(t, 0));
-    areas.row(t) =
-        (mesh.vertices.row(mesh.triangles(t, 1)) - a).cross(mesh.vertices.row(mesh.triangles(t, 2)) - a);
-  }
-  return areas;
-}
 
 }  // namespace drape

@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 
 #include "core/kernel/threads/parallel.h"
+#include "core/numerics/mesh/seams.h"
 
 namespace drape {
 namespace {
@@ -27,8 +28,8 @@ Surface Surface::of(const TriangleMesh& rest, const Topology& topology) {
   s.edge_area.setZero(s.edges.rows());
   s.triangle_area.resize(rest.triangles.rows());
   for (int t = 0; t < s.triangle_count(); ++t) {
-    const auto corner = [&](int k) -> Eigen::Vector3d { return rest.vertices.row(s.triangles(t, k)); };
-    s.triangle_area[t] = 0.5 * (corner(1) - corner(0)).cross(corner(2) - corner(0)).norm();
+    const Eigen::Matrix3d x = rest_corners(rest, t);
+    s.triangle_area[t] = 0.5 * (x.col(1) - x.col(0)).cross(x.col(2) - x.col(0)).norm();
     for (int k = 0; k < 3; ++k) {
       const int v = s.triangles(t, k), e = s.triangle_edges(t, k);
       s.vertex_area[v] += s.triangle_area[t] / 3;
@@ -38,9 +39,10 @@ Surface Surface::of(const TriangleMesh& rest, const Topology& topology) {
     }
   }
   s.edge_length_squared.resize(s.edges.rows());
-  for (int e = 0; e < s.edges.rows(); ++e)
-    s.edge_length_squared[e] =
-        (rest.vertices.row(s.edges(e, 0)) - rest.vertices.row(s.edges(e, 1))).squaredNorm();
+  for (int e = 0; e < s.edges.rows(); ++e) {
+    const RestSide side = rest_side(rest, topology, e, 0);
+    s.edge_length_squared[e] = (side.to - side.from).squaredNorm();
+  }
   return s;
 }
 

@@ -2,22 +2,11 @@
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
-#include <array>
 #include <cmath>
 
-#include "core/kernel/interfaces/level.h"
 #include "core/numerics/linear_algebra/pack_functions.h"
 
 namespace drape {
-
-/// The vectors e, u and v of a level's hinge at rest, from its vertex 0 to the others [m].
-inline std::array<Eigen::Vector3d, 3> rest_vectors(const Level& level, Eigen::Index hinge) {
-  const auto vertices = level.hinges.row(hinge);
-  const Positions& x = level.rest.vertices;
-  std::array<Eigen::Vector3d, 3> d;
-  for (int i = 0; i < 3; ++i) d[i] = x.row(vertices[i + 1]) - x.row(vertices[0]);
-  return d;
-}
 
 /// The turn from a dihedral angle at rest to another, in [-π, π]: a hinge that is flat shut at rest, at π or
 /// -π by round-off alone, opens to either side alike.

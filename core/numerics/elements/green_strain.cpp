@@ -1,5 +1,6 @@
 #include "core/numerics/elements/green_strain.h"
 
+#include "core/numerics/elements/rest_hinge.h"
 #include "core/numerics/elements/stretch.h"
 #include "core/numerics/mesh/grain.h"
 
@@ -24,6 +25,7 @@ MaterialTriangle material_triangle(const Eigen::Vector3d& first, const Level& le
 }  // namespace
 
 std::vector<MaterialTriangle> material_triangles(const Level& level) {
+  if (level.rest.sewing) return flat_material_triangles(level);
   const Positions warp = warp_directions(level.rest);
   std::vector<MaterialTriangle> triangles;
   for (int t = 0; t < level.triangle_count(); ++t)

@@ -11,7 +11,7 @@
 namespace drape {
 
 /// A triangle at rest, in the material's frame: F = [m₀ e₁ + m₁ e₂, m₂ e₁ + m₃ e₂], with m [1/m], the area
-/// [m²] and the rest position of the centroid [m].
+/// [m²] and the rest position of the centroid [m], in its piece where the cloth is sewn.
 using MaterialTriangle = Eigen::Matrix<double, 8, 1>;
 
 /// The triangles of the level; the material's first axis is warp (warp_directions). Throws std::runtime_error

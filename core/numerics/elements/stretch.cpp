@@ -6,9 +6,8 @@
 namespace drape {
 
 RestTriangle RestTriangle::of(const Level& level, int t) {
-  const auto v = level.rest.triangles.row(t);
-  const Positions& x = level.rest.vertices;
-  RestTriangle triangle = of(x.row(v[1]) - x.row(v[0]), Eigen::Vector3d(x.row(v[2]) - x.row(v[0])));
+  const Eigen::Matrix3d x = rest_corners(level.rest, t);
+  RestTriangle triangle = of(x.col(1) - x.col(0), Eigen::Vector3d(x.col(2) - x.col(0)));
   if (!(triangle.area > 0) || !std::isfinite(triangle.a + triangle.b + triangle.c))
     throw std::runtime_error("triangle " + std::to_string(t) + " of level " + std::to_string(level.index) +
                              " has no area at rest");

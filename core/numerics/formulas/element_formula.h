@@ -9,30 +9,41 @@
 
 #include "core/numerics/elements/element_energy.h"
 #include "core/numerics/elements/jet_functions.h"
+#include "core/numerics/elements/rest_hinge.h"
 #include "core/numerics/formulas/formula_law.h"
 #include "core/numerics/formulas/formula_properties.h"
+#include "core/numerics/mesh/seams.h"
 
 namespace drape {
 
-/// What the elements of DRAPE_ELEMENT may be. A struct like these, put into this namespace, is another shape.
+/// What the elements of DRAPE_ELEMENT may be. A struct like these, put into this namespace, is another shape;
+/// flat() has the vectors of an element of a sewn cloth at rest, where the shape is one for such a cloth too.
 namespace elements {
 struct edges {
   static constexpr int vertices = 2;
   static constexpr EnergyRole role = EnergyRole::membrane;
   static Stencils of(const Level& level) { return level.topology.edges; }
   static ElementOrder order(const Level& level) { return ElementOrder::of(of(level), level.rest.vertices); }
+  static std::array<Eigen::Vector3d, 1> flat(const Level& level, int e) {
+    return {Eigen::Vector3d(rest_length(level.rest, level.topology, e), 0, 0)};
+  }
 };
 struct triangles {
   static constexpr int vertices = 3;
   static constexpr EnergyRole role = EnergyRole::membrane;
   static Stencils of(const Level& level) { return level.rest.triangles; }
   static ElementOrder order(const Level& level) { return level.triangle_order; }
+  static std::array<Eigen::Vector3d, 2> flat(const Level& level, int t) {
+    const Eigen::Matrix3d x = rest_corners(level.rest, t);
+    return {x.col(1) - x.col(0), x.col(2) - x.col(0)};
+  }
 };
 struct hinges {
   static constexpr int vertices = 4;
   static constexpr EnergyRole role = EnergyRole::bending;
   static Stencils of(const Level& level) { return level.hinges; }
   static ElementOrder order(const Level& level) { return level.hinge_order; }
+  static std::array<Eigen::Vector3d, 3> flat(const Level& level, int h) { return rest_vectors(level, h); }
 };
 }  // namespace elements
 
@@ -127,10 +138,14 @@ class ElementFormula final : public Energy {
                                " does not have");
     const Positions& x = level.rest.vertices;
     std::vector<typename Kernel::Rest> rest(static_cast<std::size_t>(stencils.rows()));
-    for (Eigen::Index e = 0; e < stencils.rows(); ++e)
+    for (int e = 0; e < stencils.rows(); ++e)
       for (int v = 1; v < Elements::vertices; ++v)
-        rest[static_cast<std::size_t>(e)].template segment<3>(3 * (v - 1)) =
-            x.row(stencils(e, v)) - x.row(stencils(e, 0));
+        if (!level.rest.sewing)
+          rest[e].template segment<3>(3 * (v - 1)) = x.row(stencils(e, v)) - x.row(stencils(e, 0));
+        else if constexpr (requires { Elements::flat(level, e); })
+          rest[e].template segment<3>(3 * (v - 1)) = Elements::flat(level, e)[v - 1];
+        else
+          throw std::runtime_error("its elements have no shape at rest in a cloth of flat pieces");
     return std::make_unique<ElementEnergy<Kernel>>(stencils, rest, Elements::order(level),
                                                    Kernel{Law(p_, material)});
   }

@@ -40,6 +40,14 @@ void require_prolongation(const Level& coarse, const ProlongationMatrix& weights
   }
 }
 
+/// Flat pieces are refined linearly, so a refiner that moves vertices would strain them.
+void require_unmoved(const ProlongationMatrix& weights, const ProlongationMatrix& midpoints) {
+  if ((weights - midpoints).norm() > 0)
+    throw std::runtime_error(
+        "the refiner moves vertices along the cloth, and so would strain flat pieces, whose outlines and "
+        "seams are refined at edge midpoints; write \"refiner: midpoint\"");
+}
+
 }  // namespace
 
 Hierarchy Hierarchy::of(TriangleMesh coarsest, const Refiner& refiner, int level_count) {
@@ -54,6 +62,7 @@ Hierarchy Hierarchy::of(TriangleMesh coarsest, const Refiner& refiner, int level
     weights.makeCompressed();
     Level fine = checked_level(l, refined_rest(coarse, weights));
     hierarchy.midpoints.push_back(midpoint_weights(coarse));
+    if (coarse.rest.sewing) require_unmoved(weights, hierarchy.midpoints.back());
     hierarchy.linear.push_back(rest_interpolation(coarse, fine.rest.vertices));
     hierarchy.prolongations.push_back(std::move(weights));
     hierarchy.levels.push_back(std::move(fine));

@@ -24,6 +24,9 @@ ProlongationMatrix midpoint_weights(const Level& coarse) {
 TriangleMesh refined_rest(const Level& coarse, const ProlongationMatrix& weights) {
   TriangleMesh fine{weights * coarse.rest.vertices, split_triangles(coarse.rest.triangles, coarse.topology),
                     split_uv(coarse.rest.uv)};
+  fine.sewing = coarse.rest.sewing;
+  fine.piece_names = coarse.rest.piece_names;
+  for (const int piece : coarse.rest.piece) fine.piece.insert(fine.piece.end(), 4, piece);
   fine.warp = split_warp(coarse.rest.warp, fine);
   return fine;
 }

@@ -5,6 +5,8 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "core/numerics/mesh/flat_pieces.h"
+
 namespace drape {
 namespace {
 
@@ -51,6 +53,7 @@ Positions warp_directions(const TriangleMesh& rest) {
 }
 
 Positions cut_directions(const TriangleMesh& rest, GrainAxis along, double degrees) {
+  if (rest.sewing) return flat_directions(rest, along, degrees);
   const double angle = degrees * std::numbers::pi / 180;
   Positions warp(rest.triangles.rows(), 3);
   for (Eigen::Index t = 0; t < warp.rows(); ++t) {
@@ -71,6 +74,7 @@ std::vector<std::string> grain_faults(const TriangleMesh& rest, GrainAxis along,
     return {
         "\"grain_along: file\" needs a PLY file whose faces have warp_x, warp_y and warp_z; write "
         "\"grain_along: x\""};
+  if (rest.sewing) return {};
   for (Eigen::Index t = 0; t < rest.triangles.rows(); ++t)
     if (triangles[t] && direction(rest, t, Sides(rest, t), along).isZero(0))
       return {"\"grain\" has no direction in triangle " + std::to_string(t) +
@@ -90,6 +94,7 @@ Positions split_warp(const Positions& coarse, const TriangleMesh& fine) {
 }
 
 Positions projected_warp(const Positions& directions, const TriangleMesh& mesh) {
+  if (mesh.sewing) return directions;  // they are in the pieces' plane
   Positions warp(directions.rows(), 3);
   for (Eigen::Index t = 0; t < warp.rows(); ++t) {
     const Vector own = Sides(mesh, t).projected(directions.row(t).transpose());

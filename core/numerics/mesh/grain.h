@@ -7,8 +7,9 @@
 
 namespace drape {
 
-/// Where a cloth's grain is counted from: the x axis, projected into each triangle, the texture coordinate u,
-/// or the directions that the mesh has (TriangleMesh::warp), such as those of its file.
+/// Where a cloth's grain is counted from: the x axis, projected into each triangle, or in flat pieces their
+/// y; the texture coordinate u, or the directions that the mesh has (TriangleMesh::warp), such as those of
+/// its file.
 enum class GrainAxis { x, u, file };
 
 /// The direction of warp of each triangle at rest, m×3 unit vectors in the triangles' planes: the mesh's own,
@@ -16,7 +17,8 @@ enum class GrainAxis { x, u, file };
 Positions warp_directions(const TriangleMesh& rest);
 
 /// The directions of a pattern that was cut at this angle from the axis, counter-clockwise seen from each
-/// triangle's front. Where texture coordinates have no area, the x axis stands for u.
+/// triangle's front, or as flat pieces are drawn. Where texture coordinates have no area, the x axis stands
+/// for u.
 Positions cut_directions(const TriangleMesh& rest, GrainAxis along, double degrees);
 
 /// The first of the triangles marked in `triangles` in which the axis has no direction, and why.

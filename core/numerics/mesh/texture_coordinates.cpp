@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numeric>
 
+#include "core/numerics/mesh/area_vectors.h"
+
 namespace drape {
 
 namespace {

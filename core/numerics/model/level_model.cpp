@@ -9,6 +9,7 @@
 
 #include "core/kernel/files/message_text.h"
 #include "core/numerics/contact_forces/contact_stiffness.h"
+#include "core/numerics/elements/seam_energy.h"
 #include "core/numerics/mesh/same_entries.h"
 #include "core/numerics/model/required.h"
 
@@ -98,8 +99,8 @@ void LevelModel::bind_energies(const std::vector<NamedEnergy>& energies, const L
       terms_.push_back(*old);
     } else {
       Term term{unused_name(e.name), e.energy->role(), e.energy, nullptr, nullptr};
-      term.energy =
-          with_name("energy " + term.name, [&] { return bound_energy(*e.energy, *level_, material_); });
+      const auto bind = [&](const Level& own) { return bound_energy(*e.energy, own, material_); };
+      term.energy = with_name("energy " + term.name, [&] { return bind_with_seams(*level_, bind); });
       Stencils own = term.energy->stencils();
       if (old && !same_entries(own, old->energy->stencils()))
         throw std::runtime_error("energy " + term.name +

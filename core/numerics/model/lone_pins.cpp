@@ -19,11 +19,16 @@ double relative_stiffness(const Level& level, int vertex, double poisson_ratio) 
   const double nu = poisson_ratio;
   Eigen::Matrix3d stiffness = Eigen::Matrix3d::Zero();
   Eigen::Vector3d axis = Eigen::Vector3d::Zero();  // the sum of all directions in the cloth
+  Eigen::Vector3d place = Eigen::Vector3d::Zero();
+  bool in_one_piece = true;  // pieces have no direction in common
   double angle = 0;
   for (const int t : level.topology.vertex_triangles.row(vertex)) {
-    const auto corners = level.rest.triangles.row(t);
-    const int k = corners[0] == vertex ? 0 : corners[1] == vertex ? 1 : 2;
-    const auto at = [&](int i) -> Eigen::Vector3d { return level.rest.vertices.row(corners[(k + i) % 3]); };
+    const auto named = level.rest.triangles.row(t);
+    const int k = named[0] == vertex ? 0 : named[1] == vertex ? 1 : 2;
+    const Eigen::Matrix3d corners = rest_corners(level.rest, t);
+    const auto at = [&](int i) -> Eigen::Vector3d { return corners.col((k + i) % 3); };
+    if (angle == 0) place = at(0);
+    in_one_piece = in_one_piece && (!level.rest.sewing || at(0) == place);
     const Eigen::Vector3d e1 = at(1) - at(0), e2 = at(2) - at(0), doubled = e1.cross(e2),
                           normal = doubled.normalized(),
                           slope = normal.cross(e2 - e1) / doubled.norm();  // of the vertex's hat function
@@ -37,8 +42,8 @@ double relative_stiffness(const Level& level, int vertex, double poisson_ratio) 
   if (!level.topology.on_border[vertex])
     return stiffness.trace() / 2 * (3 - nu) * (1 + nu) / (4 * std::numbers::pi);
   const double theta = (angle + std::sin(angle)) / 2, length = axis.squaredNorm();
-  const bool is_slit = length < 1e-6;  // a full turn has no axis
-  return (is_slit ? stiffness.trace() / 2 : axis.dot(stiffness * axis) / length) / theta;
+  const bool has_axis = in_one_piece && length >= 1e-6;  // a full turn has none
+  return (!has_axis ? stiffness.trace() / 2 : axis.dot(stiffness * axis) / length) / theta;
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include <stdexcept>
 #include <vector>
 
+#include "core/numerics/collision_detection/components.h"
 #include "core/numerics/collision_detection/intersections.h"
 #include "core/numerics/mesh/check.h"
 #include "core/numerics/mesh/repair.h"
@@ -66,7 +67,7 @@ std::string enclosure_fault(const ValidatedMesh& outer, const ValidatedMesh& inn
     return text(pairs[0], " intersects its triangle ");
   if (const auto pairs = intersections(outer.mesh, inner.mesh); !pairs.empty())
     return text(pairs[0], " intersects that one's triangle ");
-  const std::vector<int> one_of_each = inner.topology.components();
+  const std::vector<int> one_of_each = components(inner.topology);
   if (const auto outside = first_outside(outer.mesh, inner.mesh.vertices(one_of_each, Eigen::all)))
     return "that one's vertex " + std::to_string(one_of_each[*outside]) + " is outside";
   return "";

@@ -158,8 +158,8 @@ class Formula final : public Energy {
   /// Throws std::runtime_error if the energy or its forces at rest are not finite.
   std::unique_ptr<BoundEnergy> bind(const Level& level, const Material& material) const override {
     auto bound = bind_unchecked(level, material);
-    // Where a vertex is at rest is not where the cloth starts.
-    if (law_.kind == ElementKind::vertex) return bound;
+    // Where a vertex is at rest is not where the cloth starts, and no state may lay all pieces flat.
+    if (law_.kind == ElementKind::vertex || level.rest.sewing) return bound;
     Positions g = Positions::Zero(level.vertex_count(), 3);
     const double energy = bound->add_gradient(level.rest.vertices, g);
     if (!std::isfinite(energy) || !g.allFinite())

@@ -9,6 +9,7 @@
 #include "core/kernel/threads/parallel.h"
 #include "core/numerics/elements/dihedral_angle.h"
 #include "core/numerics/elements/element_energy.h"
+#include "core/numerics/elements/rest_hinge.h"
 
 namespace drape {
 namespace {
@@ -52,10 +53,8 @@ BoundMidedgeBending::BoundMidedgeBending(const Level& level, const ShapeOperator
   make_terms(operators, positions_in(angle_order_));
   if (friction.f == 0) return;
   for (const int t : triangle_order_.elements) {
-    const auto at = [&](int k) -> Eigen::Vector3d {
-      return level.rest.vertices.row(level.rest.triangles(t, k));
-    };
-    const double area = (at(1) - at(0)).cross(at(2) - at(0)).norm() / 2;
+    const Eigen::Matrix3d x = rest_corners(level.rest, t);
+    const double area = (x.col(1) - x.col(0)).cross(x.col(2) - x.col(0)).norm() / 2;
     friction_.push_back({friction.f * std::sqrt(area), friction.q0 * area});
   }
 }
@@ -72,6 +71,8 @@ void BoundMidedgeBending::make_angles(const Level& level) {
 
   rest_angles_.assign(angle_count_, 0);
   rest_angles_ = bends(level.rest.vertices);
+  for (int i = 0; level.rest.sewing && i < angle_count_; ++i)
+    rest_angles_[i] = DihedralAngle<double>(rest_vectors(level, angle_order_.elements[i]).data()).angle();
   for (int i = 0; i < angle_count_; ++i)
     if (!std::isfinite(rest_angles_[i]))
       throw std::runtime_error("midedge_bending: a triangle at the edge of vertices " +

@@ -8,7 +8,9 @@
 #include <vector>
 
 #include "core/numerics/elements/orthotropic_stiffness.h"
+#include "core/numerics/elements/rest_hinge.h"
 #include "core/numerics/mesh/grain.h"
+#include "core/numerics/mesh/seams.h"
 
 namespace drape {
 namespace {
@@ -16,10 +18,10 @@ namespace {
 using Point = Eigen::Vector2d;
 
 /// Inner edges' rows in Level::hinges; -1 on the border.
-std::vector<int> hinge_of_edge(const Topology& topology) {
-  std::vector<int> hinges(topology.edges.rows());
-  for (int e = 0, h = 0; e < topology.edges.rows(); ++e)
-    hinges[e] = topology.edge_triangles(e, 1) == -1 ? -1 : h++;
+std::vector<int> hinge_of_edge(const Level& level) {
+  std::vector<int> hinges(level.topology.edges.rows(), -1);
+  for (std::size_t h = 0; h < level.hinge_edges.size(); ++h)
+    hinges[level.hinge_edges[h]] = static_cast<int>(h);
   return hinges;
 }
 
@@ -27,10 +29,10 @@ std::vector<int> hinge_of_edge(const Topology& topology) {
 struct Foot {
   double along, distance;
 
-  Foot(const Eigen::Vector3d& from, const Eigen::Vector3d& to, const Eigen::Vector3d& p) {
-    const Eigen::Vector3d edge = to - from;
-    along = edge.dot(p - from) / edge.squaredNorm();
-    distance = edge.cross(p - from).norm() / edge.norm();
+  explicit Foot(const RestSide& side) {
+    const Eigen::Vector3d edge = side.to - side.from;
+    along = edge.dot(side.corner - side.from) / edge.squaredNorm();
+    distance = edge.cross(side.corner - side.from).norm() / edge.norm();
   }
 };
 
@@ -72,7 +74,7 @@ struct Correction {
 class EdgeNormals {
  public:
   EdgeNormals(const Level& level, double tolerance)
-      : level_(level), tolerance_(tolerance), hinges_(hinge_of_edge(level.topology)) {}
+      : level_(level), tolerance_(tolerance), hinges_(hinge_of_edge(level)) {}
 
   int hinge(int edge) const { return hinges_[edge]; }
 
@@ -84,10 +86,10 @@ class EdgeNormals {
     const int from = triangles(t[0], (c[0] + 1) % 3), to = triangles(t[0], (c[0] + 2) % 3);
 
     // The edge lies on the x-axis about the origin and has length 1; triangle 0 is on its left.
-    const double length = (vertex(to) - vertex(from)).norm();
+    const RestSide first = rest_side(level_.rest, topology, edge, 0);
+    const double length = (first.to - first.from).norm();
     Unfolded own{Point(-0.5, 0), Point(0.5, 0), {}, {}, 0, 0};
-    const Foot left(vertex(from), vertex(to), vertex(triangles(t[0], c[0]))),
-        right(vertex(from), vertex(to), vertex(triangles(t[1], c[1])));
+    const Foot left(first), right(rest_side(level_.rest, topology, edge, 1));
     own.left_distance = left.distance / length, own.right_distance = right.distance / length;
     own.left = {left.along - 0.5, own.left_distance};
     own.right = {right.along - 0.5, -own.right_distance};
@@ -107,13 +109,13 @@ class EdgeNormals {
           const int v = triangles(t[side], which % 3);
           return v == from ? own.from : v == to ? own.to : side == 0 ? own.left : own.right;
         };
-        const int beyond =
-            topology.edge_triangles(other, topology.edge_triangles(other, 0) == t[side] ? 1 : 0);
-        const int a = triangles(t[side], (corner + 1) % 3), b = triangles(t[side], (corner + 2) % 3);
-        const Foot foot(vertex(a), vertex(b),
-                        vertex(triangles(beyond, topology.corner_opposite(other, beyond))));
+        const int near = topology.edge_triangles(other, 0) == t[side] ? 0 : 1;
+        const RestSide own_side = rest_side(level_.rest, topology, other, near);
+        RestSide beyond = rest_side(level_.rest, topology, other, 1 - near);
+        if (near == 1) std::swap(beyond.from, beyond.to);  // the direction in this triangle
+        const Foot foot(beyond);
         Unfolded pair{place(corner + 1), place(corner + 2), place(corner), {}, 0, foot.distance / length};
-        pair.left_distance = 2 * triangle_area(t[side]) / ((vertex(b) - vertex(a)).norm() * length);
+        pair.left_distance = 2 * triangle_area(t[side]) / ((own_side.to - own_side.from).norm() * length);
         pair.right = right_corner(pair.from, pair.to, foot.along, pair.right_distance);
         add(other, pair);
       }
@@ -122,13 +124,11 @@ class EdgeNormals {
   }
 
   double triangle_area(int t) const {
-    const auto v = level_.rest.triangles.row(t);
-    return (vertex(v[1]) - vertex(v[0])).cross(vertex(v[2]) - vertex(v[0])).norm() / 2;
+    const Eigen::Matrix3d x = rest_corners(level_.rest, t);
+    return (x.col(1) - x.col(0)).cross(x.col(2) - x.col(0)).norm() / 2;
   }
 
  private:
-  Eigen::Vector3d vertex(int v) const { return level_.rest.vertices.row(v).transpose(); }
-
   /// The weights of smallest square sum with changes · weights = residual; none if all are small.
   template <class Changes>
   void least_weights(const Unfolded& own, const Changes& changes, Correction& result) const {
@@ -176,13 +176,13 @@ struct PlateNorm {
 };
 
 /// Edge k's l n nᵀ / Ā of a triangle, in the coordinates of the plate's norm about `axis`.
-std::array<Eigen::Vector3d, 3> edge_directions(const Eigen::Vector3d* x, const Eigen::Vector3d& axis,
+std::array<Eigen::Vector3d, 3> edge_directions(const Eigen::Matrix3d& x, const Eigen::Vector3d& axis,
                                                const PlateNorm& plate) {
-  const Eigen::Vector3d normal = (x[1] - x[0]).cross(x[2] - x[0]);
+  const Eigen::Vector3d normal = (x.col(1) - x.col(0)).cross(x.col(2) - x.col(0));
   const Eigen::Vector3d e1 = axis.normalized(), e2 = normal.cross(e1).normalized();
   std::array<Eigen::Vector3d, 3> directions;
   for (int k = 0; k < 3; ++k) {
-    const Eigen::Vector3d edge = x[(k + 2) % 3] - x[(k + 1) % 3];
+    const Eigen::Vector3d edge = x.col((k + 2) % 3) - x.col((k + 1) % 3);
     const Point n(edge.dot(e2), -edge.dot(e1));  // of the edge's length
     const Eigen::Vector3d s(n.x() * n.x(), n.x() * n.y(), n.y() * n.y());
     directions[k] = Eigen::Vector3d(s[0] + plate.a * s[2], plate.b * s[2], plate.c * s[1]) /
@@ -213,10 +213,9 @@ ShapeOperators ShapeOperators::of(const Level& level, const Material& material, 
   Grouped<Term> terms;
   for (int t = 0; t < level.triangle_count(); ++t) {
     terms.start.push_back(static_cast<int>(terms.items.size()));
-    Eigen::Vector3d x[3];
-    for (int i = 0; i < 3; ++i) x[i] = level.rest.vertices.row(level.rest.triangles(t, i)).transpose();
+    const Eigen::Matrix3d x = rest_corners(level.rest, t);
     const std::array<Eigen::Vector3d, 3> directions = edge_directions(
-        x, plate.isotropic ? Eigen::Vector3d(x[1] - x[0]) : Eigen::Vector3d(warp.row(t)), plate);
+        x, plate.isotropic ? Eigen::Vector3d(x.col(1) - x.col(0)) : Eigen::Vector3d(warp.row(t)), plate);
 
     // A free normal removes its component from the others.
     Eigen::Matrix3d projection = Eigen::Matrix3d::Identity() * std::sqrt(plate.k * normals.triangle_area(t));
@@ -244,6 +243,7 @@ ShapeOperators ShapeOperators::of(const Level& level, const Material& material, 
     }
   }
   terms.start.push_back(static_cast<int>(terms.items.size()));
+  for (Term& term : terms.items) term.weight *= std::sqrt(stiffness_factor(level, term.hinge));
   return {std::move(terms)};
 }
 

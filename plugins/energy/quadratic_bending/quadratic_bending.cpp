@@ -8,9 +8,9 @@
 
 #include "core/kernel/interfaces/energy.h"
 #include "core/kernel/plugin/plugin.h"
-#include "core/numerics/elements/dihedral_angle.h"
 #include "core/numerics/elements/element_energy.h"
 #include "core/numerics/elements/orthotropic_stiffness.h"
+#include "core/numerics/elements/rest_hinge.h"
 
 namespace drape {
 namespace {

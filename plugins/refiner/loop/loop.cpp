@@ -55,14 +55,13 @@ class LoopRefiner : public Refiner {
   /// the new neighbours of a corner lie on the old border edges and keep its angle.
   std::vector<char> corners(const Level& level) const {
     Eigen::VectorXd angle = Eigen::VectorXd::Zero(level.vertex_count());  // [rad]
-    for (int t = 0; t < level.triangle_count(); ++t)
+    for (int t = 0; t < level.triangle_count(); ++t) {
+      const Eigen::Matrix3d x = rest_corners(level.rest, t);
       for (int k = 0; k < 3; ++k) {
-        const auto v = level.rest.triangles.row(t);
-        const Eigen::Vector3d p = level.rest.vertices.row(v[k]);
-        const Eigen::Vector3d a = level.rest.vertices.row(v[(k + 1) % 3]).transpose() - p;
-        const Eigen::Vector3d b = level.rest.vertices.row(v[(k + 2) % 3]).transpose() - p;
-        angle[v[k]] += std::atan2(a.cross(b).norm(), a.dot(b));
+        const Eigen::Vector3d a = x.col((k + 1) % 3) - x.col(k), b = x.col((k + 2) % 3) - x.col(k);
+        angle[level.rest.triangles(t, k)] += std::atan2(a.cross(b).norm(), a.dot(b));
       }
+    }
     const double allowed = corner_angle * std::numbers::pi / 180;
     std::vector<char> corner(level.vertex_count());
     for (int v = 0; v < level.vertex_count(); ++v)

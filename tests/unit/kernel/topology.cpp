@@ -4,6 +4,7 @@
 #include <set>
 
 #include "core/kernel/interfaces/level.h"
+#include "core/numerics/collision_detection/components.h"
 #include "core/numerics/mesh/same_entries.h"
 #include "core/numerics/patterns/generate.h"
 
@@ -54,7 +55,7 @@ TEST_CASE("hinges keep the mesh's orientation") {
   const Topology topology = Topology::of(mesh.triangles, 30);
   const auto many = topology.hinges(mesh.triangles);
   REQUIRE(many.rows() == topology.edges.rows() - 2 * (5 + 4));
-  CHECK(topology.components() == std::vector<int>{0});
+  CHECK(components(topology) == std::vector<int>{0});
   std::set<std::vector<int>> rotations;
   for (const auto& t : mesh.triangles.rowwise())
     for (int k = 0; k < 3; ++k) rotations.insert({t[k], t[(k + 1) % 3], t[(k + 2) % 3]});
@@ -67,7 +68,7 @@ TEST_CASE("hinges keep the mesh's orientation") {
 TEST_CASE("components are named by their first vertices") {
   Triangles triangles(4, 3);
   triangles << 0, 2, 4, 1, 3, 5, 4, 2, 7, 8, 9, 6;  // vertex 10 has no triangle
-  CHECK(Topology::of(triangles, 11).components() == std::vector<int>{0, 1, 6, 10});
+  CHECK(components(Topology::of(triangles, 11)) == std::vector<int>{0, 1, 6, 10});
 }
 
 TEST_CASE("topology refuses what it cannot represent") {

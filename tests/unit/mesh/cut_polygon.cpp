@@ -7,6 +7,7 @@
 #include <random>
 #include <set>
 
+#include "core/numerics/mesh/area_vectors.h"
 #include "tests/unit/mesh/mesh_files.h"
 
 using namespace drape;

@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "core/kernel/interfaces/level.h"
+#include "core/numerics/mesh/area_vectors.h"
 #include "core/numerics/mesh/check.h"
 #include "core/numerics/mesh/same_entries.h"
 #include "core/numerics/patterns/delaunay.h"

@@ -1,0 +1,88 @@
+#include "core/numerics/mesh/flat_pieces.h"
+
+#include <Eigen/Geometry>
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <numeric>
+
+#include "core/numerics/mesh/disjoint_sets.h"
+#include "core/numerics/mesh/seams.h"
+
+namespace drape {
+
+std::vector<int> join_vertices(TriangleMesh& mesh, double tolerance) {
+  const auto n = static_cast<int>(mesh.vertices.rows());
+  std::vector<int> by_x(n), joined(n);
+  std::iota(joined.begin(), joined.end(), 0);
+  if (!(tolerance > 0)) return joined;
+  by_x = joined;
+  std::ranges::stable_sort(by_x, {}, [&](int v) { return mesh.vertices(v, 0); });
+  DisjointSets sets(n);
+  for (int i = 0; i < n; ++i)
+    for (int j = i + 1; j < n && mesh.vertices(by_x[j], 0) - mesh.vertices(by_x[i], 0) <= tolerance; ++j)
+      if ((mesh.vertices.row(by_x[j]) - mesh.vertices.row(by_x[i])).norm() <= tolerance)
+        sets.unite(by_x[i], by_x[j]);
+  std::vector<int> number(n, -1), kept;  // of each set's first vertex
+  for (int v = 0; v < n; ++v) {
+    int& of_set = number[sets.find(v)];
+    if (of_set == -1) of_set = static_cast<int>(kept.size()), kept.push_back(v);
+    joined[v] = of_set;
+  }
+  mesh.vertices = Positions(mesh.vertices(kept, Eigen::all));
+  for (Eigen::Index i = 0; i < mesh.triangles.size(); ++i)
+    mesh.triangles.data()[i] = joined[mesh.triangles.data()[i]];
+  return joined;
+}
+
+std::vector<int> flat_pieces(const TriangleMesh& mesh, const Topology& topology) {
+  DisjointSets sets(static_cast<int>(mesh.triangles.rows()));
+  for (int e = 0; e < topology.edges.rows(); ++e)
+    if (topology.edge_triangles(e, 1) != -1 && !is_seam(mesh, topology, e))
+      sets.unite(topology.edge_triangles(e, 0), topology.edge_triangles(e, 1));
+  std::vector<int> number(mesh.triangles.rows(), -1), piece(mesh.triangles.rows());
+  int count = 0;
+  for (int t = 0; t < mesh.triangles.rows(); ++t) {
+    int& of_set = number[sets.find(t)];
+    if (of_set == -1) of_set = count++;
+    piece[t] = of_set;
+  }
+  return piece;
+}
+
+Positions flat_directions(const TriangleMesh& mesh, GrainAxis along, double degrees) {
+  const double angle = degrees * std::numbers::pi / 180;
+  const Eigen::RowVector3d axis =
+      along == GrainAxis::u ? Eigen::RowVector3d(1, 0, 0) : Eigen::RowVector3d(0, 1, 0);
+  Positions warp(mesh.triangles.rows(), 3);
+  for (Eigen::Index t = 0; t < warp.rows(); ++t) {
+    const Eigen::RowVector3d from =
+        along == GrainAxis::file && mesh.warp.rows() > 0 ? mesh.warp.row(t) : axis;
+    warp.row(t) = std::cos(angle) * from + std::sin(angle) * Eigen::RowVector3d(-from.y(), from.x(), 0);
+  }
+  return warp;
+}
+
+UvLength UvLength::of(const TriangleMesh& mesh, const std::vector<char>& marked) {
+  double area = 0, flat_area = 0, u = 0, v = 0;
+  for (Eigen::Index t = 0; t < mesh.triangles.rows(); ++t) {
+    if (!marked[t]) continue;
+    Eigen::Matrix2d flat;
+    flat << mesh.uv(t, 2) - mesh.uv(t, 0), mesh.uv(t, 4) - mesh.uv(t, 0), mesh.uv(t, 3) - mesh.uv(t, 1),
+        mesh.uv(t, 5) - mesh.uv(t, 1);
+    if (!(std::abs(flat.determinant()) > 1e-12 * flat.squaredNorm())) continue;
+    Eigen::Matrix<double, 3, 2> edges;
+    for (int k = 0; k < 2; ++k)
+      edges.col(k) = mesh.vertices.row(mesh.triangles(t, k + 1)) - mesh.vertices.row(mesh.triangles(t, 0));
+    const Eigen::Matrix<double, 3, 2> f = edges * flat.inverse();
+    const double own = std::abs(flat.determinant()) / 2;
+    area += edges.col(0).cross(edges.col(1)).norm() / 2, flat_area += own;
+    u += own * f.col(0).squaredNorm(), v += own * f.col(1).squaredNorm();
+  }
+  return {std::sqrt(area / flat_area), std::sqrt(u / flat_area), std::sqrt(v / flat_area)};
+}
+
+bool similar_lengths(double a, double b) { return a < 1.1 * b && b < 1.1 * a; }
+
+}  // namespace drape

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "core/kernel/interfaces/topology.h"
+#include "core/numerics/mesh/grain.h"
+
+namespace drape {
+
+/// Makes one vertex, at the first one's place, of those that are nearer to each other than `tolerance` [m]; 0
+/// joins none. Texture coordinates stay as they are at the corners. Returns the new index of each vertex.
+std::vector<int> join_vertices(TriangleMesh& mesh, double tolerance);
+
+/// For each triangle a number of its flat piece, from 0 in the order of their first triangles: edges that are
+/// no seams connect it.
+std::vector<int> flat_pieces(const TriangleMesh& mesh, const Topology& topology);
+
+/// cut_directions of flat pieces: as they are drawn, from y (for x), u or the mesh's own directions.
+Positions flat_directions(const TriangleMesh& mesh, GrainAxis along, double degrees);
+
+/// Lengths in space over lengths in texture coordinates [m]: by areas, and along u and v alone.
+struct UvLength {
+  double whole = 0, along_u = 0, along_v = 0;
+
+  /// Of the triangles that are marked and have an area in texture coordinates.
+  static UvLength of(const TriangleMesh& mesh, const std::vector<char>& marked);
+};
+
+/// Whether two lengths are nearer than a placement in space may stretch them: a tenth.
+bool similar_lengths(double a, double b);
+
+}  // namespace drape
