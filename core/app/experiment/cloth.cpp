@@ -4,11 +4,13 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "core/app/experiment/sewn_cloth.h"
 #include "core/app/files/machine.h"
 #include "core/kernel/files/message_text.h"
 #include "core/kernel/files/number_text.h"
 #include "core/kernel/plugin/bounds.h"
 #include "core/numerics/mesh/check.h"
+#include "core/numerics/mesh/flat_pieces.h"
 #include "core/numerics/mesh/grain.h"
 #include "core/numerics/mesh/rotation.h"
 #include "core/numerics/mesh_files/io.h"
@@ -24,11 +26,14 @@ Eigen::Vector2d size_of(const ClothParameters& c) {
 
 TriangleMesh read_cloth(const ClothParameters& c) {
   TriangleMesh mesh = read_mesh(c.file);
+  Positions none, &warp = c.rest == "uv" ? none : mesh.warp;  // that of flat pieces is in their plane
   c.convert(mesh.vertices);
-  c.convert(mesh.warp);
+  c.convert(warp);
   mesh.vertices *= c.scale;
   if (!c.rotate.isZero(0))
-    for (Positions* rows : {&mesh.vertices, &mesh.warp}) *rows *= rotation_matrix(c.rotate).transpose();
+    for (Positions* rows : {&mesh.vertices, &warp}) *rows *= rotation_matrix(c.rotate).transpose();
+  join_vertices(mesh, c.join);
+  sew(mesh, c);
   return mesh;
 }
 
@@ -163,11 +168,19 @@ bool is_grid(const ClothParameters& c) {
 
 }  // namespace
 
+Positions AsReadParameters::in_file(Positions x) const {
+  if (!rotate.isZero(0)) x *= rotation_matrix(rotate);
+  x /= scale;
+  restore(x);
+  return x;
+}
+
 std::optional<TriangleMesh> checked_cloth(const Experiment& e, ConfigErrors& errors) {
   const ClothParameters& c = e.parameters.cloth;
   try {
     TriangleMesh cloth = make_cloth(c);
     std::vector<std::string> faults = check_mesh(cloth);
+    if (faults.empty() && cloth.sewing) faults = check_pieces(cloth);
     if (faults.empty()) faults = cut(cloth, c);
     for (const std::string& fault : faults)
       errors.push_back({e.location_of("cloth"), (c.shape == "file" ? c.file + ": " : "") + fault});

@@ -21,10 +21,12 @@ ParameterHandle natural(ParameterHandle p, double most = bounds::largest_int) { 
 /// The parameters that pins and handles share.
 template <class Condition>
 void declare_selection(Declaration<Condition>& d) {
-  d.add("region", &VertexSelection::region,
-        "selects vertices by their rest positions: the coarsest level's vertex nearest to `point`, all "
-        "within `radius` of `point`, all in a box, the boundary, or coarsest-level indices")
-      .choices({"nearest", "ball", "box", "border", "vertices"});
+  d.add(
+       "region", &VertexSelection::region,
+       "selects vertices by their rest positions: the coarsest level's vertex nearest to `point`, all "
+       "within `radius` of `point`, all in a box, the boundary, coarsest-level indices, those of a piece, or "
+       "the seams of a cloth of flat pieces")
+      .choices({"nearest", "ball", "box", "border", "vertices", "piece", "seam"});
   coordinate(
       d.add("point", &VertexSelection::point, "point of `nearest`, centre of `ball`, in the rest shape"))
       .only_with("region", {"nearest", "ball"});
@@ -38,6 +40,11 @@ void declare_selection(Declaration<Condition>& d) {
       .only_with("region", {"box"});
   natural(d.add("vertices", &VertexSelection::vertices, "indices on the coarsest level, from 0"))
       .only_with("region", {"vertices"});
+  d.add(
+       "piece", &VertexSelection::piece,
+       "name of a piece, a group or material of the cloth's OBJ file; with `border` or `seam`, only those of "
+       "that piece")
+      .only_with("region", {"piece", "border", "seam"});
   coordinate(d.add("translate", &VertexSelection::translate,
                    "translation from the rest position to the target, applied after `rotate`; without both, "
                    "the target is the position at the start, without its noise"));
@@ -74,6 +81,24 @@ void GrainRegionParameters::declare(Declaration<GrainRegionParameters>& d) {
       .required();
 }
 
+void AsReadParameters::declare(Declaration<AsReadParameters>& d) {
+  d.add("file", &AsReadParameters::file, "the file");
+  declare_file_coordinates(d);
+  declare_scale(d);
+  declare_rotate(d);
+  d.add("join", &AsReadParameters::join, "as `cloth.join`").unit("m").between(0, 0.1);
+}
+
+void SeamParameters::declare(Declaration<SeamParameters>& d) {
+  d.add("angle", &SeamParameters::angle,
+        "dihedral angle of the fold along a seam at rest, positive where the cloth's front is outside")
+      .unit("degree")
+      .between(-180, 180);
+  d.add("stiffness", &SeamParameters::stiffness,
+        "factor on the stiffness of the fold along a seam: a pressed seam is stiffer than the cloth")
+      .between(0, bounds::largest_scale);
+}
+
 void ClothParameters::declare(Declaration<ClothParameters>& d) {
   d.add("shape", &ClothParameters::shape,
         "flat pattern in z = 0 with a corner (of a disc, the centre) at the origin, or a mesh file")
@@ -101,6 +126,27 @@ void ClothParameters::declare(Declaration<ClothParameters>& d) {
       .description(
           "rotation of the file's mesh about the x, then y, then z axis; regions of pins count from the "
           "result");
+  d.add("rest", &ClothParameters::rest,
+        "the rest shape: the file's surface in space, or flat pieces, sewn where the file's texture "
+        "coordinates differ on the two sides of an edge; the surface then only places them")
+      .choices({"space", "uv"})
+      .only_with("shape", {"file"});
+  d.add("uv_unit", &ClothParameters::uv_unit,
+        "unit of the texture coordinates of flat pieces; normalised finds one length for all from the areas "
+        "in space")
+      .choices({"mm", "cm", "m", "inch", "normalised"})
+      .only_with("rest", {"uv"});
+  d.add("join", &ClothParameters::join,
+        "vertices nearer to each other than this become one, as those which an exporter wrote twice along a "
+        "seam; 0 joins none")
+      .unit("m")
+      .between(0, 0.1)
+      .only_with("shape", {"file"});
+  d.add_section("seams", &ClothParameters::seams, "the folds along the seams of flat pieces")
+      .only_with("rest", {"uv"});
+  d.add_section("as_read", &ClothParameters::as_read,
+                "how the cloth's file was read, which drape writes to the config of a run for `drape export "
+                "--as-read`; a record, from which nothing else is taken");
   d.add("triangulation", &ClothParameters::triangulation,
         "triangulation of a square or rectangle; discs and polygons are Delaunay meshes")
       .choices({"one_way", "criss_cross", "equilateral", "random"})
@@ -132,8 +178,10 @@ void ClothParameters::declare(Declaration<ClothParameters>& d) {
   d.add_choice(
        "grain_along", &ClothParameters::grain_along,
        {{"x", GrainAxis::x}, {"u", GrainAxis::u}, {"file", GrainAxis::file}},
-       "what `grain` counts from: the x axis, projected into each triangle, the texture coordinate u of the "
-       "file, where that is the pattern, or the faces' `warp_x`, `warp_y`, `warp_z` of a PLY file")
+       "what `grain` counts from: the x axis, projected into each triangle, or the y axis of flat pieces; "
+       "the "
+       "texture coordinate u of the file, where that is the pattern; or the faces' `warp_x`, `warp_y`, "
+       "`warp_z` of a PLY file")
       .only_with("shape", {"file"});
   d.add_sections("grain_regions", &ClothParameters::grain_regions,
                  "parts of the cloth that were cut at another angle; later ones take precedence");

@@ -33,6 +33,25 @@ struct GrainRegionParameters {
   static void declare(Declaration<GrainRegionParameters>& d);
 };
 
+/// The folds along the seams of a cloth of flat pieces.
+struct SeamParameters {
+  double angle = 0;
+  double stiffness = 1;
+  static void declare(Declaration<SeamParameters>& d);
+};
+
+/// How the cloth's file was read, of a saved config whose cloth is drape's own copy.
+struct AsReadParameters : FileCoordinates {
+  std::string file;
+  double scale = 1;
+  Eigen::Vector3d rotate{0, 0, 0};
+  double join = 0;
+  static void declare(Declaration<AsReadParameters>& d);
+
+  /// From positions of a cloth of that file to the file's own coordinates.
+  Positions in_file(Positions x) const;
+};
+
 /// The coarsest level: a flat pattern, or a mesh file that is read by its FileCoordinates, scaled, then
 /// rotated.
 struct ClothParameters : FileCoordinates {
@@ -44,6 +63,11 @@ struct ClothParameters : FileCoordinates {
   std::string file;
   double scale = 1;
   Eigen::Vector3d rotate{0, 0, 0};
+  std::string rest = "space";
+  std::optional<std::string> uv_unit;
+  double join = 0;
+  SeamParameters seams;
+  AsReadParameters as_read;
   std::string triangulation = "one_way";
   std::optional<int> vertices;
   std::optional<double> edge_length;
@@ -86,6 +110,7 @@ struct VertexSelection {
   double radius = 0;
   Eigen::Vector3d lower{0, 0, 0}, upper{0, 0, 0};
   std::vector<int> vertices;
+  std::optional<std::string> piece;
   std::optional<Eigen::Vector3d> translate;
   std::optional<Eigen::Vector3d> rotate;
   Eigen::Vector3d centre{0, 0, 0};

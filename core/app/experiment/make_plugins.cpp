@@ -44,7 +44,9 @@ std::string label_of(const ConfigNode& node) {
 
 void make_refiner(Experiment& e, ConfigErrors& errors) {
   ConfigNode& node = e.parameters.refiner;
-  if (node.kind == ConfigNode::Kind::null) node = ConfigNode::of(default_refiner);
+  // Flat pieces are refined at edge midpoints.
+  if (node.kind == ConfigNode::Kind::null)
+    node = ConfigNode::of(e.parameters.cloth.rest == "uv" ? "midpoint" : default_refiner);
   ConfigNode resolved;
   e.refiner = make_from<Refiner>(*e.registry, node, errors, &resolved);
   set_path(e.resolved, "refiner", resolved);

@@ -94,6 +94,8 @@ ConfigNode saved_config(const Experiment& experiment) {
   }
   if (p.cloth.shape == "file") {
     ClothParameters cloth = p.cloth;
+    if (cloth.as_read.file.empty())
+      cloth.as_read = {p.cloth, fs::absolute(cloth.file).string(), cloth.scale, cloth.rotate, cloth.join};
     const ClothParameters as_written;  // in metres, with z up, and transformed
     cloth.unit = as_written.unit;
     cloth.up = as_written.up;
@@ -102,6 +104,7 @@ ConfigNode saved_config(const Experiment& experiment) {
     cloth.vertices = as_written.vertices;  // meshed as it was asked for
     cloth.edge_length = as_written.edge_length;
     cloth.seed = as_written.seed;
+    cloth.join = as_written.join;
     cloth.grain = as_written.grain;  // its faces have warp as it was cut
     cloth.grain_along = as_written.grain_along;
     cloth.grain_regions.clear();

@@ -5,8 +5,11 @@
 #include <stdexcept>
 
 #include "core/app/scene/scene_summary.h"
+#include "core/kernel/files/message_text.h"
 #include "core/kernel/files/number_text.h"
+#include "core/kernel/files/string_utils.h"
 #include "core/numerics/mesh/rotation.h"
+#include "core/numerics/mesh/seams.h"
 #include "core/numerics/model/position_penalty.h"
 
 namespace drape {
@@ -87,6 +90,28 @@ std::string text_of(const Eigen::Vector3d& p) {
   return "(" + general_text(p.x(), 6) + ", " + general_text(p.y(), 6) + ", " + general_text(p.z(), 6) + ")";
 }
 
+/// The vertices of a piece, or the ends of its border edges or seams, or of all seams.
+std::vector<int> vertices_of_piece(const VertexSelection& selection, const Level& level) {
+  const TriangleMesh& rest = level.rest;
+  const auto has = [&](int t) {
+    return !selection.piece || (!rest.piece.empty() && rest.piece_names[rest.piece[t]] == *selection.piece);
+  };
+  std::vector<char> chosen(level.vertex_count(), 0);
+  for (int t = 0; t < level.triangle_count(); ++t)
+    for (int k = 0; k < 3 && has(t); ++k) {
+      const int e = level.topology.triangle_edges(t, k);
+      const bool whole = selection.region == "piece", edge = selection.region == "seam"
+                                                                 ? is_seam(rest, level.topology, e)
+                                                                 : level.topology.edge_triangles(e, 1) == -1;
+      if (whole || edge)
+        for (const int corner : {(k + 1) % 3, (k + 2) % 3}) chosen[rest.triangles(t, corner)] = 1;
+    }
+  std::vector<int> vertices;
+  for (int v = 0; v < level.vertex_count(); ++v)
+    if (chosen[v]) vertices.push_back(v);
+  return vertices;
+}
+
 /// Whether two targets of a vertex differ by more than round-off, on a cloth that is so large [m].
 bool differ(const Eigen::Vector3d& a, const Eigen::Vector3d& b, double diagonal) {
   constexpr double rounding = 1e-9;
@@ -127,6 +152,15 @@ void check_selection(const ExperimentParameters& parameters, LoadPart part, std:
   const Level& coarsest = levels[0];
   const std::string name = name_of(parameters, part, k);
   const bool by_index = p.region == "vertices";
+  const auto& pieces = coarsest.rest.piece_names;
+  if (p.region == "piece" && !p.piece)
+    return errors.push_back({where, name + " needs \"piece\", the name of a piece: " + joined(pieces)});
+  if (p.piece && std::ranges::find(pieces, *p.piece) == pieces.end())
+    return errors.push_back({where, name + ": the cloth has no piece \"" + excerpt(*p.piece) + "\"; it has " +
+                                        (pieces.empty() ? "none with a name" : joined(pieces))});
+  if (p.region == "seam" && !coarsest.rest.sewing)
+    return errors.push_back(
+        {where, name + " selects seams, which only a cloth of flat pieces has (\"rest: uv\" in cloth)"});
   if (by_index ? p.vertices.empty() : selected_vertices(p, coarsest, coarsest).empty())
     errors.push_back(
         {where, name + " selects no vertex of the coarsest level; " +
@@ -183,6 +217,8 @@ std::vector<int> selected_vertices(const VertexSelection& selection, const Level
     selected.erase(std::unique(selected.begin(), selected.end()), selected.end());
     return selected;
   }
+  if (selection.region == "piece" || selection.region == "seam" || selection.piece)
+    return vertices_of_piece(selection, level);
   constexpr double rounding = 1e-12;  // round-off must not exclude vertices on a region's boundary
   for (int i = 0; i < level.vertex_count(); ++i) {
     const Eigen::Vector3d p = level.rest.vertices.row(i);

@@ -5,6 +5,7 @@
 #include <random>
 
 #include "core/app/experiment/cloth.h"
+#include "core/app/experiment/sewn_cloth.h"
 #include "core/app/scene/boundary_conditions.h"
 #include "core/app/scene/load_schedule.h"
 #include "core/app/scene/scene_summary.h"
@@ -156,6 +157,12 @@ void refuse_intersecting_start(const Experiment& e, const LevelModel& model, con
 
 std::vector<std::string> remarks_of(const Experiment& e, const Scene& scene) {
   std::vector<std::string> all;
+  const ClothParameters& cloth = e.parameters.cloth;
+  const Level& coarsest = scene.hierarchy.levels[0];
+  if (cloth.join > 0)
+    all.push_back(std::to_string(read_mesh(cloth.file).vertices.rows() - coarsest.vertex_count()) +
+                  " vertices of the cloth's file were joined to others (cloth.join)");
+  if (const std::string text = sewing_text(coarsest); !text.empty()) all.push_back("cloth: " + text);
   for (const auto& contact : e.contacts)
     for (std::string& line : contact->input_remarks()) all.push_back(std::move(line));
   for (const auto& model : scene.models)

@@ -8,6 +8,7 @@
 #include "core/kernel/files/message_text.h"
 #include "core/kernel/plugin/bounds.h"
 #include "core/numerics/mesh/mesh_faults.h"
+#include "core/numerics/mesh/texture_coordinates.h"
 #include "core/numerics/mesh/unjoined_borders.h"
 
 namespace drape {
@@ -182,6 +183,32 @@ std::vector<std::string> check_mesh(const TriangleMesh& mesh) {
   check_connectivity(faults, lines);
   if (is_sound) check_borders(mesh, lines);
   if (lines.empty()) check_overlaps(mesh, lines);
+  return lines;
+}
+
+std::vector<std::string> check_pieces(const TriangleMesh& mesh) {
+  Lines lines;
+  constexpr double flat = 1e-12;  // height over the longest side
+  std::vector<int> empty;
+  for (int t = 0; t < mesh.triangles.rows(); ++t) {
+    const Eigen::Matrix3d x = rest_corners(mesh, t);
+    const Eigen::Vector3d a = x.col(1) - x.col(0), b = x.col(2) - x.col(0);
+    const double longest = std::max({a.squaredNorm(), b.squaredNorm(), (b - a).squaredNorm()});
+    if (!(a.cross(b).norm() > flat * longest)) empty.push_back(t);
+  }
+  const auto name = [&](int t) { return triangle_text(mesh.triangles, t); };
+  add_line(lines, empty,
+           {"triangle has", "triangles have", " no area in texture coordinates",
+            "\"rest: uv\" takes its shape from there: unwrap it"},
+           name);
+  if (!lines.empty()) return lines;
+  const UvVertices split = split_at_seams(mesh);
+  TriangleMesh unfolded{Positions::Zero(split.uv.rows(), 3), split.triangles};
+  unfolded.vertices.leftCols<2>() = split.uv;
+  add_line(lines, flat_overlaps(unfolded),
+           {"triangle is", "triangles are", " turned over in texture coordinates, onto those around a vertex",
+            "unwrap the piece without overlaps"},
+           name);
   return lines;
 }
 

@@ -16,6 +16,10 @@ namespace drape {
 /// - in a flat mesh, triangles that overlap those around a vertex (flat_overlaps).
 std::vector<std::string> check_mesh(const TriangleMesh& mesh);
 
+/// The faults of a sewn cloth's flat pieces: triangles without texture coordinates or without area there, and
+/// those that are turned over in their piece. Pieces may overlap, and be mirrored.
+std::vector<std::string> check_pieces(const TriangleMesh& mesh);
+
 /// The faults of coordinates [m]: one that is not finite or too large, a mesh without extent, and a mesh so
 /// far from the origin that round-off changes its shape.
 std::vector<std::string> check_coordinates(const Positions& x);

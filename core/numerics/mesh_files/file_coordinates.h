@@ -27,6 +27,13 @@ struct FileCoordinates {
     x.col(1).swap(x.col(2));
     x.col(1) = -x.col(1);
   }
+  /// The inverse of convert, but for rounding.
+  void restore(Positions& x) const {
+    x *= unit == "mm" ? 1000 : unit == "cm" ? 100 : unit == "inch" ? 1 / 0.0254 : 1;
+    if (up != "y") return;
+    x.col(1) = -x.col(1);
+    x.col(1).swap(x.col(2));
+  }
   bool operator==(const FileCoordinates&) const = default;
 };
 

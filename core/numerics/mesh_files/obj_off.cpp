@@ -67,6 +67,20 @@ std::array<double, 2> obj_uv(const TextReader& reader, MeshUse use) {
   return uv;
 }
 
+/// The parts of an OBJ that one of its keywords names: groups, materials or objects.
+struct ObjParts {
+  std::string_view keyword;
+  std::vector<std::string> names = {};
+  std::vector<int> of_triangle = {};
+  int current = -1;
+
+  void name(const std::vector<std::string_view>& words) {
+    const std::string name(words.size() > 1 ? words[1] : "default");
+    current = static_cast<int>(std::ranges::find(names, name) - names.begin());
+    if (current == std::ssize(names)) names.push_back(name);
+  }
+};
+
 /// Whether OBJ defines such a keyword, other than those of vertices, faces and lines.
 bool is_other_obj_line(std::string_view word) {
   constexpr std::string_view known[] = {
@@ -85,9 +99,12 @@ TriangleMesh read_obj(const std::filesystem::path& path, std::string_view bytes,
   std::vector<int> face;
   std::vector<std::array<double, 2>> uv;
   std::vector<double> face_uv;
+  std::array<ObjParts, 3> parts{{{"g"}, {"usemtl"}, {"o"}}};
   while (reader.next_line()) {
     const auto& words = reader.words();
-    if (words[0] == "v") {
+    if (const auto part = std::ranges::find(parts, words[0], &ObjParts::keyword); part != parts.end()) {
+      part->name(words);
+    } else if (words[0] == "v") {
       read_vertex(reader, 1, 4, builder);  // a weight, a colour
     } else if (words[0] == "vt") {
       uv.push_back(obj_uv(reader, use));
@@ -105,6 +122,7 @@ TriangleMesh read_obj(const std::filesystem::path& path, std::string_view bytes,
       if (!face_uv.empty() && face_uv.size() < 2 * face.size())
         reader.fail("a face has a vt at every corner or at none");
       builder.add_face(face, face_uv, [&](const std::string& why) { reader.fail(why); });
+      for (ObjParts& part : parts) part.of_triangle.resize(builder.corners.size() / 3, part.current);
     } else if (words[0] == "l") {
       ++lines;
     } else if (!is_other_obj_line(words[0])) {
@@ -112,7 +130,16 @@ TriangleMesh read_obj(const std::filesystem::path& path, std::string_view bytes,
     }
   }
   if (builder.coordinates.empty()) reader.fail("the file ends without a vertex");
-  return builder.mesh();
+  TriangleMesh mesh = builder.mesh();
+  const auto named = std::ranges::max_element(parts, {}, [](const ObjParts& p) { return p.names.size(); });
+  if (named->names.size() < 2) return mesh;
+  mesh.piece = named->of_triangle;
+  mesh.piece_names = named->names;
+  if (const auto unnamed = static_cast<int>(named->names.size()); std::ranges::count(mesh.piece, -1) > 0) {
+    std::ranges::replace(mesh.piece, -1, unnamed);
+    mesh.piece_names.emplace_back("unnamed");
+  }
+  return mesh;
 }
 
 TriangleMesh read_off(const std::filesystem::path& path, std::string_view bytes, MeshUse use) {
@@ -160,6 +187,8 @@ std::string obj_text(const TriangleMesh& mesh) {
   for (Eigen::Index i = 0; i < corners.uv.rows(); ++i)
     text += "vt " + exact_text(corners.uv(i, 0)) + ' ' + exact_text(corners.uv(i, 1)) + '\n';
   for (int t = 0; t < mesh.triangles.rows(); ++t) {
+    if (!mesh.piece.empty() && (t == 0 || mesh.piece[t] != mesh.piece[t - 1]))
+      text += "g " + mesh.piece_names[mesh.piece[t]] + '\n';
     text += 'f';
     for (int k = 0; k < 3; ++k) {
       text += ' ' + std::to_string(mesh.triangles(t, k) + 1);

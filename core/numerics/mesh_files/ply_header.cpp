@@ -48,13 +48,18 @@ PlyHeader read_ply_header(TextReader& reader) {
   std::optional<PlyFormat> format;
   std::vector<PlyElement> elements;
   std::set<std::string> names, properties;  // of the elements, and of the last one's properties
+  std::vector<std::string> pieces;
+  std::optional<double> uv_length;
   while (reader.next_line()) {
     const auto& words = reader.words();
     if (words[0] == "end_header") {
       if (!format) reader.fail("the header has no format line");
       reader.finish_line();
-      return {*format, std::move(elements)};
+      return {*format, std::move(elements), std::move(pieces), uv_length};
     }
+    if (words[0] == "comment" && words.size() == 3 && words[1] == "piece") pieces.emplace_back(words[2]);
+    if (words[0] == "comment" && words.size() == 3 && words[1] == "uv_length")
+      uv_length = reader.number(words[2]);
     if (words[0] == "comment" || words[0] == "obj_info") continue;
     if (words[0] == "format") {
       if (format) reader.fail("the format is declared twice");

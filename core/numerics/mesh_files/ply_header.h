@@ -31,6 +31,8 @@ enum class PlyFormat { ascii, little_endian, big_endian };
 struct PlyHeader {
   PlyFormat format;
   std::vector<PlyElement> elements;
+  std::vector<std::string> pieces;  ///< of lines "comment piece NAME", which the faces' `piece` counts
+  std::optional<double> uv_length;  ///< of "comment uv_length METRES", the length of a unit of uv
 };
 
 /// Reads from "ply" to "end_header"; the reader is then behind that line.

@@ -18,6 +18,7 @@ struct PlyFace {
   std::vector<int> corners;
   std::vector<double> uv;  ///< u and v of each corner; empty for a face without
   std::array<double, 3> warp{};
+  double piece = -1;
 };
 
 /// A scalar vertex property.
@@ -34,6 +35,9 @@ struct PlyContent {
   std::vector<PlyFace> faces;
   bool has_warp = false;     ///< of the faces
   std::vector<double> warp;  ///< 3m, or none
+  std::vector<int> piece;    ///< m, or none
+  std::vector<std::string> piece_names;
+  std::optional<double> uv_length;
   std::vector<PlyColumn> columns;
 
   /// The values of a scalar vertex property; null without one of this name.
@@ -130,7 +134,9 @@ template <class Add>
 void read_faces(PlyBody& body, const PlyElement& element, PlyContent& content, const Add& add) {
   std::vector<double> corners, uv;
   std::array<double, 3> warp{};
+  double piece = -1;
   const auto on_number = [&](const PlyProperty& p, double value) {
+    if (p.name == "piece") piece = value;
     for (int k = 0; k < 3; ++k)
       if (p.name == warp_names[k]) warp[k] = value;
   };
@@ -141,7 +147,10 @@ void read_faces(PlyBody& body, const PlyElement& element, PlyContent& content, c
   read_element(body, element, on_number, on_list, [&] {
     const std::size_t before = content.faces.size();
     add(body, corners, uv, content);
-    for (std::size_t i = before; i < content.faces.size(); ++i) content.faces[i].warp = warp;
+    for (std::size_t i = before; i < content.faces.size(); ++i) {
+        content.faces[i].warp = warp;
+        content.faces[i].piece = piece;
+      }
     uv.clear();
   });
 }
@@ -195,9 +204,17 @@ PlyContent read_content(const std::filesystem::path& path, std::string_view byte
   }
   for (const PlyFace& face : content.faces) {
     content.mesh.add_face(face.corners, face.uv, [&](const std::string& why) { refuse_path(path, why); });
+    if (!header.pieces.empty()) {
+      if (!(face.piece >= 0 && face.piece < static_cast<double>(header.pieces.size())))
+        refuse_path(path, "a face has no piece among the " + std::to_string(header.pieces.size()) +
+                              " that the header names");
+      content.piece.resize(content.mesh.corners.size() / 3, static_cast<int>(face.piece));
+    }
     while (content.has_warp && content.warp.size() < content.mesh.corners.size())
       content.warp.insert(content.warp.end(), face.warp.begin(), face.warp.end());
   }
+  content.piece_names = header.pieces;
+  content.uv_length = header.uv_length;
   return content;
 }
 
@@ -222,7 +239,11 @@ TriangleMesh read_ply(const std::filesystem::path& path, std::string_view bytes,
   lines += content.line_count;
   TriangleMesh mesh = content.mesh.mesh();
   mesh.warp = Eigen::Map<const Positions>(content.warp.data(), std::ssize(content.warp) / 3, 3);
+  mesh.piece = content.piece;
+  mesh.piece_names = content.piece_names;
   if (mesh.uv.rows() == 0 && use == MeshUse::cloth) set_uv_of_vertices(content, mesh);
+  if (content.uv_length && *content.uv_length > 0 && mesh.uv.rows() > 0)
+    mesh.sewing = Sewing{*content.uv_length};
   return mesh;
 }
 

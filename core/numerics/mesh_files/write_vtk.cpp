@@ -29,6 +29,14 @@ std::string file_head(const std::string& type) {
          "\" version=\"1.0\" byte_order=\"LittleEndian\" header_type=\"UInt64\">\n";
 }
 
+/// The number of the piece of each polygon.
+std::string piece_data(const TriangleMesh& mesh) {
+  if (mesh.piece.empty()) return "";
+  const std::vector<std::int64_t> numbers(mesh.piece.begin(), mesh.piece.end());
+  return "<CellData>\n" + data_array("type=\"Int64\" Name=\"piece\"", numbers.data(), std::ssize(numbers)) +
+         "</CellData>\n";
+}
+
 }  // namespace
 
 std::string vtp_text(const TriangleMesh& mesh, const VertexFields& fields) {
@@ -43,8 +51,8 @@ std::string vtp_text(const TriangleMesh& mesh, const VertexFields& fields) {
       mesh.triangles.cast<std::int64_t>();
   const auto ends = Eigen::Matrix<std::int64_t, Eigen::Dynamic, 1>::LinSpaced(m, 3, 3 * m).eval();
   text += "</Points>\n<Polys>\n" + data_array("type=\"Int64\" Name=\"connectivity\"", corners.data(), 3 * m) +
-          data_array("type=\"Int64\" Name=\"offsets\"", ends.data(), m) +
-          "</Polys>\n</Piece>\n</PolyData>\n</VTKFile>\n";
+          data_array("type=\"Int64\" Name=\"offsets\"", ends.data(), m) + "</Polys>\n" + piece_data(mesh) +
+          "</Piece>\n</PolyData>\n</VTKFile>\n";
   return text;
 }
 

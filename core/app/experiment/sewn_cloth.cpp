@@ -1,0 +1,107 @@
+#include "core/app/experiment/sewn_cloth.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <stdexcept>
+
+#include "core/kernel/files/message_text.h"
+#include "core/numerics/mesh/flat_pieces.h"
+#include "core/numerics/mesh/seams.h"
+
+namespace drape {
+
+namespace {
+
+struct UvUnit {
+  const char* name;
+  double length;  // [m]
+};
+constexpr UvUnit uv_units[] = {{"mm", 1e-3}, {"cm", 1e-2}, {"inch", 0.0254}, {"m", 1}};
+
+/// The unit that texture coordinates seem to have, by the areas in space.
+std::string guessed_unit(double length) {
+  constexpr double near = 1.3;
+  for (const UvUnit& unit : uv_units)
+    if (length < near * unit.length && unit.length < near * length) return unit.name;
+  return "normalised";
+}
+
+/// Refuses texture coordinates that no single length makes flat pieces of, such as those of which u and v
+/// were each scaled to 0 … 1.
+double normalised_length(const TriangleMesh& cloth) {
+  const std::vector<char> all(cloth.triangles.rows(), 1);
+  const UvLength length = UvLength::of(cloth, all);
+  const std::string remedy =
+      "; export the texture coordinates in a unit of length, and write that as \"uv_unit\"";
+  if (!similar_lengths(length.along_u, length.along_v))
+    throw std::runtime_error(
+        "\"uv_unit: normalised\" needs one length for u and v, but by the areas in space u has " +
+        three_digits(length.along_u) + " m and v " + three_digits(length.along_v) + " m: the aspect is lost" +
+        remedy);
+  for (std::size_t p = 0; p < cloth.piece_names.size(); ++p) {
+    std::vector<char> own(all.size());
+    for (std::size_t t = 0; t < own.size(); ++t) own[t] = cloth.piece[t] == static_cast<int>(p);
+    const double piece = UvLength::of(cloth, own).whole;
+    if (std::isfinite(piece) && !similar_lengths(piece, length.whole))
+      throw std::runtime_error(
+          "\"uv_unit: normalised\" needs one length for all pieces, but by the areas in space " +
+          cloth.piece_names[p] + " has " + three_digits(piece) + " m and all have " +
+          three_digits(length.whole) + " m" + remedy);
+  }
+  return length.whole;
+}
+
+}  // namespace
+
+void sew(TriangleMesh& cloth, const ClothParameters& c) {
+  cloth.sewing.reset();  // a run's own mesh has one
+  if (c.rest != "uv") return;
+  if (cloth.uv.rows() == 0)
+    throw std::runtime_error(
+        c.file +
+        ": \"rest: uv\" needs texture coordinates, which the file has not; unwrap it, or leave out "
+        "\"rest\"");
+  cloth.sewing = Sewing{1, c.seams.angle * std::numbers::pi / 180, c.seams.stiffness};
+  if (cloth.piece.empty()) {
+    cloth.piece =
+        flat_pieces(cloth, Topology::of_any(cloth.triangles, static_cast<int>(cloth.vertices.rows())));
+    for (int p = 0; p <= *std::ranges::max_element(cloth.piece); ++p)
+      cloth.piece_names.push_back("piece_" + std::to_string(p));
+  }
+  if (c.uv_unit == "normalised") {
+    cloth.sewing->uv_length = normalised_length(cloth);
+    return;
+  }
+  const auto unit = std::ranges::find_if(uv_units, [&](const UvUnit& u) { return c.uv_unit == u.name; });
+  if (unit == std::end(uv_units)) {
+    const double length = UvLength::of(cloth, std::vector<char>(cloth.triangles.rows(), 1)).whole;
+    throw std::runtime_error(
+        "\"rest: uv\" needs \"uv_unit\", the unit of the texture coordinates; by the areas "
+        "in space one is " +
+        three_digits(length) + " m: \"uv_unit: " + guessed_unit(length) + "\"?");
+  }
+  cloth.sewing->uv_length = unit->length;
+}
+
+std::string sewing_text(const Level& coarsest) {
+  const TriangleMesh& cloth = coarsest.rest;
+  if (!cloth.sewing) return "";
+  double seams = 0, least = 1;
+  for (int e = 0; e < coarsest.topology.edges.rows(); ++e) {
+    if (!is_seam(cloth, coarsest.topology, e)) continue;
+    const RestSide a = rest_side(cloth, coarsest.topology, e, 0),
+                   b = rest_side(cloth, coarsest.topology, e, 1);
+    const double one = (a.to - a.from).norm(), other = (b.to - b.from).norm();
+    seams += rest_length(cloth, coarsest.topology, e);
+    least = std::min({least, one / other, other / one});
+  }
+  const std::vector<int> pieces = flat_pieces(cloth, coarsest.topology);
+  const int count = *std::ranges::max_element(pieces) + 1;
+  std::string text = std::to_string(count) + (count == 1 ? " flat piece, " : " flat pieces, ") +
+                     three_digits(seams) + " m of seams";
+  if (least < 0.999) text += ", eased by up to " + three_digits(100 * (1 - least)) + " %";
+  return text + "; one of the texture coordinates is " + three_digits(cloth.sewing->uv_length) + " m";
+}
+
+}  // namespace drape

@@ -1,0 +1,19 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "core/app/experiment/experiment_parameters.h"
+#include "core/kernel/interfaces/level.h"
+
+namespace drape {
+
+/// Makes flat pieces of a file's mesh, as its `rest`, `uv_unit` and `seams` say, and names them where the
+/// file does not. Throws std::runtime_error with what is missing, and with what the file's texture
+/// coordinates seem to be.
+void sew(TriangleMesh& cloth, const ClothParameters& c);
+
+/// A line about a cloth of flat pieces, as "3 flat pieces, 2.4 m of seams, …"; "" for another cloth.
+std::string sewing_text(const Level& coarsest);
+
+}  // namespace drape

@@ -1,0 +1,183 @@
+// OBJ files of sewn cloth as garment tools write them: they drape, or are refused in a sentence.
+
+#include <cmath>
+
+#include "core/numerics/mesh/flat_pieces.h"
+#include "core/numerics/mesh/seams.h"
+#include "core/numerics/mesh_files/io.h"
+#include "tests/configs/runs.h"
+#include "tests/support/refusal.h"
+#include "tests/support/solve.h"
+
+using namespace drape;
+
+namespace {
+
+/// How a tool writes a cushion of two squares of 0.2 m.
+struct Writing {
+  bool doubled = false;  ///< the back has vertices of its own along the seam
+  double jitter = 0;     ///< [m], of these
+  bool quads = false;
+  double uv_unit = 1;    ///< units of the texture coordinates for a metre
+  double v_stretch = 1;  ///< further factor on v
+  double unit = 1;       ///< units of the coordinates for a metre
+  bool y_up = false;
+  std::string keyword = {};   ///< "g" or "usemtl" before each square
+  bool one_side = false;  ///< the back's faces run as the front's
+  bool mirrored = false;  ///< the back shares the front's texture coordinates
+  bool loose = false;     ///< a vertex of no face
+};
+
+constexpr int n = 5;
+constexpr double side = 0.2;
+
+std::string obj_of(const Writing& w) {
+  std::string vertices, uv, faces;
+  int count = 0;
+  std::vector<int> front(n * n), back(n * n);
+  const auto add_vertex = [&](int i, int j, double z, double shift) {
+    const double x = side * i / (n - 1) + shift, y = side * j / (n - 1);
+    const Eigen::Vector3d p = w.unit * (w.y_up ? Eigen::Vector3d(x, z, -y) : Eigen::Vector3d(x, y, z));
+    vertices +=
+        "v " + std::to_string(p.x()) + " " + std::to_string(p.y()) + " " + std::to_string(p.z()) + "\n";
+    return ++count;
+  };
+  for (int half = 0; half < 2; ++half)
+    for (int j = 0; j < n; ++j)
+      for (int i = 0; i < n; ++i) {
+        const bool border = i == 0 || j == 0 || i == n - 1 || j == n - 1;
+        const double z = 0.03 * std::sin(M_PI * i / (n - 1)) * std::sin(M_PI * j / (n - 1));
+        std::vector<int>& own = half == 0 ? front : back;
+        own[j * n + i] = half == 1 && border && !w.doubled
+                             ? front[j * n + i]
+                             : add_vertex(i, j, half == 0 ? z : -z, half == 1 && border ? w.jitter : 0);
+        const double along = side * i / (n - 1), u = half == 1 && !w.mirrored ? 2.5 * side - along : along;
+        uv += "vt " + std::to_string(w.uv_unit * u) + " " +
+              std::to_string(w.uv_unit * w.v_stretch * side * j / (n - 1)) + "\n";
+      }
+  for (int half = 0; half < 2; ++half) {
+    if (!w.keyword.empty()) faces += w.keyword + (half == 0 ? " front\n" : " back\n");
+    for (int j = 0; j + 1 < n; ++j)
+      for (int i = 0; i + 1 < n; ++i) {
+        std::vector<int> corners = {j * n + i, j * n + i + 1, (j + 1) * n + i + 1, (j + 1) * n + i};
+        if (half == 1 && !w.one_side) std::ranges::reverse(corners);
+        const auto face = [&](std::initializer_list<int> which) {
+          faces += "f";
+          for (const int k : which)
+            faces += " " + std::to_string((half == 0 ? front : back)[corners[k]]) + "/" +
+                     std::to_string(half * n * n + corners[k] + 1);
+          faces += "\n";
+        };
+        if (w.quads)
+          face({0, 1, 2, 3});
+        else
+          face({0, 1, 2}), face({0, 2, 3});
+      }
+  }
+  if (w.loose) add_vertex(0, 0, 0.5, 0);
+  return "# a cushion\n" + vertices + uv + faces;
+}
+
+std::string sewn_experiment(const std::string& keys, const std::string& pins = "{region: seam}") {
+  return "name: sewn\nlevels: 2\ncloth: {shape: file, file: cushion.obj, rest: uv, " + keys +
+         "}\nmaterial: {density: 300, thickness: 5e-4, membrane_modulus: 2e5, bending_modulus: 2e6}\npins: "
+         "[" +
+         pins + "]\nenergies: [stvk, hinge, gravity]\nmethods: {pcs: {}}\n";
+}
+
+/// The cushion of that file, draped.
+Solved draped(const std::string& obj, const std::string& keys, const std::string& pins = "{region: seam}") {
+  const Scratch folder(sewn_experiment(keys, pins));
+  folder.write("cushion.obj", obj);
+  Solved s{experiment_in(folder / "e.yaml"), nullptr, {}};
+  s.scene = scene_of(s.experiment);
+  run_method(s);
+  return s;
+}
+
+std::string refused_cushion(const std::string& obj, const std::string& keys,
+                            const std::string& pins = "{region: seam}") {
+  return refusal_of([&] { draped(obj, keys, pins); });
+}
+
+}  // namespace
+
+TEST_CASE("OBJ files of sewn cloth drape as garment tools write them") {
+  Writing doubled{.doubled = true}, apart{.doubled = true, .jitter = 1e-6}, quads{.quads = true},
+      mm{.uv_unit = 1000}, normalised{.uv_unit = 2.5}, up{.unit = 100, .y_up = true, .keyword = "g"},
+      materials{.keyword = "usemtl"}, mirrored{.mirrored = true};
+  const Solved plain = draped(obj_of({}), "uv_unit: m");
+  for (const auto& [writing, keys] : {std::pair(doubled, "uv_unit: m, join: 1e-7"),
+                                      {apart, "uv_unit: m, join: 1e-5"},
+                                      {quads, "uv_unit: m"},
+                                      {mm, "uv_unit: mm"},
+                                      {normalised, "uv_unit: normalised"},
+                                      {up, "uv_unit: m, unit: cm, up: y"},
+                                      {materials, "uv_unit: m"},
+                                      {mirrored, "uv_unit: m"}}) {
+    const Solved s = draped(obj_of(writing), keys);
+    INFO(keys);
+    REQUIRE(s.levels.back().outcome == Outcome::converged);
+    const Level& coarsest = s.scene->hierarchy.levels[0];
+    CHECK(coarsest.vertex_count() == 2 * n * n - 4 * (n - 1));
+    CHECK(flat_pieces(coarsest.rest, coarsest.topology) ==
+          flat_pieces(plain.scene->hierarchy.levels[0].rest, plain.scene->hierarchy.levels[0].topology));
+    // The length of normalised coordinates comes from a cushion that is inflated.
+    const double same = writing.uv_unit == 2.5 ? 0.1 : 1e-9;
+    CHECK(s.level().vertex_area.sum() == Approx(2 * side * side).epsilon(same));
+  }
+  // The seams are refined as seams.
+  for (const Level& level : plain.scene->hierarchy.levels) {
+    int seams = 0;
+    for (int e = 0; e < level.topology.edges.rows(); ++e) seams += is_seam(level.rest, level.topology, e);
+    CHECK(seams == 4 * (n - 1) << level.index);
+  }
+}
+
+TEST_CASE("Pins and handles select pieces by the names of groups or materials, seams and borders of them") {
+  for (const char* keyword : {"g", "usemtl"}) {
+    const Writing named{.keyword = keyword};
+    for (const auto& [pin, count] : {std::pair("{region: piece, piece: back}", n * n),
+                                     {"{region: seam}", 4 * (n - 1)},
+                                     {"{region: seam, piece: front}", 4 * (n - 1)}}) {
+      const Solved s = draped(obj_of(named), "uv_unit: m", pin);
+      CHECK(s.scene->models[0]->dirichlet().size() == static_cast<std::size_t>(count));
+    }
+    const std::string faulty = refused_cushion(obj_of(named), "uv_unit: m", "{region: piece, piece: bakc}");
+    CHECK_THAT(faulty, Catch::Contains("the cloth has no piece \"bakc\"; it has front, back"));
+  }
+  CHECK_THAT(refused_cushion(obj_of({}), "uv_unit: m", "{region: border}"),
+             Catch::Contains("selects no vertex"));
+}
+
+TEST_CASE("OBJ files that are no sewn cloth are refused in a sentence") {
+  CHECK_THAT(
+      refused_cushion(obj_of({.uv_unit = 1000}), "join: 0"),
+      Catch::Contains("\"rest: uv\" needs \"uv_unit\", the unit of the texture coordinates; by the areas in "
+                      "space one is ") &&
+          Catch::Contains("\"uv_unit: mm\"?"));
+  CHECK_THAT(refused_cushion(obj_of({.v_stretch = 3}), "uv_unit: normalised"),
+             Catch::Contains("the aspect is lost"));
+  CHECK_THAT(refused_cushion(obj_of({.one_side = true}), "uv_unit: m"),
+             Catch::Contains("run in the same direction in both triangles"));
+  CHECK_THAT(refused_cushion(obj_of({.loose = true}), "uv_unit: m"),
+             Catch::Contains("belongs to no triangle"));
+  const std::string cushion = obj_of({});
+  CHECK_THAT(refused_cushion(
+                 cushion + "v 0.1 0 0.4\nf 1/1 2/2 " + std::to_string(2 * n * n - 4 * (n - 1) + 1) + "/7\n",
+                 "uv_unit: m"),
+             Catch::Contains("1 edge has more than two triangles: (0, 1) in triangles"));
+  // A triangle without area in the plane, and an inner vertex that lies beyond its neighbours there.
+  std::string flat = cushion, over = cushion;
+  const auto set_uv = [](std::string& obj, int number, const std::string& line) {
+    std::size_t at = 0;
+    for (int k = 0; k <= number; ++k) at = obj.find("vt ", at + 1);
+    obj.replace(at, obj.find('\n', at) - at, line);
+  };
+  set_uv(flat, 1, "vt 0 0");
+  CHECK_THAT(refused_cushion(flat, "uv_unit: m"), Catch::Contains("no area in texture coordinates"));
+  set_uv(over, n + 1, "vt 0.12 0.05");
+  CHECK_THAT(refused_cushion(over, "uv_unit: m"), Catch::Contains("turned over in texture coordinates"));
+  CHECK_THAT(refused_cushion(cushion, "uv_unit: m}\nrefiner: loop\nstart: {perturbation: 0"),
+             Catch::Contains("write \"refiner: midpoint\""));
+}
