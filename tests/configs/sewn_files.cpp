@@ -6,6 +6,7 @@
 #include "core/numerics/mesh/seams.h"
 #include "core/numerics/mesh_files/io.h"
 #include "tests/configs/runs.h"
+#include "tests/support/glb.h"
 #include "tests/support/refusal.h"
 #include "tests/support/solve.h"
 
@@ -180,4 +181,42 @@ TEST_CASE("OBJ files that are no sewn cloth are refused in a sentence") {
   CHECK_THAT(refused_cushion(over, "uv_unit: m"), Catch::Contains("turned over in texture coordinates"));
   CHECK_THAT(refused_cushion(cushion, "uv_unit: m}\nrefiner: loop\nstart: {perturbation: 0"),
              Catch::Contains("write \"refiner: midpoint\""));
+}
+
+TEST_CASE("A sewn run can be run again from its own config, and goes out as its file came") {
+  const Writing writing{
+      .doubled = true, .jitter = 1e-6, .uv_unit = 1000, .unit = 100, .y_up = true, .keyword = "g"};
+  const Scratch folder(
+      sewn_experiment("uv_unit: mm, join: 1e-5, unit: cm, up: y", "{region: seam, piece: back}"));
+  folder.write("cushion.obj", obj_of(writing));
+  CHECK_THAT(drape_ends("check e.yaml", folder).out,
+             Contains("16 vertices of the cloth's file were joined to others") &&
+                 Contains("cloth: 2 flat pieces, 0.8 m of seams; one of the texture coordinates is 0.001 m"));
+  run_into("out", folder, "-j 1");
+  drape_ends("run out/config.yaml --quiet --no-report -j 1 --out again", folder);
+  check_same_files(folder / "out", folder / "again",
+                   {"config.yaml", "rest/l0.ply", "levels/pcs_l0.ply", "levels/pcs_l1.ply"});
+
+  const TriangleMesh own = read_mesh(folder / "cushion.obj"),
+                     state = read_mesh(folder / "out/levels/pcs_l0.ply");
+  drape_ends("export out --to back.obj --level 0 --as-read", folder);
+  const TriangleMesh back = read_mesh(folder / "back.obj");
+  REQUIRE(back.vertices.rows() == own.vertices.rows());
+  CHECK(back.triangles == own.triangles);
+  CHECK(back.uv == own.uv);
+  CHECK(back.piece_names == own.piece_names);
+  Positions front = back.vertices.topRows(n * n);
+  FileCoordinates{"cm", "y"}.convert(front);
+  CHECK(front.isApprox(state.vertices.topRows(n * n), 1e-12));
+
+  drape_ends("export out --to fine.ply", folder);
+  const TriangleMesh fine = read_mesh(folder / "fine.ply");
+  CHECK(fine.uv.leftCols(1).maxCoeff() <= 1000 * 2.5 * side + 1e-9);
+  CHECK(fine.piece.size() == static_cast<std::size_t>(4 * own.triangles.rows()));
+  drape_ends("export out --to all.glb --level 1", folder);
+  const Glb glb(text_of(folder / "all.glb"));
+  const nlohmann::json mesh = glb.json["meshes"][0];
+  REQUIRE(mesh["primitives"].size() == 2);
+  CHECK(glb.json["materials"][mesh["primitives"][1]["material"].get<int>()]["name"] == "back");
+  CHECK(mesh["extras"]["uv_length"].get<double>() == Approx(2.5 * side));
 }

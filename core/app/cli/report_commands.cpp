@@ -161,6 +161,8 @@ void add_export_command(Commands& commands) {
   command.add_flag("--outline", o->picture.outline,
                    "with .png: draw the outline of the method's coarsest state over the picture");
   command.add_flag("--xray", o->picture.xray, "with .png: let obstacles show faintly through the cloth");
+  command.add_flag("--as-read", o->as_read,
+                   "with .obj and .ply: in the unit and axes of the cloth's file, level 0 with its vertices");
   command.add_flag("--overwrite", o->overwrite, "replace existing files");
 }
 

@@ -1,5 +1,6 @@
 #include "core/app/files/gltf.h"
 
+#include <algorithm>
 #include <cstdint>
 #include <limits>
 #include <stdexcept>
@@ -38,10 +39,7 @@ class GlbWriter {
   /// Adds a mesh and a node that shows it, both of the surface's index.
   void add(const GltfSurface& surface) {
     const int node = static_cast<int>(json_["nodes"].size());
-    Json primitive = {
-        {"attributes", attributes(surface.state)},
-        {"indices", accessor<std::uint32_t, 3>(surface.triangles.cast<std::uint32_t>(), index_data)},
-        {"material", static_cast<int>(surface.material)}};
+    Json primitive = {{"attributes", attributes(surface.state)}};
     Json mesh = {{"name", surface.name}};
     if (surface.uv.rows() > 0) {
       Rows<double, 2> uv = surface.uv;
@@ -65,7 +63,19 @@ class GlbWriter {
       mesh["extras"]["targetNames"] = names;  // where Blender and three.js look for them
       animate(node, surface);
     }
-    mesh["primitives"] = Json::array({primitive});
+    mesh["primitives"] = Json::array();
+    for (int p = 0; p < std::max<int>(1, static_cast<int>(surface.piece_names.size())); ++p) {
+      std::vector<int> own;
+      for (int t = 0; t < surface.triangles.rows(); ++t)
+        if (surface.piece.empty() || surface.piece[t] == p) own.push_back(t);
+      if (own.empty()) continue;
+      const Rows<std::uint32_t, 3> corners = surface.triangles(own, Eigen::all).cast<std::uint32_t>();
+      primitive["indices"] = accessor<std::uint32_t, 3>(corners, index_data);
+      primitive["material"] = surface.piece.empty() ? static_cast<int>(surface.material)
+                                                    : material_of_piece(surface.piece_names[p]);
+      mesh["primitives"].push_back(primitive);
+    }
+    if (surface.uv_length > 0) mesh["extras"]["uv_length"] = surface.uv_length;
     json_["meshes"].push_back(mesh);
     json_["nodes"].push_back({{"name", surface.name}, {"mesh", node}});
   }
@@ -103,6 +113,16 @@ class GlbWriter {
             {"doubleSided", true},
             {"pbrMetallicRoughness",
              {{"baseColorFactor", colour}, {"metallicFactor", 0.0}, {"roughnessFactor", 0.8}}}};
+  }
+
+  /// The index of a cloth's material of this name, which is made when it is first asked for.
+  int material_of_piece(const std::string& name) {
+    Json& all = json_["materials"];
+    for (std::size_t k = 0; k < all.size(); ++k)
+      if (all[k]["name"] == name) return static_cast<int>(k);
+    all.push_back(all[0]);
+    all.back()["name"] = name;
+    return static_cast<int>(all.size()) - 1;
   }
 
   Json attributes(const GltfState& state) {

@@ -13,6 +13,8 @@
 #include "core/app/report/run_data.h"
 #include "core/kernel/files/file.h"
 #include "core/kernel/files/string_utils.h"
+#include "core/numerics/mesh/flat_pieces.h"
+#include "core/numerics/mesh/same_entries.h"
 #include "core/numerics/mesh/texture_coordinates.h"
 #include "core/numerics/mesh_files/io.h"
 #include "core/numerics/mesh_files/io_formats.h"
@@ -56,10 +58,46 @@ TriangleMesh cloth_mesh(const RunData& run, const LevelRecord& level) {
     throw std::runtime_error((run.folder / "rest").string() + ": level " + std::to_string(level.level) +
                              " has other triangles than its state; run the experiment again");
   mesh.uv = rest.uv;
+  mesh.piece = rest.piece;
+  mesh.piece_names = rest.piece_names;
+  mesh.sewing = rest.sewing;
   if (mesh.uv.rows() > 0) return mesh;
   const std::optional<PlanarUv> planar = PlanarUv::of(level.level == 0 ? rest : run.mesh(rest_file(0)));
   if (planar) mesh.uv = planar->at(rest);
   return mesh;
+}
+
+/// The cloth in the unit and the axes of the file that it was read from; on level 0 with that file's vertices
+/// and faces.
+TriangleMesh mesh_as_read(const RunData& run, const LevelRecord& level) {
+  ClothParameters cloth;
+  ConfigErrors unread;
+  if (const ConfigNode* written = run.config.find("cloth"))
+    schema_of<ClothParameters>().read(&cloth, *written, unread);
+  const AsReadParameters& read = cloth.as_read;
+  if (read.file.empty()) throw std::runtime_error("--as-read: the run's cloth is not of a file");
+  TriangleMesh mesh = cloth_mesh(run, level);
+  mesh.vertices = read.in_file(mesh.vertices);
+  if (level.level > 0) return mesh;
+  TriangleMesh own = read_mesh(read.file), joined = own;
+  read.convert(joined.vertices);
+  joined.vertices *= read.scale;
+  const std::vector<int> vertex = join_vertices(joined, read.join);
+  if (!same_entries(joined.triangles, mesh.triangles))
+    throw std::runtime_error("--as-read: " + read.file + " has other faces than when the run read it");
+  own.vertices = mesh.vertices(vertex, Eigen::all);
+  return own;
+}
+
+/// Makes texture coordinates of flat pieces those of a picture: from 0 to 1 along the longest extent. Returns
+/// the length of one [m], 0 of other texture coordinates.
+double scale_to_picture(TriangleMesh& mesh) {
+  if (!mesh.sewing) return 0;
+  Eigen::Map<UvVertices::Coordinates> uv(mesh.uv.data(), 3 * mesh.uv.rows(), 2);
+  const Eigen::RowVector2d low = uv.colwise().minCoeff();
+  const double extent = (uv.colwise().maxCoeff() - low).maxCoeff();
+  uv = ((uv.rowwise() - low) / extent).eval();
+  return extent * mesh.sewing->uv_length;
 }
 
 /// A state with its normals, at the vertices that the texture coordinates have split.
@@ -72,7 +110,7 @@ GltfState gltf_state(const TriangleMesh& mesh, const UvVertices& split) {
 
 GltfSurface gltf_surface(const std::string& name, GltfMaterial material, const TriangleMesh& mesh,
                          const UvVertices& split) {
-  return {name, material, split.triangles, gltf_state(mesh, split), split.uv, {}};
+  return {name, material, split.triangles, gltf_state(mesh, split), split.uv};
 }
 
 /// Why a level has fewer snapshots than an animation needs, with a remedy.
@@ -105,11 +143,15 @@ std::vector<Positions> earlier_states(const RunData& run, const MethodRecord& me
 
 GltfSurface cloth_surface(const RunData& run, const MethodRecord& method, const LevelRecord& level,
                           bool with_frames) {
-  const TriangleMesh mesh = cloth_mesh(run, level);
+  TriangleMesh mesh = cloth_mesh(run, level);
+  const double uv_length = scale_to_picture(mesh);
   const UvVertices split = split_at_seams(mesh);
   const std::string cloth = run.experiment.empty() ? "cloth" : run.experiment;
   GltfSurface surface =
       gltf_surface(cloth + " level " + std::to_string(level.level), GltfMaterial::cloth, mesh, split);
+  surface.uv_length = uv_length;
+  surface.piece = mesh.piece;
+  surface.piece_names = mesh.piece_names;
   if (with_frames)
     for (Positions& x : earlier_states(run, method, level, mesh.vertices.rows(), 2))
       surface.earlier.push_back(gltf_state({std::move(x), mesh.triangles}, split));
@@ -200,6 +242,8 @@ void check_options(const fs::path& file, const ExportOptions& options) {
   if (options.frames && extension != ".glb" && extension != ".png")
     throw std::runtime_error("--frames makes an animation, which " + extension +
                              " cannot hold; take .glb, or .png for numbered pictures");
+  if (options.as_read && extension != ".obj" && extension != ".ply")
+    throw std::runtime_error("--as-read is of meshes; take .obj or .ply");
   const PictureOptions& picture = options.picture;
   if (extension != ".png" && (picture.width || picture.direction || picture.outline || picture.xray))
     throw std::runtime_error("--width, --view, --outline and --xray are of pictures; take .png");
@@ -230,11 +274,13 @@ std::vector<fs::path> export_run(const fs::path& folder, const fs::path& file, c
   if (extension == ".png") return export_pictures(run, method, levels, file, options);
   refuse_target(file, options.overwrite);
   const LevelRecord& level = *levels[0];
+  const auto mesh = [&] { return options.as_read ? mesh_as_read(run, level) : cloth_mesh(run, level); };
   write_file(file,
-             extension == ".glb"   ? gltf_of(run, method, levels, options.frames)
-             : extension == ".vtp" ? vtp_text(run.mesh(level.mesh), read_ply_fields(run.folder / level.mesh))
-             : extension == ".obj" ? obj_text(cloth_mesh(run, level))
-                                   : ply_bytes(cloth_mesh(run, level)),
+             extension == ".glb" ? gltf_of(run, method, levels, options.frames)
+             : extension == ".vtp"
+                 ? vtp_text(cloth_mesh(run, level), read_ply_fields(run.folder / level.mesh))
+             : extension == ".obj" ? obj_text(mesh())
+                                   : ply_bytes(mesh()),
              options.existing());
   return {file};
 }

@@ -24,6 +24,7 @@ struct ExportOptions {
   std::optional<int> level;  ///< empty: every level of a .glb and of numbered pictures, or the finest
   bool frames = false;  ///< the recorded snapshots: of one level, as an animation in a .glb; or as pictures
   PictureOptions picture;  ///< of a .png alone
+  bool as_read = false;    ///< in the unit, axes and, of level 0, the vertices of the cloth's file
   bool overwrite = false;  ///< replace existing files
   Existing existing() const { return overwrite ? Existing::replaced : Existing::kept; }
 };
@@ -34,11 +35,11 @@ void refuse_target(const std::filesystem::path& file, bool overwrite);
 
 /// Writes states of a method from a run's folder, by the file's extension, and returns the files. A .glb has
 /// each level as a scene, the obstacles included, and opens on the finest. A .obj, .ply or .vtp has the cloth
-/// of one level, all but .vtp with texture coordinates: those of the cloth's file, or PlanarUv of a flat rest
-/// shape. A .png has a report's camera, which moves back where a snapshot would leave the picture; of several
-/// pictures the files are numbered, FILE_0000.png. Throws std::runtime_error with one line for a folder
-/// without results, for a state that was not recorded, for options that do not fit, and for a file that
-/// exists.
+/// of one level, its pieces as groups, all but .vtp with texture coordinates: those of the cloth's file, or
+/// PlanarUv of a flat rest shape; a .glb has those of flat pieces over the pieces' longest extent. A .png has
+/// a report's camera, which moves back where a snapshot would leave the picture; of several pictures the
+/// files are numbered, FILE_0000.png. Throws std::runtime_error with one line for a folder without results,
+/// for a state that was not recorded, for options that do not fit, and for a file that exists.
 std::vector<std::filesystem::path> export_run(const std::filesystem::path& folder,
                                               const std::filesystem::path& file,
                                               const ExportOptions& options);
