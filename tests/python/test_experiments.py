@@ -180,3 +180,25 @@ def test_plots_have_the_reports_colours(experiment):
     assert len(result.plot_convergence().lines) == 6
     with pytest.raises(ValueError, match="choose a measure"):
         result.plot_errors(measure="nothing_such")
+
+
+def test_a_mesh_of_arrays_rests_in_space_or_as_flat_pieces():
+    x = numpy.array([[0, 0, 0], [0.1, 0, 0], [0.1, 0.1, 0], [0, 0.1, 0.0]])
+    triangles = numpy.array([[0, 1, 2], [0, 2, 3]])
+    corners = x[triangles][:, :, :2].copy()
+    corners[1] += [1, 0.3]  # a piece of its own
+    in_space = drape.Experiment(mesh=(x, triangles))
+    sewn = drape.Experiment(mesh=(x, triangles), rest=corners)
+    for experiment in (in_space, sewn):
+        experiment.set("levels", 2)
+        experiment.set("refiner", "midpoint")
+    assert sewn.resolved["cloth"]["rest"] == "uv"
+    levels, flat = in_space.scene().levels, sewn.scene().levels
+    for level, other in zip(levels, flat):
+        assert numpy.allclose(level.vertex_area, other.vertex_area, rtol=1e-12)
+    assert numpy.array_equal(flat[0].rest_corners.reshape(-1, 3, 3)[:, :, :2], corners)
+    assert not flat[1].rest_corners.reshape(-1, 3)[:, 2].any()
+    with pytest.raises(ValueError, match="corners of 1 triangles"):
+        drape.Experiment(mesh=(x, triangles), rest=corners[:1])
+    with pytest.raises(TypeError, match="give mesh"):
+        drape.Experiment("e.yaml", rest=corners)

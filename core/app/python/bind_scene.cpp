@@ -83,7 +83,17 @@ void bind_level(py::module_& m) {
       .def_property_readonly("triangle_count", &Level::triangle_count)
       .def_property_readonly(
           "rest", [](const Level& l) -> const Positions& { return l.rest.vertices; },
-          "n×3 rest positions [m].")
+          "n×3 rest positions [m]; of a sewn cloth, where its pieces are placed in space.")
+      .def_property_readonly(
+          "rest_corners",
+          [](const Level& l) {
+            Eigen::Matrix<double, Eigen::Dynamic, 9, Eigen::RowMajor> corners(l.triangle_count(), 9);
+            for (int t = 0; t < l.triangle_count(); ++t)
+              corners.row(t) = rest_corners(l.rest, t).reshaped().transpose();
+            return corners;
+          },
+          "m×9 corners of the triangles at rest, x, y, z of each [m]: in space or, of a sewn cloth, in its "
+          "flat pieces, where z is 0. A copy.")
       .def_property_readonly(
           "triangles", [](const Level& l) -> const Triangles& { return l.rest.triangles; },
           "m×3 vertex indices.")

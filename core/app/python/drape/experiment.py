@@ -7,7 +7,9 @@ import shutil
 import tempfile
 import weakref
 from dataclasses import dataclass
-from typing import Callable, Optional, Sequence, Union
+from typing import Any, Callable, Dict, Optional, Sequence, Union
+
+import numpy
 
 from . import _core
 from .result import Result
@@ -41,14 +43,61 @@ class ConfigError(ValueError):
         super().__init__("\n".join(str(fault) for fault in self.faults))
 
 
+def _write_mesh(path: str, mesh: Sequence[Any], rest: Optional[Any]) -> None:
+    """Write a PLY of arrays: (x, triangles), and the flat pieces' corners as texture coordinates."""
+    x, triangles = numpy.asarray(mesh[0], float), numpy.asarray(mesh[1], int)
+    if x.ndim != 2 or x.shape[1] != 3 or triangles.ndim != 2 or triangles.shape[1] != 3:
+        raise ValueError(f"mesh is (n×3 positions, m×3 triangles), not {x.shape} and {triangles.shape}")
+    corners = None if rest is None else numpy.asarray(rest, float).reshape(-1, 6)
+    if corners is not None and len(corners) != len(triangles):
+        raise ValueError(f"rest has corners of {len(corners)} triangles, and the mesh {len(triangles)} triangles")
+    with open(path, "w", encoding="ascii") as file:
+        file.write(f"ply\nformat ascii 1.0\nelement vertex {len(x)}\n")
+        file.writelines(f"property double {axis}\n" for axis in "xyz")
+        file.write(f"element face {len(triangles)}\nproperty list uchar int vertex_indices\n")
+        file.write("end_header\n" if corners is None else "property list uchar double texcoord\nend_header\n")
+        file.writelines(" ".join(map(repr, row)) + "\n" for row in x.tolist())
+        for t, row in enumerate(triangles.tolist()):
+            uv = [] if corners is None else [6, *corners[t].tolist()]
+            file.write(" ".join(map(repr, [3, *row, *uv])) + "\n")
+
+
 class Experiment(_core.ExperimentBase):
     """An experiment: the path of a YAML file, or a dict with the same keys.
+
+    mesh: (x, triangles), n×3 positions [m] and m×3 vertex indices, is the cloth in place of `cloth.file`.
+    rest: the corners of its triangles in flat pieces, m×6 or m×3×2 [m]; without, the mesh is the rest shape.
+    Without a source the mesh has the energies neo_hookean, hinge and gravity, and the method pcs.
 
     Relative paths in a file start at its folder, those in a dict at the current folder. Raises ConfigError for
     a file that cannot be read.
     """
 
     __slots__ = ()  # `experiment.levels = 2` is an error: it would change nothing
+
+    def __init__(
+        self,
+        source: Union[str, os.PathLike, Dict[str, Any], None] = None,
+        *,
+        mesh: Optional[Sequence[Any]] = None,
+        rest: Optional[Any] = None,
+    ):
+        if source is None:
+            if mesh is None:
+                raise TypeError("an experiment is the path of a YAML file, a dict, or mesh=(x, triangles)")
+            source = {"name": "cloth", "energies": ["neo_hookean", "hinge", "gravity"], "methods": {"pcs": {}}}
+        if mesh is None and rest is not None:
+            raise TypeError("rest has the corners of a mesh; give mesh=(x, triangles) too")
+        super().__init__(source)
+        if mesh is None:
+            return
+        folder = tempfile.mkdtemp(prefix="drape_mesh_")
+        weakref.finalize(self, shutil.rmtree, folder, ignore_errors=True)
+        path = os.path.join(folder, "mesh.ply")
+        _write_mesh(path, mesh, rest)
+        keys = {"shape": "file", "file": path, **({} if rest is None else {"rest": "uv", "uv_unit": "m"})}
+        for key, value in keys.items():
+            self.set(f"cloth.{key}", value)
 
     def run(
         self,
