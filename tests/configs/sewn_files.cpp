@@ -23,10 +23,10 @@ struct Writing {
   double v_stretch = 1;  ///< further factor on v
   double unit = 1;       ///< units of the coordinates for a metre
   bool y_up = false;
-  std::string keyword = {};   ///< "g" or "usemtl" before each square
-  bool one_side = false;  ///< the back's faces run as the front's
-  bool mirrored = false;  ///< the back shares the front's texture coordinates
-  bool loose = false;     ///< a vertex of no face
+  std::string keyword = {};  ///< "g" or "usemtl" before each square
+  bool one_side = false;     ///< the back's faces run as the front's
+  bool mirrored = false;     ///< the back shares the front's texture coordinates
+  bool loose = false;        ///< a vertex of no face
 };
 
 constexpr int n = 5;

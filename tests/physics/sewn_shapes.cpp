@@ -74,7 +74,7 @@ TEST_CASE("A tube of strips that are sewn along their sides is the prism in spac
                            sewn = three_levels(as_facets(prism, n, 2 * M_PI / n));
   for (int l = 0; l < 3; ++l) {
     CHECK((space[l].vertex_area - sewn[l].vertex_area).norm() < 1e-13 * space[l].vertex_area.norm());
-    for (const auto* energies : {&membranes, &bending})
+    for (const auto* energies : {&sewn_membranes, &bending})
       for (const std::string& energy : *energies) {
         INFO(energy << ", level " << l);
         CHECK(energy_difference(energy, space[l], sewn[l]) < 1e-12);
@@ -82,7 +82,8 @@ TEST_CASE("A tube of strips that are sewn along their sides is the prism in spac
   }
 }
 
-TEST_CASE("A rectangle that is rolled up and sewn along one side has the prism's membranes, and rests flat") {
+TEST_CASE(
+    "A rectangle that is rolled up and sewn along one side has the prism's sewn_membranes, and rests flat") {
   constexpr int n = 8;
   TriangleMesh prism = faceted(n, {{0.1, 0}, {0.1, 0.1}, {0.1, 0.2}});
   TriangleMesh rolled = prism;
@@ -100,7 +101,8 @@ TEST_CASE("A rectangle that is rolled up and sewn along one side has the prism's
   rolled.sewing = Sewing{};
   const std::vector<Level> space = three_levels(prism), sewn = three_levels(rolled);
   for (int l = 0; l < 3; ++l) {
-    for (const std::string& energy : membranes) CHECK(energy_difference(energy, space[l], sewn[l]) < 1e-12);
+    for (const std::string& energy : sewn_membranes)
+      CHECK(energy_difference(energy, space[l], sewn[l]) < 1e-12);
     for (Eigen::Index h = 0; h < sewn[l].hinges.rows(); ++h)
       CHECK(std::abs(DihedralAngle<double>(rest_vectors(sewn[l], h).data()).angle()) < 1e-15);
   }
@@ -114,7 +116,7 @@ TEST_CASE("A disc of two halves is the disc, wherever the halves lie and however
   place_piece(halves, left, degrees, mirrored, {0.7, -3});
   const std::vector<Level> space = three_levels(whole), sewn = three_levels(halves);
   for (int l = 0; l < 3; ++l)
-    for (const auto* energies : {&membranes, &bending})
+    for (const auto* energies : {&sewn_membranes, &bending})
       for (const std::string& energy : *energies) {
         INFO(energy << ", level " << l);
         CHECK(energy_difference(energy, space[l], sewn[l]) < 1e-12);
@@ -151,7 +153,7 @@ TEST_CASE("A cushion of two squares that share their texture coordinates is the 
   sewn.sewing->seam_angle = M_PI;
   const std::vector<Level> space = three_levels(cushion), pieces = three_levels(sewn);
   for (int l = 0; l < 3; ++l)
-    for (const auto* energies : {&membranes, &bending})
+    for (const auto* energies : {&sewn_membranes, &bending})
       for (const std::string& energy : *energies) {
         INFO(energy << ", level " << l);
         CHECK(energy_difference(energy, space[l], pieces[l]) < 1e-12);
@@ -191,7 +193,7 @@ TEST_CASE("The apex of a disc without a sector has the sector's angle as its def
     }
     CHECK(std::abs(2 * M_PI - around - removed) < 1e-12);
   }
-  for (const std::string& energy : membranes) CHECK(energy_difference(energy, space, sewn) < 1e-11);
+  for (const std::string& energy : sewn_membranes) CHECK(energy_difference(energy, space, sewn) < 1e-11);
   // With the cone's own angle at each of its edges it bends as the cone in space does.
   const int edge = static_cast<int>(
       std::ranges::find_if(space.hinge_edges, [&](int e) { return space.topology.edges(e, 0) == 0; }) -

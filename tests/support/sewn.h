@@ -24,7 +24,7 @@ inline double energy_difference(const std::string& energy, const drape::Level& o
   return std::max(std::abs(b->value(x) / a->value(x) - 1), (g - h).norm() / g.norm());
 }
 
-inline const std::vector<std::string> membranes = {
+inline const std::vector<std::string> sewn_membranes = {
     "stvk", "neo_hookean",
     "{type: formula, per: triangle, constants: {k: {value: 40, unit: N/m}}, density: \"k*(s1-1)^2\"}"};
 inline const std::vector<std::string> bending = {

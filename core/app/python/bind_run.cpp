@@ -13,7 +13,6 @@
 #include "core/kernel/files/file.h"
 #include "core/kernel/files/number_text.h"
 #include "core/numerics/mesh_files/io.h"
-#include "core/numerics/stability/stability_test.h"
 
 namespace drape::python {
 
@@ -235,6 +234,12 @@ void bind_run(py::module_& m) {
             return r.stability ? std::optional(r.stability->lowest_eigenvalue) : std::nullopt;
           },
           "Of M⁻¹H [1/s²].")
+      .def_property_readonly(
+          "curvature_ratio",
+          [](const MethodLevelResult& r) {
+            return r.stability ? std::optional(r.stability->curvature_ratio) : std::nullopt;
+          },
+          "The least vᵀHv / vᵀH⁺v [1].")
       .def_readonly("saddles_left", &MethodLevelResult::saddles_left,
                     "Unstable equilibria from which the level went on.")
       .def_readonly("smallest_gap", &MethodLevelResult::smallest_gap, "[m]; None without a contact model.")

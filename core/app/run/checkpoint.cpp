@@ -5,7 +5,6 @@
 
 #include "core/app/files/archive.h"
 #include "core/kernel/files/file.h"
-#include "core/numerics/stability/stability_test.h"
 
 namespace drape {
 

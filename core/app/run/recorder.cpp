@@ -12,7 +12,6 @@
 #include "core/kernel/threads/parallel.h"
 #include "core/kernel/threads/stopwatch.h"
 #include "core/kernel/version.h"
-#include "core/numerics/stability/stability_test.h"
 
 namespace drape {
 

@@ -7,6 +7,7 @@
 
 #include "core/app/scene/scene.h"
 #include "core/numerics/collision_detection/closest.h"
+#include "core/numerics/collision_detection/components.h"
 #include "core/numerics/collision_detection/intersections.h"
 #include "core/numerics/mesh/disjoint_sets.h"
 #include "core/numerics/mesh/mesh_faults.h"
@@ -71,7 +72,7 @@ void CrossedParts::add(const Level& level, const TriangleMesh& obstacle) {
   const int vertices = level.vertex_count();
   const bool closed =
       border_half_edges(obstacle.triangles, static_cast<int>(obstacle.vertices.rows())).empty();
-  const Positions one_of_each = start_(level.topology.components(), Eigen::all);
+  const Positions one_of_each = start_(components(level.topology), Eigen::all);
   const bool is_room = closed && is_inside(one_of_each, obstacle, true);
   const double facing = closed && !is_room && faces_inwards(obstacle) ? -1 : 1;
   std::vector<char> crosses(cloth.triangles.rows(), 0);

@@ -12,4 +12,10 @@ const char* to_string(Outcome outcome) {
   return index < names.size() ? names[index] : "";
 }
 
+const char* to_string(Stability::Verdict verdict) {
+  constexpr const char* names[] = {"stable", "marginal", "unstable"};
+  const auto index = static_cast<std::size_t>(verdict);
+  return index < std::size(names) ? names[index] : "";
+}
+
 }  // namespace drape

@@ -69,6 +69,8 @@ struct Stability {
   double extent = 0;             ///< share of the mass that this v moves (its participation ratio) [1]
   bool by_factorisation = true;  ///< of H; else by iterations with multigrid
 };
+/// Its name in results; empty for a number that is none.
+const char* to_string(Stability::Verdict verdict);
 
 /// Result of one level.
 struct LevelResult {

@@ -148,9 +148,9 @@ void read_faces(PlyBody& body, const PlyElement& element, PlyContent& content, c
     const std::size_t before = content.faces.size();
     add(body, corners, uv, content);
     for (std::size_t i = before; i < content.faces.size(); ++i) {
-        content.faces[i].warp = warp;
-        content.faces[i].piece = piece;
-      }
+      content.faces[i].warp = warp;
+      content.faces[i].piece = piece;
+    }
     uv.clear();
   });
 }

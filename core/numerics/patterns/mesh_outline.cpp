@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "core/kernel/interfaces/topology.h"
+#include "core/numerics/mesh/area_vectors.h"
 #include "core/numerics/mesh/disjoint_sets.h"
 #include "core/numerics/mesh/mesh_faults.h"
 #include "core/numerics/mesh/texture_coordinates.h"

@@ -44,8 +44,10 @@ class LoadStepper {
   bool advances_at_once() const {
     return loading() && !load_stepping_->equilibrates() && load_stepping_->complete();
   }
-  /// Whether increments are to be solved to equilibrium.
-  bool equilibrates() const { return load_stepping_ && load_stepping_->equilibrates(); }
+  /// Whether an equilibrium is that of a whole increment, which is to be solved to equilibrium.
+  bool ends_increment() const {
+    return load_stepping_ && load_stepping_->equilibrates() && load_stepping_->complete();
+  }
   /// Steps of the current increment so far.
   int steps() const { return iterate_.result().steps - s_.start.steps; }
   /// Pseudo-time of the current increment; none without a schedule.

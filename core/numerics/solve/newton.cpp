@@ -47,7 +47,9 @@ class Newton {
             run.hierarchy),
         dirichlet_(iterate_, step_, run.load_stepping != nullptr),
         load_(run.load_stepping, iterate_, dirichlet_, run.observer),
-        saddle_exit_(iterate_, step_.factor(), check_, parameters, [this] { report(0); }) {
+        saddle_exit_(
+            iterate_, step_.factor(), check_, parameters, [this] { report(0); },
+            [this] { return run_.observer.stop_requested(); }) {
     result_.x = std::move(x);
     result_.level = f_.model().level().index;
   }
@@ -65,6 +67,8 @@ class Newton {
       if (const std::optional<End> end = requested_end()) return finish(*end);
       if (const std::string failure = step_.solve(); !failure.empty()) {
         stuck_ = step_.factor().fault().empty() && (dirichlet_.active() || is_at_rounding_floor());
+        // Round-off may hide descent within the level's own tolerance.
+        stuck_ = stuck_ || (saddle_exit_.end_tightening() && check_.in_tolerance());
         if (!stuck_) return finish({Outcome::stalled, failure});
         step_.controller().abandon_step();
       }
@@ -139,11 +143,13 @@ class Newton {
       while (step_.factor().fault().empty() && dirichlet_.has_penalty() && check_.is_within(near_equilibrium))
         increase_penalty();
       if (!step_.factor().fault().empty()) return End{Outcome::stalled, step_.factor().fault()};
-      saddle_exit_.limit_steps();
+      if (at_floor || load_.steps() == p_.max_steps) saddle_exit_.end_tightening();
+      saddle_exit_.limit_tightening();
       const bool in_tolerance = !dirichlet_.active() && check_.in_tolerance();
       const bool at_equilibrium = in_tolerance || at_floor;
       if (at_equilibrium && !load_.loading() && switch_to_plain()) continue;
-      if (at_equilibrium && (!load_.loading() || load_.equilibrates()) && leave_saddle()) continue;
+      if (at_equilibrium && (!load_.loading() || load_.ends_increment()) && leave_saddle()) continue;
+      if (saddle_exit_.is_stopped()) return End{Outcome::cancelled, "stopped on request"};
       if (at_equilibrium && !load_.loading()) return end_at_equilibrium(in_tolerance);
       if (load_.loading() && !dirichlet_.active() && (at_equilibrium || load_.advances_at_once())) {
         advance_increment(at_equilibrium);
@@ -200,7 +206,6 @@ class Newton {
   bool leave_saddle() {
     if (dirichlet_.infeasible() || !saddle_exit_.leave(!load_.loading())) return false;
     start_over();
-    saddle_exit_.tighten();
     return true;
   }
 

@@ -1,8 +1,10 @@
 #include "core/numerics/stability/lowest_mode.h"
 
 #include <Eigen/Eigenvalues>
+#include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "core/numerics/linear_algebra/conjugate_gradients.h"
 
@@ -10,11 +12,11 @@ namespace drape {
 namespace {
 
 /// Vectors of the subspace at most, and those that are kept when it is cut.
-constexpr int most_vectors = 16, kept_vectors = 8;
-/// A direction of which orthogonalisation leaves less than this is in the subspace already.
+constexpr int most_vectors = 12, kept_vectors = 8;
+/// A direction is in the subspace already if orthogonalisation leaves less of it.
 constexpr double negligible_direction = 1e-10;
 constexpr int settled_iterations = 2;
-/// Relative residual of a Ritz vector that counts as a mode: the next one is looked for.
+/// A Ritz vector with a smaller relative residual is a mode: the next one is looked for.
 constexpr double mode_residual = 1e-6;
 
 /// A subspace with a B-orthonormal basis, and the products of its vectors.
@@ -45,82 +47,98 @@ class Subspace {
     v_.push_back(std::move(w));
     av_.push_back(std::move(aw));
     bv_.push_back(std::move(bw));
+    decompose();
     return true;
   }
 
-  /// Changes to a basis of Ritz vectors, lowest first, and cuts a large subspace.
-  void rotate() {
-    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(projected_);
-    const bool cut = static_cast<int>(v_.size()) >= most_vectors;
-    const Eigen::Index count = cut ? kept_vectors : projected_.rows();
-    const Eigen::MatrixXd rotation = eigen.eigenvectors().leftCols(count);
-    for (auto* basis : {&v_, &av_, &bv_}) *basis = combined(*basis, rotation);
-    projected_ = eigen.eigenvalues().head(count).asDiagonal();
+  /// Replaces a large basis by the lowest Ritz vectors.
+  void cut_if_large() {
+    if (static_cast<int>(v_.size()) < most_vectors) return;
+    for (auto* basis : {&v_, &av_, &bv_}) {
+      std::vector<Positions> kept;
+      for (int k = 0; k < kept_vectors; ++k) kept.push_back(combined(*basis, k));
+      *basis = std::move(kept);
+    }
+    projected_ = values_.head(kept_vectors).asDiagonal();
+    decompose();
   }
 
-  /// Ritz values and vectors, after rotate().
-  double value(std::size_t k) const {
-    return projected_(static_cast<Eigen::Index>(k), static_cast<Eigen::Index>(k));
-  }
-  const Positions& vector(std::size_t k) const { return v_[k]; }
-  /// The first Ritz vector that is no mode yet, the last if all are. Where modes of value 0 move the body as
-  /// a whole, the one that is looked for comes after them. Overwrites r with its A v − value B v.
-  std::size_t first_unconverged(Positions& r) const {
-    std::size_t k = 0;
-    for (;; ++k) {
-      r = av_[k] - value(k) * bv_[k];
-      const double size = std::sqrt(inner_product(av_[k], av_[k])) +
-                          std::abs(value(k)) * std::sqrt(inner_product(bv_[k], bv_[k]));
-      if (k + 1 == v_.size() || k + 1 == kept_vectors ||
-          std::sqrt(inner_product(r, r)) > mode_residual * size)
-        return k;
+  /// Ritz values, ascending, and their vectors.
+  double value(Eigen::Index k) const { return values_[k]; }
+  Positions vector(Eigen::Index k) const { return combined(v_, k); }
+  /// The first Ritz vector from this one on that is not a mode yet, the last if all are: the mode that is
+  /// looked for comes after those of value 0, which move the body as a whole. Overwrites r with its A v −
+  /// value B v.
+  Eigen::Index first_unconverged(Eigen::Index from, Positions& r) const {
+    const Eigen::Index last = std::min<Eigen::Index>(values_.size(), kept_vectors) - 1;
+    for (Eigen::Index k = std::min(from, last);; ++k) {
+      r = combined(av_, k);
+      const Positions bv = value(k) * combined(bv_, k);
+      const double size = std::sqrt(inner_product(r, r)) + std::sqrt(inner_product(bv, bv));
+      r -= bv;
+      if (k == last || std::sqrt(inner_product(r, r)) > mode_residual * size) return k;
     }
   }
 
  private:
-  static std::vector<Positions> combined(const std::vector<Positions>& basis,
-                                         const Eigen::MatrixXd& rotation) {
-    std::vector<Positions> result;
-    for (Eigen::Index j = 0; j < rotation.cols(); ++j) {
-      Positions sum = rotation(0, j) * basis[0];
-      for (std::size_t k = 1; k < basis.size(); ++k)
-        sum += rotation(static_cast<Eigen::Index>(k), j) * basis[k];
-      result.push_back(std::move(sum));
-    }
-    return result;
+  Positions combined(const std::vector<Positions>& basis, Eigen::Index k) const {
+    Positions sum = rotation_(0, k) * basis[0];
+    for (std::size_t j = 1; j < basis.size(); ++j)
+      sum += rotation_(static_cast<Eigen::Index>(j), k) * basis[j];
+    return sum;
+  }
+  void decompose() {
+    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(projected_);
+    values_ = eigen.eigenvalues();
+    rotation_ = eigen.eigenvectors();
   }
 
   const LinearOperator &a_, &b_;
   std::vector<Positions> v_, av_, bv_;
-  Eigen::MatrixXd projected_;  // vᵀAv
+  Eigen::MatrixXd projected_, rotation_;  // vᵀAv, and its eigenvectors
+  Eigen::VectorXd values_;
 };
 
 }  // namespace
 
 LowestMode lowest_mode(const LinearOperator& a, const LinearOperator& b, const LinearOperator& precondition,
-                       Positions start, const ModeAccuracy& accuracy) {
+                       const std::vector<Positions>& starts, const ModeAccuracy& accuracy) {
   LowestMode mode;
   Subspace subspace(a, b);
-  if (!subspace.add(std::move(start))) return mode;
+  bool has_any = false;
+  for (const Positions& start : starts) has_any |= subspace.add(start);
+  if (!has_any) return mode;
   int settled = 0;
-  double lowest = std::numeric_limits<double>::infinity(), sought = lowest;
+  Eigen::Index from = 0;  // Ritz vectors before it have settled
+  constexpr double unknown = std::numeric_limits<double>::infinity();
+  double lowest = unknown, sought = unknown;
   const auto has_settled = [&](double value, double before) {
     return std::abs(value - before) <=
            std::max(accuracy.relative_change * std::abs(value), accuracy.negligible);
   };
   Positions r, w;
-  for (int k = 0; k < accuracy.max_iterations && settled < settled_iterations; ++k) {
-    const std::size_t next = subspace.first_unconverged(r);
+  for (int k = 0; k < accuracy.max_iterations; ++k) {
+    const Eigen::Index next = subspace.first_unconverged(from, r);
     const double value = subspace.value(0), next_value = subspace.value(next);
-    settled = has_settled(value, lowest) && has_settled(next_value, sought) ? settled + 1 : 0;
+    precondition(r, w);
+    const double residual = std::sqrt(std::max(inner_product(r, w), 0.0));
+    // The error of a Ritz value is about the square of its residual.
+    const bool is_small =
+        residual <= std::max(accuracy.residual * std::abs(next_value), std::sqrt(accuracy.negligible));
+    settled = is_small && has_settled(value, lowest) && has_settled(next_value, sought) ? settled + 1 : 0;
     lowest = value;
     sought = next_value;
-    precondition(r, w);
-    if (!subspace.add(std::move(w))) settled = settled_iterations;
-    subspace.rotate();
+    if (settled == settled_iterations) {
+      mode.converged = value < accuracy.below && from + 1 >= accuracy.modes;
+      if (mode.converged || from + 1 == kept_vectors) break;
+      ++from;
+      settled = 0;
+      sought = unknown;
+    }
+    if (!subspace.add(std::move(w))) break;
+    subspace.cut_if_large();
   }
   mode.value = subspace.value(0);
-  mode.converged = settled == settled_iterations;
   mode.vector = subspace.vector(0);
   return mode;
 }

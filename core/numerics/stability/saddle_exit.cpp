@@ -72,7 +72,8 @@ bool SaddleExit::leave(bool at_end) {
   if (p_.stability == StabilityMode::off || !iterate_.objective().has_exact_hessian()) return false;
   const OwnPhase phase(iterate_);
   const std::optional<StabilityTest> test = test_stability(iterate_, factor_, !at_end);
-  result.stability = test ? std::optional(test->stability) : std::nullopt;
+  result.stability.reset();
+  if (test && (at_end || test->stability.verdict != Stability::stable)) result.stability = test->stability;
   if (!at_saddle() || s_.exits == most_exits) return false;
   // Both ways are equally good for a symmetric saddle. Forces decide if they are clear, else the largest
   // entry.
@@ -85,13 +86,15 @@ bool SaddleExit::leave(bool at_end) {
   const Positions origin = iterate_.x();
   const bool falls = walk(test->mode, sign) || walk(test->mode, -sign);
   if (!falls) result.stability->verdict = Stability::marginal;
-  if (!falls || p_.stability == StabilityMode::report) {
+  if (!falls || p_.stability == StabilityMode::report || stopped_) {
     return_to(origin);
     return false;
   }
   ++s_.exits;
   ++result.saddles_left;
-  s_.steps = result.steps;
+  result.stability.reset();
+  s_.tightened_at = result.steps;
+  check_.tighten(std::clamp(p_.force_tolerance / tight_tolerance, 1.0, most_strictness));
   return true;
 }
 
@@ -101,6 +104,8 @@ bool SaddleExit::walk(const Positions& mode, double sign) {
   Positions lowest = origin;
   double lowest_energy = begun_at, amplitude = 0;
   for (double a = first_amplitude; a <= last_amplitude; a *= stride_growth) {
+    stopped_ = stopped_ || stop_();
+    if (stopped_) break;
     const Positions stride = lowest + sign * (a - amplitude) * iterate_.rest_diagonal() * mode;
     const double feasible = iterate_.max_step(stride).fraction;
     iterate_.move_to(lowest + feasible * (stride - lowest));
@@ -158,14 +163,19 @@ void SaddleExit::relax_across(const Positions& mode) {
   }
 }
 
-void SaddleExit::tighten() {
-  check_.tighten(std::clamp(p_.force_tolerance / tight_tolerance, 1.0, most_strictness));
+bool SaddleExit::end_tightening() {
+  check_.tighten(1);
+  return std::exchange(s_.tightened_at, std::nullopt).has_value();
 }
 
-void SaddleExit::limit_steps() {
-  if (s_.steps < 0 || iterate_.result().steps - s_.steps < most_tight_steps) return;
-  s_.steps = -1;
-  check_.tighten(1);
+void SaddleExit::limit_tightening() {
+  if (s_.tightened_at && iterate_.result().steps - *s_.tightened_at >= most_tight_steps) end_tightening();
+}
+
+void SaddleExit::restart() {
+  end_tightening();
+  s_.exits = 0;
+  iterate_.result().stability.reset();
 }
 
 }  // namespace drape

@@ -1,7 +1,9 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <string>
+#include <utility>
 
 #include "core/numerics/stability/stability_test.h"
 #include "core/numerics/step/equilibrium_check.h"
@@ -18,30 +20,39 @@ namespace drape {
 class SaddleExit {
  public:
   struct State {
-    int exits = 0;   ///< of the current increment
-    int steps = -1;  ///< of the level at the last of them, while the tolerance is tightened; else −1
+    int exits = 0;  ///< of the current increment
+    std::optional<int>
+        tightened_at;  ///< steps of the level at the last exit, while the tolerance is tightened
   };
   const State& state() const { return s_; }
   void restore(const State& state) { s_ = state; }
 
-  /// Refers to all arguments. Calls `report` after each stride, an iteration.
+  /// Refers to all arguments. Calls `report` after each stride, an iteration, and asks before each stride
+  /// whether to `stop`.
   SaddleExit(Iterate& iterate, FactorCache& factor, EquilibriumCheck& check,
-             const NewtonParameters& parameters, std::function<void()> report)
-      : iterate_(iterate), factor_(factor), check_(check), p_(parameters), report_(std::move(report)) {}
+             const NewtonParameters& parameters, std::function<void()> report, std::function<bool()> stop)
+      : iterate_(iterate),
+        factor_(factor),
+        check_(check),
+        p_(parameters),
+        report_(std::move(report)),
+        stop_(std::move(stop)) {}
 
   /// Tests the iterate, an equilibrium of an increment or at the end of the level, and stores the result. A
   /// saddle from which no walk lowers the objective by more than round-off counts as marginal. Returns
-  /// whether the cloth has left one: then the check is to be restarted and tightened.
+  /// whether the cloth has left one; the tolerance is then tightened.
   bool leave(bool at_end);
-  /// Tightens the tolerance after an exit, to be called once the check has been restarted.
-  void tighten();
-  /// Gives the tightened tolerance up if it takes too many steps: contact with friction may not reach it.
-  void limit_steps();
+  /// Whether a walk was stopped.
+  bool is_stopped() const { return stopped_; }
+  /// Returns to the level's own tolerance. Returns whether it was tightened.
+  bool end_tightening();
+  /// Ends it after many steps: contact with friction may not reach the tightened one.
+  void limit_tightening();
   /// Begins another increment.
-  void restart() { s_ = {}; }
+  void restart();
   /// Whether the last equilibrium that was tested is unstable.
   bool at_saddle() const;
-  /// What is wrong with it.
+  /// A message on it.
   std::string text() const;
 
  private:
@@ -55,6 +66,8 @@ class SaddleExit {
   EquilibriumCheck& check_;
   const NewtonParameters& p_;
   const std::function<void()> report_;
+  const std::function<bool()> stop_;
+  bool stopped_ = false;
   LineSearch line_search_;
   State s_;
 };

@@ -8,9 +8,6 @@
 
 namespace drape {
 
-/// The verdict's name in results; empty for a number that is none.
-const char* to_string(Stability::Verdict verdict);
-
 /// An equilibrium's stability, and its least stable motion.
 struct StabilityTest {
   Stability stability;
@@ -23,8 +20,8 @@ struct StabilityTest {
 /// Where levels are factorised, a factorisation of H decides; elsewhere iterations that multigrid
 /// preconditions. Negative eigenvalues that the forces left out of balance can feign, such as those of a
 /// cloth that is free to slide or to turn, count as neutral. None if H cannot be judged, as it has entries
-/// that are not finite. With `verdict_only` a stable equilibrium has neither numbers nor a mode, which takes
-/// a third of the time.
+/// that are not finite, or if iterations run out. With `verdict_only` a stable equilibrium has neither
+/// numbers nor a mode, which takes a third of the time.
 std::optional<StabilityTest> test_stability(Iterate& iterate, FactorCache& factor, bool verdict_only);
 
 }  // namespace drape

@@ -25,7 +25,7 @@ class EquilibriumCheck {
     CycleDetector cycle = {};
     double lowest_residual = unknown;  ///< the lowest force residual at the end of a step [1]
     int steps_since_lowest = 0;        ///< how many steps ago that was
-    double strictness = 1;             ///< what the force tolerance is divided by
+    double strictness = 1;             ///< the force tolerance is divided by it
   };
   const State& state() const { return s_; }
   void restore(const State& state) { s_ = state; }
@@ -56,7 +56,7 @@ class EquilibriumCheck {
 
   /// The force tolerance [1].
   double force_tolerance() const { return p_.force_tolerance / s_.strictness; }
-  /// Divides the force tolerance, until restart().
+  /// Divides the force tolerance by this; 1 ends it.
   void tighten(double strictness) { s_.strictness = strictness; }
 
   /// Notes the decrement of an iteration, before the iteration is counted.
@@ -64,7 +64,7 @@ class EquilibriumCheck {
   /// Notes the end of a step with this `inertia` [J].
   void note_step(double inertia);
   /// For another objective: restarts the count of idle steps, and forgets cycles, residuals and decrements.
-  void restart() { s_ = {.initial_centroid = s_.initial_centroid}; }
+  void restart() { s_ = {.initial_centroid = s_.initial_centroid, .strictness = s_.strictness}; }
   /// Measures the drift from here on.
   void restart_drift() { s_.initial_centroid = iterate_.free_centroid(); }
 

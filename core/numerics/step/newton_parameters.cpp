@@ -73,7 +73,7 @@ void NewtonParameters::declare(Declaration<NewtonParameters>& d) {
        {{"leave", StabilityMode::leave}, {"report", StabilityMode::report}, {"off", StabilityMode::off}},
        "what becomes of an equilibrium, of a level or of an increment with `equilibrate`, that is a "
        "saddle. leave: the cloth moves along its least stable motion while the energy falls, and is "
-       "solved again. report: the level ends as `saddle`, as it does if ten exits do not suffice. off: "
+       "solved again; after ten exits a level ends as `saddle`. report: it does so at its first saddle. off: "
        "no equilibrium is tested")
       .source("docs/theory/method.md section 2");
 }

@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "core/app/experiment/cloth.h"
+#include "core/numerics/collision_detection/components.h"
 #include "core/numerics/mesh/mesh_faults.h"
 #include "core/numerics/mesh_files/io.h"
 #include "tests/support/meshes.h"
@@ -98,7 +99,7 @@ TEST_CASE("parts and holes stay, each part meshed with the same edges, and direc
   CHECK(mesh.vertices.rows() == Approx(400).epsilon(0.15));
   CHECK(area_of(mesh) == Approx(0.08 + 0.02).epsilon(1e-12));
   const Topology topology = Topology::of(mesh.triangles, static_cast<int>(mesh.vertices.rows()));
-  CHECK(topology.components().size() == 2);
+  CHECK(components(topology).size() == 2);
   CHECK(mesh.vertices.rows() - topology.edges.rows() + mesh.triangles.rows() == 1);  // 2 parts, a hole
   Eigen::Index left = 0;
   for (Eigen::Index t = 0; t < mesh.triangles.rows(); ++t) {
