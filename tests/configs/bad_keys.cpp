@@ -75,7 +75,7 @@ TEST_CASE("all errors of a config are listed in file order, those of --set last"
         "not \"sqare\"; did you mean \"square\"?\n"
         "error: e.yaml:3:9: \"levels\" must be an integer, not 2.5\n"
         "error: e.yaml:4:16: \"scale\" must be a list of 3 numbers, not of 2\n"
-        "error: e.yaml:7:14: \"region\" must be \"nearest\", \"ball\", \"box\", \"border\" or \"vertices\", "
+        "error: e.yaml:7:14: \"region\" must be \"nearest\", \"ball\", \"box\", \"border\", \"vertices\", \"piece\" or \"seam\", "
         "not \"nearst\"; did you mean \"nearest\"?\n"
         "error: e.yaml:12:28: \"prolongation\" must be \"midpoint\" or \"refiner\", not \"linear\"\n"
         "error: --set newton.max_steps: \"max_steps\" must be an integer, not \"few\"\n");

@@ -30,11 +30,12 @@ const std::string held = R"({name: held, cloth: {shape: square, side: 1, columns
  contact: [shapes], obstacles: [{shape: sphere, radius: 0.2, translate: [0.45, 0.55, -0.24]}],
  methods: {pcs: {}, cascadic: {}, newton: {}}, reference: newton})";
 
-/// What depends on the clock, on bits, or on where potentials have their origin. No page shows the last
-/// (viewer/run.js).
+/// What depends on the clock, on bits, or on where potentials have their origin, which no page shows
+/// (viewer/run.js); and the extent of modes, which mix with others of nearly the same value.
 const std::set<std::string> excepted = {"seconds", "preview_seconds", "seconds_by_phase", "peak_memory_bytes",
                                         "time",    "mesh_checksum",   "checksum",         "fields_checksum",
-                                        "energy",  "energy_parts",    "energy_on_finest", "machine"};
+                                        "energy",  "energy_parts",    "energy_on_finest", "machine",
+                                        "extent"};
 
 /// Compares every number. Silhouettes are counted in pixels along axes that are fixed in space.
 void check_same(const nlohmann::json& a, const nlohmann::json& b, const std::string& path) {
@@ -48,7 +49,9 @@ void check_same(const nlohmann::json& a, const nlohmann::json& b, const std::str
     }
   } else if (a.is_number()) {
     const double margin = path.find("silhouette") == std::string::npos ? 1e-7 : 0.02;
-    CHECK(a.get<double>() == Approx(b.get<double>()).epsilon(1e-5).margin(margin));
+    // Modes are found to about a per cent.
+    const double epsilon = path.find("stability") == std::string::npos ? 1e-5 : 0.02;
+    CHECK(a.get<double>() == Approx(b.get<double>()).epsilon(epsilon).margin(margin));
   } else {
     CHECK(a == b);
   }

