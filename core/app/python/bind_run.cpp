@@ -160,7 +160,9 @@ void bind_results(py::module_& m) {
       "_draw",
       [](const fs::path& folder, const fs::path& file, const std::string& method, std::optional<int> level,
          bool outline, std::optional<int> width) {
-        export_run(folder, file, {method, level, false, {width, std::nullopt, outline}, true});
+        export_run(
+            folder, file,
+            {.method = method, .level = level, .picture = {width, std::nullopt, outline}, .overwrite = true});
       },
       py::arg("folder"), py::arg("file"), py::arg("method"), py::arg("level") = std::nullopt,
       py::arg("outline") = false, py::arg("width") = std::nullopt, "As `drape export` of a .png.");
@@ -174,8 +176,8 @@ void bind_results(py::module_& m) {
   m.def("_refuse_target", &refuse_target, py::arg("file"), py::arg("overwrite"));
   m.def(
       "_write_file",
-      [](const fs::path& file, const std::string& bytes, bool overwrite) {
-        write_file(file, bytes, overwrite ? Existing::replaced : Existing::kept);
+      [](const fs::path& file, const py::bytes& bytes, bool overwrite) {
+        write_file(file, std::string_view(bytes), overwrite ? Existing::replaced : Existing::kept);
       },
       py::arg("file"), py::arg("bytes"), py::arg("overwrite"));
   m.def("_solver_style", &solver_style, py::arg("solver"),
