@@ -1,4 +1,5 @@
-// A mesh file of any format; the first byte chooses which: P for PLY, S for STL, o for OBJ, O for OFF.
+// A mesh file of any format; the first byte chooses which: P for PLY, S for STL, o for OBJ, O for OFF;
+// its highest bit reads the surface alone.
 
 #include <cstdint>
 #include <stdexcept>
@@ -11,11 +12,12 @@ namespace {
 
 using namespace drape;
 
-TriangleMesh read(char format, std::string_view bytes) {
-  if (format == 'o') return read_obj("fuzz.obj", bytes);
-  if (format == 'O') return read_off("fuzz.off", bytes);
+TriangleMesh read(char format, std::string_view bytes, MeshUse use) {
+  int lines = 0;
+  if (format == 'o') return read_obj("fuzz.obj", bytes, use, lines);
+  if (format == 'O') return read_off("fuzz.off", bytes, use);
   if (format == 'S') return read_stl("fuzz.stl", bytes);
-  return read_ply("fuzz.ply", bytes);
+  return read_ply("fuzz.ply", bytes, use, lines);
 }
 
 }  // namespace
@@ -24,13 +26,15 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   if (size == 0) return 0;
   const std::string_view bytes(reinterpret_cast<const char*>(data) + 1, size - 1);
   try {
-    const TriangleMesh mesh = read(static_cast<char>(data[0]), bytes);
+    const MeshUse use = data[0] & 0x80 ? MeshUse::surface : MeshUse::cloth;
+    const TriangleMesh mesh = read(static_cast<char>(data[0] & 0x7f), bytes, use);
     require(mesh.triangles.size() == 0 ||
                 (mesh.triangles.minCoeff() >= 0 && mesh.triangles.maxCoeff() < mesh.vertices.rows()),
             "a triangle names a vertex that is not there");
     require(mesh.vertices.allFinite(), "a coordinate is not finite");
     if (!check_mesh(mesh).empty()) return 0;
-    const TriangleMesh again = read_obj("again.obj", obj_text(mesh));
+    int lines = 0;
+    const TriangleMesh again = read_obj("again.obj", obj_text(mesh), use, lines);
     require(again.vertices == mesh.vertices && again.triangles == mesh.triangles,
             "written and read is not the same");
   } catch (const std::runtime_error& error) {
