@@ -63,7 +63,7 @@ struct IterationRow {
 
 /// Whether an equilibrium is a minimum, by its unprojected Hessian H (docs/theory/method.md, section 2).
 struct Stability {
-  enum Verdict { stable, marginal, unstable } verdict = stable;
+  enum Verdict : int { stable, marginal, unstable } verdict = stable;
   double lowest_eigenvalue = 0;  ///< of M⁻¹H [1/s²]
   double curvature_ratio = 0;    ///< the least vᵀHv / vᵀH⁺v, H⁺ the projected Hessian [1]
   double extent = 0;             ///< share of the mass that this v moves (its participation ratio) [1]
