@@ -79,7 +79,8 @@ TEST_CASE("24 runs give the same results with one worker and with two, and are n
   CHECK(
       (last["run"] == runs[23]["name"] && last["refiner"] == "midpoint" && last["newton.step_growth"] == 3));
   CHECK((last["levels"].dump() == "2" && last["seed"].dump() == "3"));  // whole numbers
-  const std::string columns = "sweep,run,refiner,levels,newton.step_growth,seed,method,pass,status,stability,";
+  const std::string columns =
+      "sweep,run,refiner,levels,newton.step_growth,seed,method,pass,status,stability,";
   CHECK_THAT(table(" --format csv"), Catch::StartsWith(columns));
   const std::string page = table("");
   CHECK_THAT(page.substr(0, page.find('\n')), !Contains("error_rms"));  // of CSV and JSON, or if asked for
