@@ -60,14 +60,16 @@ def test_a_solver_reports_finite_states_of_levels_that_exist(small):
             problem.end(numpy.nan * problem.start(0))
         with pytest.raises(IndexError):
             problem.model(9)
-        problem.end(problem.start(0), "stalled")
+        with pytest.raises(ValueError, match="saddle, max_steps_reached"):
+            problem.end(problem.start(0), "lost")
+        problem.end(problem.start(0), "saddle")
         with pytest.raises(IndexError):
             problem.begin(9)
         problem.begin(1)  # the level that does not exist has not begun
         problem.end(problem.start(1), "infeasible", "not tried")
 
     levels = run(solved_by(small, solve))["own_solver"].levels
-    assert [(level.status, level.message) for level in levels] == [("stalled", ""), ("infeasible", "not tried")]
+    assert [(level.status, level.message) for level in levels] == [("saddle", ""), ("infeasible", "not tried")]
 
 
 @pytest.mark.parametrize("solve, error", [

@@ -17,12 +17,12 @@ namespace drape::python {
 namespace {
 
 Outcome outcome_of(const std::string& status) {
-  for (const Outcome outcome : {Outcome::converged, Outcome::max_steps_reached, Outcome::stalled,
-                                Outcome::cancelled, Outcome::infeasible})
+  for (const Outcome outcome : {Outcome::converged, Outcome::saddle, Outcome::max_steps_reached,
+                                Outcome::stalled, Outcome::cancelled, Outcome::infeasible})
     if (status == to_string(outcome)) return outcome;
   throw py::value_error(
-      "status must be converged, max_steps_reached, stalled, cancelled or infeasible, not \"" + status +
-      "\"");
+      "status must be converged, saddle, max_steps_reached, stalled, cancelled or infeasible, not \"" +
+      status + "\"");
 }
 
 /// What a solver in Python works on, and how it reports. Usable until its solve ends; then every call raises
@@ -186,10 +186,9 @@ void bind_prototype_problem(py::module_& m) {
            py::arg("force_residual") = py::none(), py::arg("step_length") = 1.0,
            "Report an iteration's state. Returns False after a request to stop: end the level as cancelled. "
            "Energy and residual are those of the plain model at x if they are not given.")
-      .def(
-          "end", &SolverProblem::end, py::arg("x"), py::arg("status") = "converged", py::arg("message") = "",
-          "End the level: converged, max_steps_reached, stalled, cancelled or infeasible. Its force residual "
-          "is that of the last iteration; of another x, that of the plain model.");
+      .def("end", &SolverProblem::end, py::arg("x"), py::arg("status") = "converged", py::arg("message") = "",
+           "End the level: converged, saddle, max_steps_reached, stalled, cancelled or infeasible. Its force "
+           "residual is that of the last iteration; of another x, that of the plain model.");
 }
 
 }  // namespace drape::python
