@@ -19,34 +19,33 @@ constexpr int settled_iterations = 2;
 /// A Ritz vector with a smaller relative residual is a mode: the next one is looked for.
 constexpr double mode_residual = 1e-6;
 
-/// A subspace with a B-orthonormal basis, and the products of its vectors.
+/// A subspace with a B-orthonormal basis. Products of its vectors are not stored: they would take twice the
+/// memory of the basis.
 class Subspace {
  public:
   Subspace(const LinearOperator& a, const LinearOperator& b) : a_(a), b_(b) {}
 
   /// Adds the part of w that is B-orthogonal to the subspace. Returns false if hardly any of it is.
   bool add(Positions w) {
-    Positions bw;
-    b_(w, bw);
-    const double whole = std::sqrt(inner_product(w, bw));
+    Positions product;
+    b_(w, product);
+    const double whole = std::sqrt(inner_product(w, product));
     if (!(whole > 0) || !std::isfinite(whole)) return false;
     w /= whole;
-    for (int pass = 0; pass < 2; ++pass)  // the second removes what round-off leaves
-      for (std::size_t k = 0; k < v_.size(); ++k) w -= inner_product(w, bv_[k]) * v_[k];
-    b_(w, bw);
-    const double norm = std::sqrt(inner_product(w, bw));
+    product /= whole;
+    for (int pass = 0; pass < 2; ++pass) {  // the second removes what round-off leaves
+      for (const Positions& v : v_) w -= inner_product(v, product) * v;
+      b_(w, product);
+    }
+    const double norm = std::sqrt(inner_product(w, product));
     if (!(norm > negligible_direction)) return false;
     w /= norm;
-    bw /= norm;
-    Positions aw;
-    a_(w, aw);
+    a_(w, product);
     const auto n = static_cast<Eigen::Index>(v_.size());
     projected_.conservativeResize(n + 1, n + 1);
-    for (Eigen::Index k = 0; k < n; ++k) projected_(k, n) = projected_(n, k) = inner_product(v_[k], aw);
-    projected_(n, n) = inner_product(w, aw);
+    for (Eigen::Index k = 0; k < n; ++k) projected_(k, n) = projected_(n, k) = inner_product(v_[k], product);
+    projected_(n, n) = inner_product(w, product);
     v_.push_back(std::move(w));
-    av_.push_back(std::move(aw));
-    bv_.push_back(std::move(bw));
     decompose();
     return true;
   }
@@ -54,26 +53,31 @@ class Subspace {
   /// Replaces a large basis by the lowest Ritz vectors.
   void cut_if_large() {
     if (static_cast<int>(v_.size()) < most_vectors) return;
-    for (auto* basis : {&v_, &av_, &bv_}) {
-      std::vector<Positions> kept;
-      for (int k = 0; k < kept_vectors; ++k) kept.push_back(combined(*basis, k));
-      *basis = std::move(kept);
-    }
+    std::vector<Positions> kept;
+    for (int k = 0; k < kept_vectors; ++k) kept.push_back(vector(k));
+    v_ = std::move(kept);
     projected_ = values_.head(kept_vectors).asDiagonal();
     decompose();
   }
 
   /// Ritz values, ascending, and their vectors.
   double value(Eigen::Index k) const { return values_[k]; }
-  Positions vector(Eigen::Index k) const { return combined(v_, k); }
+  Positions vector(Eigen::Index k) const {
+    Positions sum = rotation_(0, k) * v_[0];
+    for (std::size_t j = 1; j < v_.size(); ++j) sum += rotation_(static_cast<Eigen::Index>(j), k) * v_[j];
+    return sum;
+  }
   /// The first Ritz vector from this one on that is not a mode yet, the last if all are: the mode that is
   /// looked for comes after those of value 0, which move the body as a whole. Overwrites r with its A v −
   /// value B v.
   Eigen::Index first_unconverged(Eigen::Index from, Positions& r) const {
     const Eigen::Index last = std::min<Eigen::Index>(values_.size(), kept_vectors) - 1;
+    Positions bv;
     for (Eigen::Index k = std::min(from, last);; ++k) {
-      r = combined(av_, k);
-      const Positions bv = value(k) * combined(bv_, k);
+      const Positions v = vector(k);
+      a_(v, r);
+      b_(v, bv);
+      bv *= value(k);
       const double size = std::sqrt(inner_product(r, r)) + std::sqrt(inner_product(bv, bv));
       r -= bv;
       if (k == last || std::sqrt(inner_product(r, r)) > mode_residual * size) return k;
@@ -81,12 +85,6 @@ class Subspace {
   }
 
  private:
-  Positions combined(const std::vector<Positions>& basis, Eigen::Index k) const {
-    Positions sum = rotation_(0, k) * basis[0];
-    for (std::size_t j = 1; j < basis.size(); ++j)
-      sum += rotation_(static_cast<Eigen::Index>(j), k) * basis[j];
-    return sum;
-  }
   void decompose() {
     const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(projected_);
     values_ = eigen.eigenvalues();
@@ -94,7 +92,7 @@ class Subspace {
   }
 
   const LinearOperator &a_, &b_;
-  std::vector<Positions> v_, av_, bv_;
+  std::vector<Positions> v_;
   Eigen::MatrixXd projected_, rotation_;  // vᵀAv, and its eigenvectors
   Eigen::VectorXd values_;
 };
