@@ -2,26 +2,22 @@
 
 #include <cmath>
 
-#include "core/kernel/threads/parallel.h"
-
 namespace drape {
-namespace {
 
-constexpr int grain = 8192;  // vertices
-
-/// Calls body(i) for each vertex.
-template <class Body>
-void for_each_vertex(const Positions& x, const Body& body) {
-  parallel_for(static_cast<int>(x.rows()), grain, [&](int begin, int end) {
-    for (int i = begin; i < end; ++i) body(i);
+double inner_product(const Positions& a, const Positions& b) {
+  return parallel_sum(static_cast<int>(a.rows()), 8192, [&](int begin, int end) {
+    return a.middleRows(begin, end - begin).cwiseProduct(b.middleRows(begin, end - begin)).sum();
   });
 }
 
-}  // namespace
-
-double inner_product(const Positions& a, const Positions& b) {
-  return parallel_sum(static_cast<int>(a.rows()), grain, [&](int begin, int end) {
-    return a.middleRows(begin, end - begin).cwiseProduct(b.middleRows(begin, end - begin)).sum();
+void multiply_free(const BlockMatrix& matrix, const Eigen::VectorXd& shift, const std::vector<char>& fixed,
+                   const Positions& x, Positions& y) {
+  matrix.multiply(x, y);
+  for_each_vertex(y, [&](int i) {
+    if (fixed[i])
+      y.row(i).setZero();
+    else if (shift.size() > 0)
+      y.row(i) += shift[i] * x.row(i);
   });
 }
 
@@ -49,13 +45,7 @@ ConjugateGradients::End ConjugateGradients::solve(const BlockMatrix& matrix, con
     else
       for_each_vertex(p_, [&, beta = next / rz](int i) { p_.row(i) = z_.row(i) + beta * p_.row(i); });
     rz = next;
-    matrix.multiply(p_, ap_);
-    for_each_vertex(p_, [&](int i) {
-      if (fixed[i])
-        ap_.row(i).setZero();
-      else
-        ap_.row(i) += shift[i] * p_.row(i);
-    });
+    multiply_free(matrix, shift, fixed, p_, ap_);
     const double curvature = inner_product(p_, ap_);
     if (!(curvature > 0)) return std::isnan(curvature) ? End::not_converged : End::not_definite;
     const double alpha = rz / curvature;

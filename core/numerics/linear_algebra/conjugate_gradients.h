@@ -5,12 +5,26 @@
 #include <vector>
 
 #include "core/kernel/interfaces/triangle_mesh.h"
+#include "core/kernel/threads/parallel.h"
 #include "core/numerics/linear_algebra/block_matrix.h"
 
 namespace drape {
 
 /// Σ a_i · b_i of n×3 a and b, with the same bits on any number of threads.
 double inner_product(const Positions& a, const Positions& b);
+
+/// Calls body(i) for each row i of x (n×3), in parallel.
+template <class Body>
+void for_each_vertex(const Positions& x, const Body& body) {
+  parallel_for(static_cast<int>(x.rows()), 8192, [&](int begin, int end) {
+    for (int i = begin; i < end; ++i) body(i);
+  });
+}
+
+/// Overwrites y (n×3) with (A + diag(shift_i I₃)) x (n×3), without a shift if that is empty, and with zero on
+/// `fixed` vertices (one flag a vertex).
+void multiply_free(const BlockMatrix& matrix, const Eigen::VectorXd& shift, const std::vector<char>& fixed,
+                   const Positions& x, Positions& y);
 
 /// Preconditioned conjugate gradients in double precision (Hestenes and Stiefel 1952). Keeps its work space
 /// between solves. Gives the same bits with any number of threads.

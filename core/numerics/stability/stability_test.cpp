@@ -5,7 +5,6 @@
 #include <cstdint>
 #include <limits>
 
-#include "core/kernel/threads/parallel.h"
 #include "core/numerics/linear_algebra/conjugate_gradients.h"
 #include "core/numerics/stability/lowest_mode.h"
 #include "core/numerics/step/rounding_floor.h"
@@ -22,57 +21,24 @@ constexpr double visible_ratio = -0.07, visible_ratio_of_large = -1e-4, large_ex
 constexpr int modes_without_factor = 4;
 /// Tenfold shifts that are tried where the projected matrix does not factorise with the first.
 constexpr int most_larger_shifts = 6;
-constexpr int grain = 8192;  // vertices
 /// A ratio is wanted to about a per cent, or to where it does not matter. Residuals bound the error of ratios
 /// alone: the preconditioner is near the inverse of their second matrix.
 constexpr ModeAccuracy ratio_accuracy{1e-2, 1e-5, 0.3, 200};
 constexpr ModeAccuracy eigenvalue_accuracy{1e-2, 1e-6, std::numeric_limits<double>::infinity(), 60};
 
-/// The operators of one test, on the free vertices.
-class Operators {
- public:
-  explicit Operators(const std::vector<char>& fixed) : fixed_(fixed) {}
-
-  /// y = (A + diag(shift_i I₃)) x; without a shift if that is empty.
-  void multiply(const BlockMatrix& matrix, const Eigen::VectorXd& shift, const Positions& x,
-                Positions& y) const {
-    matrix.multiply(x, y);
-    for_each_vertex(y, [&](int i) {
-      if (fixed_[i])
-        y.row(i).setZero();
-      else if (shift.size() > 0)
-        y.row(i) += shift[i] * x.row(i);
-    });
-  }
-  /// y = diag(weights_i I₃) x
-  void scale(const Eigen::VectorXd& weights, const Positions& x, Positions& y) const {
-    y.resize(x.rows(), 3);
-    for_each_vertex(y, [&](int i) { y.row(i) = weights[i] * x.row(i); });
-  }
-  /// Numbers in [-1, 1) without any symmetry, the same ones every time (SplitMix64).
-  Positions scattered() const {
-    Positions x = Positions::Zero(static_cast<Eigen::Index>(fixed_.size()), 3);
-    std::uint64_t state = 0;
-    for (Eigen::Index i = 0; i < x.rows(); ++i)
-      for (int c = 0; c < 3; ++c) {
-        std::uint64_t z = (state += 0x9e3779b97f4a7c15U);
-        z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9U;
-        z = (z ^ (z >> 27)) * 0x94d049bb133111ebU;
-        if (!fixed_[i]) x(i, c) = std::ldexp(static_cast<double>((z ^ (z >> 31)) >> 11), -52) - 1;
-      }
-    return x;
-  }
-
- private:
-  template <class Body>
-  static void for_each_vertex(const Positions& x, const Body& body) {
-    parallel_for(static_cast<int>(x.rows()), grain, [&](int begin, int end) {
-      for (int i = begin; i < end; ++i) body(i);
-    });
-  }
-
-  const std::vector<char>& fixed_;
-};
+/// Numbers in [-1, 1) without any symmetry, the same ones every time (SplitMix64), 0 on fixed vertices.
+Positions scattered_on(const std::vector<char>& fixed) {
+  Positions x = Positions::Zero(static_cast<Eigen::Index>(fixed.size()), 3);
+  std::uint64_t state = 0;
+  for (Eigen::Index i = 0; i < x.rows(); ++i)
+    for (int c = 0; c < 3; ++c) {
+      std::uint64_t z = (state += 0x9e3779b97f4a7c15U);
+      z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9U;
+      z = (z ^ (z >> 27)) * 0x94d049bb133111ebU;
+      if (!fixed[i]) x(i, c) = std::ldexp(static_cast<double>((z ^ (z >> 31)) >> 11), -52) - 1;
+    }
+  return x;
+}
 
 /// By how much the forces out of balance can lower eigenvalues of M⁻¹H [1/s²]: turning a body of size L under
 /// them changes the energy by their product with L, over a moment of inertia of M L².
@@ -142,17 +108,22 @@ std::optional<StabilityTest> test_stability(Iterate& iterate, FactorCache& facto
   }
   s.by_factorisation = factor.solver() != LinearSolver::multigrid;
 
-  const Operators operators(iterate.fixed());
-  const LinearOperator h = [&](const Positions& x, Positions& y) { operators.multiply(*hessian, {}, x, y); };
+  const std::vector<char>& fixed = iterate.fixed();
+  const LinearOperator h = [&](const Positions& x, Positions& y) {
+    multiply_free(*hessian, {}, fixed, x, y);
+  };
   const LinearOperator shifted = [&](const Positions& x, Positions& y) {
-    operators.multiply(*hessian, shift, x, y);
+    multiply_free(*hessian, shift, fixed, x, y);
   };
   const LinearOperator b = [&](const Positions& x, Positions& y) {
-    operators.multiply(projected, shift, x, y);
+    multiply_free(projected, shift, fixed, x, y);
   };
-  const LinearOperator m = [&](const Positions& x, Positions& y) { operators.scale(masses, x, y); };
+  const LinearOperator m = [&](const Positions& x, Positions& y) {
+    y.resize(x.rows(), 3);
+    for_each_vertex(y, [&](int i) { y.row(i) = masses[i] * x.row(i); });
+  };
   const LinearOperator inverse = [&](const Positions& x, Positions& y) { factor.precondition(x, y); };
-  const Positions scattered = operators.scattered();
+  const Positions scattered = scattered_on(fixed);
   Positions weighted, soft;
   m(scattered, weighted);
   inverse(weighted, soft);
