@@ -24,7 +24,7 @@ Json stability_entry(const LevelResult& r) {
           {"lowest_eigenvalue", r.stability->lowest_eigenvalue},
           {"curvature_ratio", r.stability->curvature_ratio},
           {"extent", r.stability->extent},
-          {"found_by", r.stability->by_factorisation ? "factorisation" : "multigrid"},
+          {"found_by", r.stability->by_factorisation ? "factorisation" : "iterations"},
           {"saddles_left", r.saddles_left}};
 }
 

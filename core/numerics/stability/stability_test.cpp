@@ -87,36 +87,30 @@ std::optional<StabilityTest> test_stability(Iterate& iterate, FactorCache& facto
   Stability& s = test.stability;
   const double neutral = feigned_eigenvalue(iterate);
   const Eigen::VectorXd& masses = iterate.model().masses();
-  Eigen::VectorXd shift;
-  const auto is_definite_with_shift = [&](const BlockMatrix& matrix) {
-    shift = neutral * masses + round_off(iterate, matrix);
-    return shift.allFinite() && !factor.prefers_cycle() && factor.prepare(matrix, shift);
-  };
-  if (verdict_only && is_definite_with_shift(factor.hessian(Projection::none))) return test;
-
-  BlockMatrix projected;
-  const BlockMatrix* hessian = nullptr;
-  do {  // until neither has lost blocks of former contacts: a factor is to serve both
-    projected = factor.hessian(Projection::clamp);
-    hessian = &factor.hessian(Projection::none);
-  } while (hessian->pattern != projected.pattern);
-  const bool is_definite = is_definite_with_shift(*hessian);
+  BlockMatrix hessian = factor.hessian(Projection::none);
+  Eigen::VectorXd shift = neutral * masses + round_off(iterate, hessian);
   if (!shift.allFinite()) return std::nullopt;
-  for (int k = 0; !is_definite && !factor.prepare(projected, shift); ++k) {
+  s.by_factorisation = !factor.prefers_cycle();
+  const bool is_definite = s.by_factorisation && factor.prepare(hessian, shift);
+  if (is_definite && verdict_only) return test;
+
+  const BlockMatrix* projected = &factor.hessian(Projection::clamp);
+  while (hessian.pattern != projected->pattern) {  // until neither has lost blocks of former contacts
+    hessian = factor.hessian(Projection::none);
+    projected = &factor.hessian(Projection::clamp);
+  }
+  for (int k = 0; !is_definite && !factor.prepare(*projected, shift); ++k) {
     if (k == most_larger_shifts) return std::nullopt;
     shift *= 10;
   }
-  s.by_factorisation = factor.solver() != LinearSolver::multigrid;
 
   const std::vector<char>& fixed = iterate.fixed();
-  const LinearOperator h = [&](const Positions& x, Positions& y) {
-    multiply_free(*hessian, {}, fixed, x, y);
-  };
+  const LinearOperator h = [&](const Positions& x, Positions& y) { multiply_free(hessian, {}, fixed, x, y); };
   const LinearOperator shifted = [&](const Positions& x, Positions& y) {
-    multiply_free(*hessian, shift, fixed, x, y);
+    multiply_free(hessian, shift, fixed, x, y);
   };
   const LinearOperator b = [&](const Positions& x, Positions& y) {
-    multiply_free(projected, shift, fixed, x, y);
+    multiply_free(*projected, shift, fixed, x, y);
   };
   const LinearOperator m = [&](const Positions& x, Positions& y) {
     y.resize(x.rows(), 3);
@@ -159,6 +153,9 @@ std::optional<StabilityTest> test_stability(Iterate& iterate, FactorCache& facto
       s = of_weakest;
   }
   test.mode = *mode / mode->cwiseAbs().maxCoeff();
+  Positions product;
+  h(test.mode, product);
+  test.curvature = inner_product(test.mode, product);
   return test;
 }
 

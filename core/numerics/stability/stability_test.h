@@ -11,7 +11,8 @@ namespace drape {
 /// An equilibrium's stability, and its least stable motion.
 struct StabilityTest {
   Stability stability;
-  Positions mode;  ///< n×3, of the curvature ratio: largest entry 1 or −1, rows of fixed vertices 0
+  Positions mode;        ///< n×3, of the curvature ratio: largest entry 1 or −1, rows of fixed vertices 0
+  double curvature = 0;  ///< vᵀHv of this v [N/m]
 };
 
 /// Tests whether the Hessian H of the objective at the iterate, an equilibrium, is positive definite on the
