@@ -194,33 +194,6 @@ TEST_CASE("A saddle is reported where it is not to be left, and is no convergenc
   CHECK(largest_entry(r.x.col(2)) < 1e-9);
 }
 
-TEST_CASE("Exits have the same bits on any number of threads, and resume from every step to them") {
-  const Solved s = scene_from(filled(two_levels) + R"(
-cloth: {shape: square, side: 0.1, columns: 15, rows: 15, triangulation: criss_cross}
-start: {scale: [0.97, 0.97, 1]}
-pins: [{region: border}]
-energies: [neo_hookean, hinge]
-)" + thin);
-  const Solver& solver = s.experiment.solver_of("newton");
-  KeepingObserver whole;
-  whole.keeps_states = true;
-  const std::vector<LevelResult> expected = solver.solve(*s.scene, whole);
-  REQUIRE(expected.back().saddles_left > 0);
-  same_with_any_threads([&] {
-    Observer silent;
-    return solver.solve(*s.scene, silent).back().x;
-  });
-  for (const NewtonState& state : whole.states) {
-    if (state.so_far.level == 0) continue;
-    MethodState from{{expected[0]}, 1, state, 0};
-    Observer silent;
-    const LevelResult r = solver.resume(*s.scene, from, silent).back();
-    REQUIRE(r.x == expected.back().x);
-    REQUIRE(r.iterations == expected.back().iterations);
-    REQUIRE(r.saddles_left == expected.back().saddles_left);
-  }
-}
-
 TEST_CASE("Multigrid and factors judge alike, also a small stiff plate beside a large soft one") {
   // The soft plate's motions are a thousandth as stiff: iterations find them first.
   std::ostringstream obj;

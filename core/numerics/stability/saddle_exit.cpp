@@ -62,7 +62,7 @@ std::string SaddleExit::text() const {
          "is " +
          three_digits(s.lowest_eigenvalue) + " 1/s², the curvature ratio " + three_digits(s.curvature_ratio) +
          (p_.stability == StabilityMode::report
-              ? "; newton.stability: leave leaves it"
+              ? "; with newton.stability: leave the cloth goes on to a minimum"
               : "; it could not be left in " + std::to_string(s_.exits) +
                     " exits: start with a larger perturbation, or apply the load in smaller increments");
 }
@@ -83,13 +83,13 @@ bool SaddleExit::leave(bool at_end) {
   const double slope = iterate_.gradient().cwiseProduct(test->mode).sum();
   if (std::abs(slope) > clear_slope * free_norm(iterate_.gradient(), iterate_.fixed()) * test->mode.norm())
     sign = slope > 0 ? -1 : 1;
-  const Positions origin = iterate_.x();
-  const bool falls = walk(test->mode, sign) || walk(test->mode, -sign);
-  if (!falls) result.stability->verdict = Stability::marginal;
-  if (!falls || p_.stability == StabilityMode::report || stopped_) {
-    return_to(origin);
-    return false;
-  }
+  factor_serves_ = false;
+  const bool falls = walk(*test, sign) || (!stopped_ && walk(*test, -sign));
+  if (stopped_)
+    result.stability.reset();  // a fall may have followed
+  else if (!falls)
+    result.stability->verdict = Stability::marginal;
+  if (!falls || p_.stability == StabilityMode::report) return false;
   ++s_.exits;
   ++result.saddles_left;
   result.stability.reset();
@@ -98,19 +98,25 @@ bool SaddleExit::leave(bool at_end) {
   return true;
 }
 
-bool SaddleExit::walk(const Positions& mode, double sign) {
+bool SaddleExit::walk(const StabilityTest& test, double sign) {
+  const bool leaves = p_.stability == StabilityMode::leave;
   const Positions origin = iterate_.x();
-  const double begun_at = iterate_.energy(), noise = iterate_.energy_noise(0);
+  const double begun_at = iterate_.energy(), noise = iterate_.energy_noise(0),
+               diagonal = iterate_.rest_diagonal();
   Positions lowest = origin;
   double lowest_energy = begun_at, amplitude = 0;
-  for (double a = first_amplitude; a <= last_amplitude; a *= stride_growth) {
+  // Where the energy can fall by more than its round-off, it has not risen again at this amplitude: to fourth
+  // order it is E₀ − c a² / 2 + q a⁴ / 4, c = |vᵀHv|, and falls by c² / 4q at √(c / q).
+  const double visible = std::sqrt(4 * noise / std::abs(test.curvature)) / diagonal;
+  for (double a = std::clamp(visible, first_amplitude, hidden_amplitude); a <= last_amplitude;
+       a *= stride_growth) {
     stopped_ = stopped_ || stop_();
     if (stopped_) break;
-    const Positions stride = lowest + sign * (a - amplitude) * iterate_.rest_diagonal() * mode;
+    const Positions stride = lowest + sign * (a - amplitude) * diagonal * test.mode;
     const double feasible = iterate_.max_step(stride).fraction;
     iterate_.move_to(lowest + feasible * (stride - lowest));
     iterate_.evaluate();
-    if (std::isfinite(iterate_.energy())) relax_across(mode);
+    if (std::isfinite(iterate_.energy())) relax_across(test.mode);
     const double energy = iterate_.energy();
     const bool is_hidden = a < hidden_amplitude && std::abs(energy - begun_at) <= noise;
     const bool falls = energy < lowest_energy && !is_hidden;
@@ -118,14 +124,14 @@ bool SaddleExit::walk(const Positions& mode, double sign) {
       lowest = iterate_.x();
       lowest_energy = energy;
       amplitude = a;
-      if (p_.stability == StabilityMode::leave) note_stride();
     } else {
       iterate_.move_to(lowest);
     }
-    if (feasible < 1 || !(falls || is_hidden)) break;
+    const bool is_known = !leaves && begun_at - lowest_energy > noise;
+    if (feasible < 1 || !(falls || is_hidden) || is_known) break;
   }
-  const bool has_fallen = begun_at - lowest_energy > noise;
-  return_to(has_fallen ? lowest : origin);
+  const bool has_fallen = !stopped_ && begun_at - lowest_energy > noise;
+  return_to(has_fallen && leaves ? lowest : origin);
   return has_fallen;
 }
 
@@ -136,21 +142,16 @@ void SaddleExit::return_to(const Positions& x) {
   iterate_.update_residual();
 }
 
-void SaddleExit::note_stride() {
-  ++iterate_.result().iterations;
-  iterate_.update_residual();
-  report_();
-}
-
 /// Lowers the energy across the mode, by Newton steps of the projected Hessian that leave its amplitude.
-/// Motions slower than the saddle's own are left to the solver.
+/// Motions slower than the saddle's own are left to the solver. A factor serves as long as whole steps follow
+/// from it.
 void SaddleExit::relax_across(const Positions& mode) {
   const double rate = std::abs(iterate_.result().stability->lowest_eigenvalue);
   ImplicitStep step;
   Positions along, direction;
   for (int k = 0; k < relaxations; ++k) {
-    const double before = iterate_.energy();
-    if (k == 0 && !factor_.prepare(factor_.hessian(Projection::clamp), rate * iterate_.model().masses()))
+    const bool is_new = !factor_serves_;
+    if (is_new && !factor_.prepare(factor_.hessian(Projection::clamp), rate * iterate_.model().masses()))
       return;
     step.begin(iterate_.x(), 1);
     step.evaluate(iterate_, 0);
@@ -158,9 +159,20 @@ void SaddleExit::relax_across(const Positions& mode) {
     factor_.precondition(step.gradient(), direction);
     direction -= inner_product(mode, direction) / inner_product(mode, along) * along;
     direction *= -1;
-    if (!line_search_.search(iterate_, step, direction)) return;
-    if (before - iterate_.energy() <= iterate_.energy_noise(0)) return;
+    factor_serves_ = true;
+    if (-inner_product(step.gradient(), direction) <= iterate_.energy_noise(0)) return;  // nothing to gain
+    const bool moves = line_search_.search(iterate_, step, direction);
+    factor_serves_ = moves && line_search_.step_length() == 1;
+    if (!moves && is_new) return;
+    if (moves) note_relaxation();
   }
+  factor_serves_ = false;
+}
+
+void SaddleExit::note_relaxation() {
+  ++iterate_.result().iterations;
+  iterate_.update_residual();
+  report_();
 }
 
 bool SaddleExit::end_tightening() {

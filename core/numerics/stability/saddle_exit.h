@@ -27,7 +27,7 @@ class SaddleExit {
   const State& state() const { return s_; }
   void restore(const State& state) { s_ = state; }
 
-  /// Refers to all arguments. Calls `report` after each stride, an iteration, and asks before each stride
+  /// Refers to all arguments. Calls `report` after each relaxation, an iteration, and asks before each stride
   /// whether to `stop`.
   SaddleExit(Iterate& iterate, FactorCache& factor, EquilibriumCheck& check,
              const NewtonParameters& parameters, std::function<void()> report, std::function<bool()> stop)
@@ -56,10 +56,10 @@ class SaddleExit {
   std::string text() const;
 
  private:
-  bool walk(const Positions& mode, double sign);
+  bool walk(const StabilityTest& test, double sign);
   void return_to(const Positions& x);
-  void note_stride();
   void relax_across(const Positions& mode);
+  void note_relaxation();
 
   Iterate& iterate_;
   FactorCache& factor_;
@@ -68,6 +68,7 @@ class SaddleExit {
   const std::function<void()> report_;
   const std::function<bool()> stop_;
   bool stopped_ = false;
+  bool factor_serves_ = false;  // the walk's
   LineSearch line_search_;
   State s_;
 };
