@@ -53,9 +53,12 @@ class Subspace {
   /// Replaces a large basis by the lowest Ritz vectors.
   void cut_if_large() {
     if (static_cast<int>(v_.size()) < most_vectors) return;
-    std::vector<Positions> kept;
-    for (int k = 0; k < kept_vectors; ++k) kept.push_back(vector(k));
-    v_ = std::move(kept);
+    for_each_vertex(v_[0], [&](int i) {  // in place, since twice the basis is much memory
+      Eigen::Matrix<double, most_vectors, 3> rows;
+      for (int k = 0; k < most_vectors; ++k) rows.row(k) = v_[k].row(i);
+      for (int k = 0; k < kept_vectors; ++k) v_[k].row(i) = rotation_.col(k).transpose() * rows;
+    });
+    v_.resize(kept_vectors);
     projected_ = values_.head(kept_vectors).asDiagonal();
     decompose();
   }

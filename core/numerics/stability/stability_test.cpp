@@ -117,22 +117,25 @@ std::optional<StabilityTest> test_stability(Iterate& iterate, FactorCache& facto
     for_each_vertex(y, [&](int i) { y.row(i) = masses[i] * x.row(i); });
   };
   const LinearOperator inverse = [&](const Positions& x, Positions& y) { factor.precondition(x, y); };
-  const Positions scattered = scattered_on(fixed);
-  Positions weighted, soft;
-  m(scattered, weighted);
-  inverse(weighted, soft);
+  std::vector<Positions> starts(2);
+  starts[1] = scattered_on(fixed);
+  Positions weighted;
+  m(starts[1], weighted);
+  inverse(weighted, starts[0]);  // soft
+  weighted.resize(0, 3);
 
   // H + S against H⁺ + S, whose quotients are at most 1: negative ones stand out however stiff the motion is.
   ModeAccuracy wanted = ratio_accuracy;
   if (!s.by_factorisation) wanted.modes = modes_without_factor;
   if (s.by_factorisation && !is_definite) wanted.below = 0;
-  const LowestMode weakest = lowest_mode(shifted, b, inverse, {soft, scattered}, wanted);
+  const LowestMode weakest = lowest_mode(shifted, b, inverse, starts, wanted);
   const bool is_stable = s.by_factorisation ? is_definite : weakest.value >= 0;
   const bool is_zero = std::abs(weakest.value) < -visible_ratio_of_large;  // but for round-off
   const bool is_found = is_definite || is_zero || (weakest.converged && is_stable == (weakest.value >= 0));
   if (!is_found) return std::nullopt;
   if (is_stable && verdict_only) return test;
-  const LowestMode slowest = lowest_mode(h, m, inverse, {weakest.vector, soft}, eigenvalue_accuracy);
+  starts[1] = weakest.vector;
+  const LowestMode slowest = lowest_mode(h, m, inverse, starts, eigenvalue_accuracy);
   s.lowest_eigenvalue = slowest.value;
   const Positions* mode = &weakest.vector;
   const auto judge = [&](const Positions& v) {
