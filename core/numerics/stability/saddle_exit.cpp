@@ -13,9 +13,9 @@ namespace {
 
 /// Exits of one increment, or of a level without a schedule. Each lowers the energy.
 constexpr int most_exits = 10;
-/// The force tolerance after an exit, by how much it is below the level's own at most, and for how many
-/// steps.
-constexpr double tight_tolerance = 1e-6, most_strictness = 1000;
+/// The force tolerance after an exit, by how much it is below the level's own at least and at most, and for
+/// how many steps.
+constexpr double tight_tolerance = 1e-6, least_strictness = 10, most_strictness = 1000;
 constexpr int most_tight_steps = 100;
 /// Amplitudes of a walk along a mode, in diagonals of the rest shape: the first one, up to which one
 /// round-off may hide the fall of the energy, and the last one; and the factor from one to the next.
@@ -94,7 +94,7 @@ bool SaddleExit::leave(bool at_end) {
   ++result.saddles_left;
   result.stability.reset();
   s_.tightened_at = result.steps;
-  check_.tighten(std::clamp(p_.force_tolerance / tight_tolerance, 1.0, most_strictness));
+  check_.tighten(std::clamp(p_.force_tolerance / tight_tolerance, least_strictness, most_strictness));
   return true;
 }
 
