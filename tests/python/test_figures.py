@@ -12,7 +12,7 @@ import drape
 from conftest import SMALL_FILE, command
 
 pytest.importorskip("matplotlib")
-from drape.figures import latex_table  # noqa: E402
+from drape.figures import _cell, latex_table  # noqa: E402
 
 SWEEP = f"name: two\nbase: {SMALL_FILE}\nseeds: [1, 2]\nmethods: [pcs, newton]\n"
 GRID = "ablation: {grid: {newton.step_growth: [1.5, 3]}}\n"
@@ -45,6 +45,10 @@ def written(tmp_path):
 def rows_of(file):
     with file.open(newline="") as lines:
         return list(csv.DictReader(lines))
+
+
+def test_cells_are_those_of_drape_table():
+    assert [_cell(value) for value in ("=1+1", "-1", "-a", "", 2.5)] == ["'=1+1", "-1", "'-a", "", 2.5]
 
 
 def test_figures_of_a_run(written, tmp_path):

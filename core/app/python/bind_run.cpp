@@ -173,6 +173,7 @@ void bind_results(py::module_& m) {
         return std::pair(std::move(mesh.vertices), std::move(mesh.triangles));
       },
       py::arg("file"));
+  m.def("_uncomputed", &uncomputed, py::arg("text"));
   m.def("_refuse_target", &refuse_target, py::arg("file"), py::arg("overwrite"));
   m.def(
       "_write_file",

@@ -49,4 +49,8 @@ std::string methods_text(const RunTable& table);
 /// Three significant digits ("403", "0.0213", "7.21e4"), or a dash if absent.
 std::string number_text(const OptionalNumber& value);
 
+/// The text for a CSV file: one that a spreadsheet would compute, as "=1+1", gets an apostrophe in front,
+/// which it takes for a mark of texts. Numbers stay.
+std::string uncomputed(std::string text);
+
 }  // namespace drape

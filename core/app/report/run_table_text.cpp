@@ -28,13 +28,9 @@ std::string markdown_cell(const Json& value) {
   return boost::replace_all_copy(boost::replace_all_copy(cell_text(value, !counted), "|", "\\|"), "\n", "; ");
 }
 
-/// A text that a spreadsheet would compute, as "=1+1", gets an apostrophe in front, which it takes for a mark
-/// of texts. Numbers stay.
 std::string csv_cell(const Json& value) {
   std::string text = cell_text(value, false);
-  if (value.is_string() && std::string_view("=+-@\t\r").find(text[0]) != std::string_view::npos &&
-      !parse_number(text))
-    text.insert(0, "'");
+  if (value.is_string()) text = uncomputed(std::move(text));
   return text.find_first_of(",\"\r\n") == std::string::npos
              ? text
              : "\"" + boost::replace_all_copy(text, "\"", "\"\"") + "\"";
@@ -113,6 +109,12 @@ std::string methods_text(const RunTable& table) {
     }
   }
   return text_table(lines);
+}
+
+std::string uncomputed(std::string text) {
+  const bool is_computed = std::string_view("=+-@\t\r").find(text[0]) != std::string_view::npos;
+  if (is_computed && !parse_number(text)) text.insert(0, "'");
+  return text;
 }
 
 std::string number_text(const OptionalNumber& value) {

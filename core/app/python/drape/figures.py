@@ -125,8 +125,7 @@ def _sweep_figures(rows: pandas.DataFrame, out: pathlib.Path) -> list[pathlib.Pa
 
 
 def _cell(value):
-    """A cell of a CSV file as `drape table` writes it: no spreadsheet computes a text."""
-    return "'" + value if isinstance(value, str) and value[:1] in tuple("=+-@\t\r") else value
+    return _core._uncomputed(value) if isinstance(value, str) else value
 
 
 def figures(results, out, overwrite: bool = False) -> list[pathlib.Path]:
