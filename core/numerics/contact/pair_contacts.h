@@ -43,17 +43,18 @@ std::unique_ptr<Collisions> make_pair_contacts(const Positions& x, const Positio
                                                const std::vector<ContactPair>& pairs,
                                                const BarrierParameters& parameters);
 
-/// The barrier between edges of the cloth and sharp edges of obstacles,
+/// The barrier between edges of the cloth and edges of obstacles, of which either is the first,
 ///
 ///     κ d̂ Σ_pairs weight · m · (b - b_0)(b - b_1) / b,
 ///
-/// with b of the distance of the two edges, b_k of that from end k of the cloth's edge to the obstacle's, and
+/// with b of the distance of the two edges, b_k of that from end k of the first edge to the second, and
 /// m the edge-edge mollifier. Obstacle vertices are static. +∞ if a gap is not positive.
 ///
-/// The barrier of the cloth's vertices acts on the ends already. Where an end is nearest, and over the whole
-/// of a surface up to its rim, the sum is therefore 0; while an end passes beyond the rim, it grows by what
-/// that of the vertex loses. With b alone a cloth would have to climb its rim's barrier before it can slide
-/// over it.
+/// First edges of the cloth meet sharp edges: the barrier of the cloth's vertices acts on the ends already.
+/// Where an end is nearest, and over the whole of a surface up to its rim, the sum is therefore 0; while an
+/// end passes beyond the rim, it grows by what that of the vertex loses. With b alone a cloth would have to
+/// climb its rim's barrier before it can slide over it. A first edge of an obstacle is the axis of a
+/// cylinder, whose side ends where its axis does.
 std::unique_ptr<Collisions> make_rim_contacts(const Positions& x, const Positions& obstacle_vertices,
                                               const std::vector<ContactPair>& pairs,
                                               const BarrierParameters& parameters);

@@ -19,7 +19,12 @@ using Vector6d = Eigen::Matrix<double, 6, 1>;
 
 /// f = (b - b_0)(b - b_1) / b, which is homogeneous of degree one: m f(b, b_0, b_1) = f(m b, m b_0, m b_1).
 struct RimContact {
-  std::array<Contact, 3> parts;  ///< of the edges, and of the cloth edge's ends 0 and 1
+  std::array<Contact, 3> parts;  ///< of the edges, and of the first edge's ends 0 and 1
+  bool cloth_is_second;          ///< the first edge is the obstacle's
+
+  /// The place in part i of vertex k of the cloth's edge.
+  int place(int i, int k) const { return cloth_is_second ? 2 + k : (i == 2 ? 1 - k : k); }
+  int cloth_vertex(int k) const { return parts[0].pair.vertices[place(0, k)]; }
 
   double b(int i) const { return parts[i].barrier.value; }
   double f() const { return (b(0) - b(1)) * (b(0) - b(2)) / b(0); }
@@ -38,7 +43,7 @@ struct RimContact {
   Vector6d gradient(const Contact& contact, int i) const {
     const PairPositions g = contact_gradient(contact);
     Vector6d result;
-    result << g.col(i == 2), g.col(i != 2);
+    result << g.col(place(i, 0)), g.col(place(i, 1));
     return result;
   }
 };
@@ -69,7 +74,7 @@ class RimCollisions final : public Collisions {
       Vector6d sum = Vector6d::Zero();
       for (int i = 0; i < 3; ++i) sum += contact.gradient(contact.weighted(i), i);
       for (int k = 0; k < 2; ++k)
-        g.row(edges(contact).pair.vertices[k]) += p_.stiffness * sum.segment<3>(3 * k).transpose();
+        g.row(contact.cloth_vertex(k)) += p_.stiffness * sum.segment<3>(3 * k).transpose();
     }
     return value(x);
   }
@@ -77,7 +82,7 @@ class RimCollisions final : public Collisions {
   Stencils stencils() const override {
     Stencils result = Stencils::Constant(contact_count(), 4, -1);
     for (int i = 0; i < contact_count(); ++i)
-      for (int k = 0; k < 2; ++k) result(i, k) = edges(contacts_[i]).pair.vertices[k];
+      for (int k = 0; k < 2; ++k) result(i, k) = contacts_[i].cloth_vertex(k);
     return result;
   }
 
@@ -130,12 +135,14 @@ class RimCollisions final : public Collisions {
                      blocks.data());
     Matrix6d h = Matrix6d::Zero();
     for (int i = 0; i < 3; ++i)
-      for (int b = 0, index = 0; b < 2; ++b)
-        for (int a = 0; a <= b; ++a, ++index) {
-          const Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>> block(blocks[i].block[index]);
-          const int row = i == 2 ? 1 - a : a, column = i == 2 ? 1 - b : b;  // end 1 comes first in its pair
-          h.block<3, 3>(3 * row, 3 * column) += block;
-          if (a != b) h.block<3, 3>(3 * column, 3 * row) += block.transpose();
+      for (int l = 0; l < 2; ++l)
+        for (int k = 0; k < 2; ++k) {
+          const int row = contact.place(i, k), column = contact.place(i, l);
+          if (row > column) continue;
+          const Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>> block(
+              blocks[i].block[column * (column + 1) / 2 + row]);
+          h.block<3, 3>(3 * k, 3 * l) += block;
+          if (k != l) h.block<3, 3>(3 * l, 3 * k) += block.transpose();
         }
     const double m = edges(contact).mollifier.value, b = contact.b(0), b0 = contact.b(1), b1 = contact.b(2);
     if (b0 == 0 || b1 == 0 || m == 0) return h;
@@ -154,7 +161,7 @@ class RimCollisions final : public Collisions {
   double smallest_gap_ = std::numeric_limits<double>::infinity();
 };
 
-/// The pair of end k of a pair's cloth edge and the obstacle edge.
+/// The pair of end k of a pair's first edge and the second edge.
 ContactPair pair_of_end(ContactPair pair, int k) {
   pair.kind = PairKind::edge_end;
   if (k == 1) std::swap(pair.vertices[0], pair.vertices[1]);
@@ -174,7 +181,8 @@ std::unique_ptr<Collisions> make_rim_contacts(const Positions& x, const Position
       };
       if (!is_within_dhat(pairs[i], positions_of(pairs[i], x, obstacle_vertices))) continue;
       const RimContact contact{
-          {part(pairs[i]), part(pair_of_end(pairs[i], 0)), part(pair_of_end(pairs[i], 1))}};
+          {part(pairs[i]), part(pair_of_end(pairs[i], 0)), part(pair_of_end(pairs[i], 1))},
+          pairs[i].vertices[0] >= x.rows()};
       // Where an end is nearest, the contact and its derivatives are 0.
       const auto& c = contact.parts[0].closest.c;
       if (c[0] > 0 && c[1] > 0 && contact.b(0) > 0) found.push_back(contact);

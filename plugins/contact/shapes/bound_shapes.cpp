@@ -44,6 +44,9 @@ class ShapesCandidates final : public CollisionCandidates {
       parts.push_back(make_vertex_contacts(vertex_contacts(x), scene_->barrier));
     if (!candidates_.pairs.empty())
       parts.push_back(make_pair_contacts(x, scene_->obstacle_points, candidates_.pairs, scene_->barrier));
+    if (!candidates_.curved_sides.empty())
+      parts.push_back(
+          make_rim_contacts(x, scene_->obstacle_points, candidates_.curved_sides, scene_->barrier));
     if (parts.size() == 1) return std::move(parts.front());
     return std::make_unique<CollisionStack>(std::move(parts));
   }

@@ -29,18 +29,17 @@ Vector3d on_circle(double radius, int k, int sides, double z) {
   return {radius * std::cos(angle), radius * std::sin(angle), z};
 }
 
-/// Calls visit(i) for the points or edges that may be within `radius` of `centre`. Those of a prism are
-/// ordered in rings (bottom, top and, for edges, lateral); element k of each ring begins at angle 2πk /
-/// sides.
+/// Calls visit(i) for the points or edges that may be within `radius` of `centre`, but for the ends of a
+/// cylinder's axis. Those of a cylinder are ordered in rings, bottom and top; element k of each ring begins
+/// at angle 2πk / sides.
 template <class Visit>
 void visit_candidates(const Features& f, std::size_t size, const Solid& solid, const Vector3d& centre,
                       double radius, const Visit& visit) {
-  const int count = static_cast<int>(size);
-  if (f.side == 0) {
+  const int sides = f.sides, count = sides > 0 ? 2 * sides : static_cast<int>(size);
+  if (sides == 0) {
     for (int i = 0; i < count; ++i) visit(i);
     return;
   }
-  const int sides = static_cast<int>(f.points.size()) / 2;
   const Vector3d q = solid.to_local(centre);
   const double rho = q.head<2>().norm(), angle = std::atan2(q.y(), q.x()), unit = 2 * M_PI / sides;
   if (rho + radius < solid.radius * std::cos(unit / 2)) return;
@@ -48,8 +47,11 @@ void visit_candidates(const Features& f, std::size_t size, const Solid& solid, c
       radius < rho ? std::asin(radius / rho) : M_PI;  // half angle of the ball seen from the axis
   const int first = static_cast<int>(std::floor((angle - spread) / unit)) - 1;
   const int last = std::min(static_cast<int>(std::ceil((angle + spread) / unit)), first + sides - 1);
-  for (int ring = 0; ring < count; ring += sides)
+  for (int ring = 0; ring < count; ring += sides) {
+    const double up = q.z() - (ring ? solid.half.z() : -solid.half.z());
+    if (std::hypot(std::max(0.0, std::abs(rho - solid.radius) - f.side), up) > radius) continue;
     for (int k = first; k <= last; ++k) visit(ring + ((k % sides) + sides) % sides);
+  }
 }
 
 double distance_to_segment(const Vector3d& p, const Vector3d& a, const Vector3d& b) {
@@ -99,13 +101,14 @@ Features Features::of(const Solid& solid, double max_inset) {
   if (solid.kind == SolidKind::cylinder) {
     const double step = std::acos(1 - std::min(0.5, max_inset / solid.radius));
     const int sides = std::max(16, static_cast<int>(std::ceil(M_PI / step)));
+    f.sides = sides;
     f.side = 2 * solid.radius * std::sin(M_PI / sides);
     for (const int ring : {0, sides})
       for (int k = 0; k < sides; ++k) {
         f.points.push_back(on_circle(solid.radius, k, sides, ring ? solid.half.z() : -solid.half.z()));
         f.edges.push_back({ring + k, ring + (k + 1) % sides});
       }
-    for (int k = 0; k < sides; ++k) f.edges.push_back({k, sides + k});
+    for (const double end : {-1.0, 1.0}) f.points.push_back({0, 0, end * solid.half.z()});
   } else if (solid.kind != SolidKind::half_space) {
     f.points = core_corners(solid.half);
     f.offset = solid.radius;

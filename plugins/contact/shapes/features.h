@@ -10,14 +10,16 @@
 namespace drape::shapes {
 
 /// The corners and straight edges of a solid, rounded by `offset`, that the interior of a cloth edge or
-/// triangle can make contact with. A cylinder has those of an inscribed prism.
+/// triangle can make contact with. Those of a cylinder are its rims, as polygons; the curved side is at the
+/// radius from its axis, the last two points.
 struct Features {
   std::vector<Eigen::Vector3d> points;    ///< [m]
   std::vector<std::array<int, 2>> edges;  ///< indices of points
   double offset = 0;                      ///< [m]
-  double side = 0;                        ///< side length of the prism's polygon [m]; 0 for other solids
+  double side = 0;                        ///< side length of a rim's polygon [m]; 0 for other solids
+  int sides = 0;                          ///< of a rim's polygon; 0 for other solids
 
-  /// The prism is nowhere more than `max_inset` [m] inside its cylinder.
+  /// A rim's polygon is nowhere more than `max_inset` [m] inside its circle.
   static Features of(const Solid& solid, double max_inset);
 
   /// Appends the indices of points within `radius` of `centre`.

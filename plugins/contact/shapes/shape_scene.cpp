@@ -14,7 +14,7 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr int grain = 2048;     // triangles per task
-constexpr double inset = 5e-5;  // of a cylinder's prism, over d̂
+constexpr double inset = 5e-5;  // of a rim's polygon, over d̂
 constexpr double half = 0.5;    // weight factor of pairs of edges and of pairs with a triangle
 
 /// A bounding ball of an element's linear motion.
@@ -102,6 +102,20 @@ class Finder {
     }
   }
 
+  /// Adds pairs of a cylinder's axis and the cloth's edges.
+  void add_curved_side(const std::vector<int>& edges, std::vector<ContactPair>& pairs) const {
+    const int bottom = 2 * features_.sides;
+    const double axis = (features_.points[bottom + 1] - features_.points[bottom]).squaredNorm();
+    for (const int i : edges) {
+      ContactPair pair = pair_of(PairKind::edge_edge, half * scene_.cloth.edge_area[i]);
+      pair.offset = solid_.radius;
+      pair.mollifier = mollifier_threshold * scene_.cloth.edge_length_squared[i] * axis;
+      pair.vertices = {first_point_ + bottom, first_point_ + bottom + 1, scene_.cloth.edges(i, 0),
+                       scene_.cloth.edges(i, 1)};
+      pairs.push_back(pair);
+    }
+  }
+
  private:
   /// A pair of the solid, without its vertices.
   ContactPair pair_of(PairKind kind, double weight) const {
@@ -113,12 +127,11 @@ class Finder {
   bool is_near(const Ball& ball) const {
     return solid_.distance(ball.centre) - ball.radius < scene_.barrier.dhat;
   }
-  /// The fraction of a cloth element of this length that one side of a cylinder's polygon covers. The sides
-  /// of a cylinder that is thinner than the element share it.
+  /// The fraction of a cloth element of this length that one side of a rim's polygon covers. The sides
+  /// of a rim that is thinner than the element share it.
   double side_fraction(double length) const {
-    if (features_.side == 0) return 1;
-    const double sides = 0.5 * static_cast<double>(features_.points.size());
-    return std::clamp(features_.side / length, 1 / sides, 1.0);
+    if (features_.sides == 0) return 1;
+    return std::clamp(features_.side / length, 1.0 / features_.sides, 1.0);
   }
 
   /// The triangles' vertices or edges, of which there are `count`, that are near; ascending, each once.
@@ -191,7 +204,9 @@ CandidatePairs find_candidates(const ShapeScene& scene, const std::vector<SolidP
     if (kind == SolidKind::sphere) continue;
     for (const int i : finder.vertices_of(triangles)) c.vertices.push_back({i, k});
     if (kind == SolidKind::half_space) continue;
-    finder.add_edge_edge(finder.edges_of(triangles), c.pairs);
+    const std::vector<int> edges = finder.edges_of(triangles);
+    finder.add_edge_edge(edges, c.pairs);
+    if (kind == SolidKind::cylinder) finder.add_curved_side(edges, c.curved_sides);
   }
   return c;
 }

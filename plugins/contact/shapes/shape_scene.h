@@ -45,6 +45,7 @@ std::vector<SolidPair> find_triangles(const ShapeScene& scene, const Positions& 
 struct CandidatePairs {
   std::vector<SolidPair> vertices;
   std::vector<ContactPair> pairs;
+  std::vector<ContactPair> curved_sides;  ///< a cylinder's axis and an edge of the cloth (make_rim_contacts)
 };
 
 /// The candidate pairs of these triangles during the linear motion from x0 to x1.

@@ -19,7 +19,7 @@ const std::vector<std::pair<std::string, SolidKind>> kind_names = {{"sphere", So
                                                                    {"cylinder", SolidKind::cylinder},
                                                                    {"half_space", SolidKind::half_space}};
 
-/// A cylinder's prism has more sides the smaller d̂ is compared with the radius: 700 000 at this ratio.
+/// A rim's polygon has more sides the smaller d̂ is compared with the radius: 700 000 at this ratio.
 constexpr double max_radius_over_dhat = 5e6;
 
 Solid solid_of(const ShapeParameters& p, int index, double friction) {
