@@ -1,6 +1,7 @@
 #pragma once
 
 #include <random>
+#include <utility>
 #include <vector>
 
 #include "core/numerics/patterns/generate.h"
@@ -10,6 +11,20 @@ namespace drape {
 /// The Delaunay triangulation of distinct points in the plane, counter-clockwise, in an order that depends
 /// on the points alone.
 Triangles delaunay_triangulation(const std::vector<Eigen::Vector2d>& points);
+
+/// The constrained Delaunay triangulation of the region within loops, counter-clockwise, in an order that
+/// depends on the points alone. The first points are the loops' corners, `loop_sizes` of them, the others lie
+/// inside.
+Triangles constrained_triangulation(const std::vector<Eigen::Vector2d>& points,
+                                    const std::vector<int>& loop_sizes);
+
+/// Two sides of closed loops, by the loop and the number in it.
+struct LoopSide {
+  int loop = -1, side = -1;
+};
+/// Two sides that meet elsewhere than at the end that one has in common with the next; exact. No loops (-1)
+/// if none do.
+std::pair<LoopSide, LoopSide> crossing_sides(const std::vector<Polygon>& loops);
 
 /// Edge length h of a mesh of `vertices` vertices with equilateral triangles: with b = border_length / h
 /// boundary vertices there are 2 · vertices − b triangles of area √3/4 h² (Euler's formula, less its

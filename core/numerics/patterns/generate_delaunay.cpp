@@ -11,6 +11,7 @@
 #include <cmath>
 #include <numbers>
 #include <optional>
+#include <set>
 #include <stdexcept>
 #include <string>
 
@@ -193,6 +194,61 @@ Triangles delaunay_triangulation(const std::vector<Eigen::Vector2d>& points) {
   for (auto f : triangulation.finite_face_handles())
     triangles.push_back({f->vertex(0)->info(), f->vertex(1)->info(), f->vertex(2)->info()});
   return in_order(std::move(triangles));
+}
+
+Triangles constrained_triangulation(const std::vector<Eigen::Vector2d>& points,
+                                    const std::vector<int>& loop_sizes) {
+  Triangulation triangulation;
+  std::vector<Triangulation::Vertex_handle> vertices;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    vertices.push_back(triangulation.insert(Point2(points[i].x(), points[i].y())));
+    vertices.back()->info() = static_cast<int>(i);
+  }
+  for (std::size_t first = 0, k = 0; k < loop_sizes.size(); first += loop_sizes[k++])
+    for (int i = 0; i < loop_sizes[k]; ++i)
+      triangulation.insert_constraint(vertices[first + i], vertices[first + (i + 1) % loop_sizes[k]]);
+  // A face is inside if an odd number of loops lie between it and infinity.
+  std::set<Triangulation::Face_handle> found = {triangulation.infinite_face()};
+  std::vector<Triangulation::Face_handle> open = {triangulation.infinite_face()};
+  open.back()->set_in_domain(false);
+  while (!open.empty()) {
+    const auto face = open.back();
+    open.pop_back();
+    for (int k = 0; k < 3; ++k) {
+      const auto next = face->neighbor(k);
+      if (!found.insert(next).second) continue;
+      next->set_in_domain(face->is_in_domain() != face->is_constrained(k));
+      open.push_back(next);
+    }
+  }
+  std::vector<std::array<int, 3>> triangles;
+  for (auto f : triangulation.finite_face_handles())
+    if (f->is_in_domain())
+      triangles.push_back({f->vertex(0)->info(), f->vertex(1)->info(), f->vertex(2)->info()});
+  return in_order(std::move(triangles));
+}
+
+std::pair<LoopSide, LoopSide> crossing_sides(const std::vector<Polygon>& loops) {
+  std::vector<std::pair<LoopSide, Kernel::Segment_2>> sides;
+  for (std::size_t k = 0; k < loops.size(); ++k)
+    for (std::size_t i = 0; i < loops[k].size(); ++i) {
+      const Eigen::Vector2d &a = loops[k][i], &b = loops[k][(i + 1) % loops[k].size()];
+      sides.push_back({{int(k), int(i)}, {Point2(a.x(), a.y()), Point2(b.x(), b.y())}});
+    }
+  for (std::size_t i = 0; i < sides.size(); ++i)
+    for (std::size_t j = i + 1; j < sides.size(); ++j) {
+      const auto& [one, a] = sides[i];
+      const auto& [other, b] = sides[j];
+      if (!CGAL::do_overlap(a.bbox(), b.bbox())) continue;
+      const bool same = one.loop == other.loop;
+      const bool next = same && other.side == one.side + 1;
+      const bool last = same && one.side == 0 && other.side + 1 == std::ssize(loops[one.loop]);
+      const bool meet = next   ? a.has_on(b.target()) || b.has_on(a.source())
+                        : last ? a.has_on(b.source()) || b.has_on(a.target())
+                               : CGAL::do_intersect(a, b);
+      if (meet || a.is_degenerate()) return {one, other};
+    }
+  return {};
 }
 
 TriangleMesh delaunay_polygon(const std::vector<Polygon>& loops, int vertices_about, unsigned seed,

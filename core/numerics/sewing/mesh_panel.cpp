@@ -1,0 +1,131 @@
+#include "core/numerics/sewing/mesh_panel.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "core/numerics/patterns/delaunay.h"
+
+namespace drape {
+
+namespace {
+
+using Eigen::Vector2d;
+
+/// Signed, positive where the loop runs counter-clockwise.
+double area_of(const Polygon& loop) {
+  double twice = 0;
+  for (std::size_t i = 0; i < loop.size(); ++i) {
+    const Vector2d a = loop[i] - loop[0], b = loop[(i + 1) % loop.size()] - loop[0];
+    twice += a.x() * b.y() - a.y() * b.x();
+  }
+  return twice / 2;
+}
+
+/// Whether the loop leans to the left: the sign of the third moment of its sides about the middle of its box.
+/// That of a mirrored loop is the opposite one.
+bool leans_left(const Polygon& loop, double middle) {
+  double moment = 0;
+  for (std::size_t i = 0; i < loop.size(); ++i) {
+    const Vector2d &a = loop[i], &b = loop[(i + 1) % loop.size()];
+    const double x = (a.x() + b.x()) / 2 - middle;
+    moment += (b - a).norm() * (x + x * x * x);
+  }
+  return moment < 0;
+}
+
+double distance_to_side(const Vector2d& p, const Vector2d& a, const Vector2d& b) {
+  const Vector2d along = b - a;
+  const double t = std::clamp((p - a).dot(along) / along.squaredNorm(), 0.0, 1.0);
+  return (p - a - t * along).norm();
+}
+
+/// Whether p is in the region and farther from its border than `gap`.
+bool is_well_inside(const std::vector<Polygon>& loops, const Vector2d& p, double gap) {
+  bool inside = false;
+  for (const Polygon& loop : loops) {
+    if (is_inside(loop, p)) inside = !inside;
+    for (std::size_t i = 0; i < loop.size(); ++i)
+      if (distance_to_side(p, loop[i], loop[(i + 1) % loop.size()]) < gap) return false;
+  }
+  return inside;
+}
+
+/// The points of an equilateral lattice about the middle of the region's box that lie well inside.
+Polygon lattice(const std::vector<Polygon>& loops, const Eigen::AlignedBox2d& box, double edge_length) {
+  constexpr double gap = 0.6;  // of an edge: triangles at the border are about as high as others
+  Polygon points;
+  const double height = edge_length * std::numbers::sqrt3 / 2;
+  const auto rows = static_cast<long>(std::ceil(box.sizes().y() / (2 * height)));
+  const auto columns = static_cast<long>(std::ceil(box.sizes().x() / (2 * edge_length))) + 1;
+  for (long j = -rows; j <= rows; ++j)
+    for (long i = -columns; i <= columns; ++i) {
+      const double shift = j % 2 == 0 ? 0.0 : 0.5;
+      const Vector2d p = box.center() + Vector2d((static_cast<double>(i) + shift) * edge_length,
+                                                 static_cast<double>(j) * height);
+      if (is_well_inside(loops, p, gap * edge_length)) points.push_back(p);
+    }
+  return points;
+}
+
+/// Moves each inner point to the mean of its neighbours, which evens the triangles out.
+void smooth(Polygon& points, std::size_t first_inner, const Triangles& triangles) {
+  Polygon sum(points.size(), Vector2d::Zero());
+  std::vector<double> count(points.size(), 0);
+  for (const auto& t : triangles.rowwise())
+    for (int k = 0; k < 3; ++k)
+      for (const int other : {t[(k + 1) % 3], t[(k + 2) % 3]}) sum[t[k]] += points[other], ++count[t[k]];
+  for (std::size_t v = first_inner; v < points.size(); ++v)
+    if (count[v] > 0) points[v] = sum[v] / count[v];
+}
+
+}  // namespace
+
+bool is_inside(const Polygon& loop, const Vector2d& p) {
+  bool inside = false;
+  for (std::size_t i = 0; i < loop.size(); ++i) {
+    const Vector2d &a = loop[i], &b = loop[(i + 1) % loop.size()];
+    if ((a.y() > p.y()) != (b.y() > p.y()) &&
+        p.x() < (b.x() - a.x()) * (p.y() - a.y()) / (b.y() - a.y()) + a.x())
+      inside = !inside;
+  }
+  return inside;
+}
+
+TriangleMesh mesh_panel(const std::vector<Polygon>& loops, double edge_length) {
+  constexpr int rounds = 8;  // of smoothing: more hardly change a mesh of 2 cm
+  std::vector<Polygon> own = loops;
+  Eigen::AlignedBox2d box;
+  for (const Vector2d& p : own[0]) box.extend(p);
+  const bool mirrored = leans_left(own[0], box.center().x());
+  if (mirrored)
+    for (Polygon& loop : own)
+      for (Vector2d& p : loop) p.x() = 2 * box.center().x() - p.x();
+  Polygon points;
+  std::vector<int> sizes;
+  for (const Polygon& loop : own) {
+    points.insert(points.end(), loop.begin(), loop.end());
+    sizes.push_back(static_cast<int>(loop.size()));
+  }
+  const std::size_t first_inner = points.size();
+  for (const Vector2d& p : lattice(own, box, edge_length)) points.push_back(p);
+  Triangles triangles = constrained_triangulation(points, sizes);
+  for (int round = 0; round < rounds; ++round) {
+    smooth(points, first_inner, triangles);
+    triangles = constrained_triangulation(points, sizes);
+  }
+  // Counter-clockwise as the outline runs: the mirrored triangles of a mirrored loop are clockwise.
+  if (mirrored != (area_of(loops[0]) < 0)) triangles.col(1).swap(triangles.col(2));
+  TriangleMesh mesh{Positions::Zero(std::ssize(points), 3), triangles};
+  for (std::size_t v = 0; v < points.size(); ++v) {
+    mesh.vertices.row(static_cast<Eigen::Index>(v)).head<2>() = points[v].transpose();
+    if (mirrored) mesh.vertices(static_cast<Eigen::Index>(v), 0) = 2 * box.center().x() - points[v].x();
+  }
+  for (std::size_t v = 0, k = 0; k < loops.size(); ++k)
+    for (const Vector2d& p : loops[k])
+      mesh.vertices.row(static_cast<Eigen::Index>(v++)).head<2>() = p.transpose();
+  return mesh;
+}
+
+}  // namespace drape
