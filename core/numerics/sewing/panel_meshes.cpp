@@ -1,0 +1,88 @@
+#include "core/numerics/sewing/panel_meshes.h"
+
+#include <cmath>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "core/numerics/patterns/delaunay.h"
+#include "core/numerics/sewing/mesh_panel.h"
+
+namespace drape {
+
+namespace {
+
+/// The divided loops of a panel.
+struct DividedLoops {
+  std::vector<Polygon> loops;
+  std::vector<std::vector<int>> edges;  ///< of each side
+  std::vector<int> stitches, ends;      ///< as PanelMesh's
+
+  DividedLoops(const Panel& panel, const std::vector<EdgeDivision>& divisions) {
+    for (const std::vector<int>& own : panel.loops) {
+      Polygon& loop = loops.emplace_back();
+      std::vector<int>& edge = edges.emplace_back();
+      int before = divisions[own.back()].stitches.back();
+      for (const int e : own) {
+        const EdgeDivision& division = divisions[e];
+        for (std::size_t i = 0; i + 1 < division.lengths.size(); ++i) {
+          loop.push_back(panel.edges[e].curve.at_length(division.lengths[i]));
+          edge.push_back(e);
+          stitches.push_back(division.stitches[i]);
+          ends.push_back(i == 0 ? before : -1);
+        }
+        before = division.stitches.back();
+      }
+    }
+  }
+};
+
+std::string edges_text(const Panel& panel, int one, int other) {
+  if (one == other) return "edge " + panel.edges[one].name + " crosses or touches itself";
+  return "edges " + panel.edges[one].name + " and " + panel.edges[other].name + " cross or touch";
+}
+
+/// Why loops bound no panel; nothing if they do.
+std::optional<ConfigError> fault_of(const Panel& panel, const DividedLoops& divided) {
+  const std::string in = "panel " + panel.name + ": ";
+  const auto& loops = divided.loops;
+  for (std::size_t k = 0; k < loops.size(); ++k)
+    if (loops[k].size() < 3)
+      return ConfigError{panel.where, in + (k == 0 ? "the outline" : "hole " + std::to_string(k)) + " has " +
+                                          std::to_string(loops[k].size()) +
+                                          " points at this \"edge_length\"; choose a shorter one"};
+  const auto [one, other] = crossing_sides(loops);
+  if (one.loop >= 0) {
+    const int e = divided.edges[one.loop][one.side], f = divided.edges[other.loop][other.side];
+    return ConfigError{panel.edges[f].where,
+                       in + edges_text(panel, e, f) +
+                           "; an outline must not meet itself: move its vertices, or choose "
+                           "a shorter \"edge_length\""};
+  }
+  for (std::size_t k = 1; k < loops.size(); ++k)
+    if (!is_inside(loops[0], loops[k][0]))
+      return ConfigError{panel.edges[panel.loops[k][0]].where,
+                         in + "the hole that begins with edge " + panel.edges[panel.loops[k][0]].name +
+                             " lies outside the outline; the first loop of edges is the outline"};
+  return std::nullopt;
+}
+
+}  // namespace
+
+std::vector<PanelMesh> mesh_panels(const Pattern& pattern, double edge_length,
+                                   const std::vector<std::vector<EdgeDivision>>& divisions,
+                                   ConfigErrors& errors) {
+  std::vector<PanelMesh> meshes;
+  for (std::size_t p = 0; p < pattern.panels.size(); ++p) {
+    DividedLoops divided(pattern.panels[p], divisions[p]);
+    if (std::optional<ConfigError> fault = fault_of(pattern.panels[p], divided)) {
+      errors.push_back(std::move(*fault));
+      continue;
+    }
+    meshes.push_back(
+        {mesh_panel(divided.loops, edge_length), std::move(divided.stitches), std::move(divided.ends)});
+  }
+  return meshes;
+}
+
+}  // namespace drape

@@ -1,0 +1,25 @@
+#pragma once
+
+#include <vector>
+
+#include "core/kernel/interfaces/triangle_mesh.h"
+#include "core/numerics/sewing/divide_edges.h"
+
+namespace drape {
+
+/// A panel in its plane (z = 0), meshed; its first vertices are on its loops.
+struct PanelMesh {
+  TriangleMesh flat;
+  std::vector<int>
+      stitches;           ///< of the loops' vertices, the stitches of the edge that begins there; -1 for none
+  std::vector<int> ends;  ///< … and of the edge that ends there
+  int border() const { return static_cast<int>(stitches.size()); }
+};
+
+/// Meshes every panel. Appends the faults of outlines: with fewer than three points, or that cross or touch
+/// themselves or one another, and holes outside.
+std::vector<PanelMesh> mesh_panels(const Pattern& pattern, double edge_length,
+                                   const std::vector<std::vector<EdgeDivision>>& divisions,
+                                   ConfigErrors& errors);
+
+}  // namespace drape

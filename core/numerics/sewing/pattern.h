@@ -1,0 +1,58 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/kernel/plugin/config_node.h"
+#include "core/numerics/sewing/edge_curve.h"
+
+namespace drape {
+
+/// One edge of a panel's outline or of a hole.
+struct PanelEdge {
+  std::string name;  ///< as messages call it: its name, or its number from 0
+  EdgeCurve curve;
+  std::optional<std::string> label;  ///< selects its vertices for pins
+  Location where;                    ///< in the pattern's file
+};
+
+/// A flat piece of cloth that is cut along closed loops of edges, and where it is placed.
+struct Panel {
+  std::string name;
+  std::vector<PanelEdge> edges;
+  std::vector<std::vector<int>> loops;   ///< edges, each of which begins where the last ends; then the holes
+  Eigen::Vector3d rotation{0, 0, 0};     ///< about x, then y, then z [degree]
+  Eigen::Vector3d translation{0, 0, 0};  ///< applied after it [m]
+  Location where;
+};
+
+/// An edge of a panel, by their indices.
+struct EdgeIndex {
+  int panel = 0, edge = 0;
+};
+
+/// Two chains of edges that are sewn to one another. The first chain's edges run along the seam, those of the
+/// second against it, or along it as well if `right_wrong`: then one panel's right side lies on the other's
+/// wrong side.
+struct Seam {
+  std::string name;
+  std::array<std::vector<EdgeIndex>, 2> sides;
+  bool right_wrong = false;
+  double ease = 0;  ///< largest difference of the sides' lengths, as a part of the longer one
+  Location where;
+};
+
+/// A garment as it is cut and sewn, in metres; the right side of a panel is seen where its outline runs
+/// counter-clockwise.
+struct Pattern {
+  std::vector<Panel> panels;
+  std::vector<Seam> seams;
+  std::string up = "y";  ///< axis of the placement that points up, "y" or "z"
+
+  const PanelEdge& edge(const EdgeIndex& i) const { return panels[i.panel].edges[i.edge]; }
+};
+
+}  // namespace drape

@@ -1,0 +1,242 @@
+#include "core/numerics/sewing/sew_pattern.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "core/numerics/mesh/disjoint_sets.h"
+#include "core/numerics/mesh/mesh_faults.h"
+#include "core/numerics/mesh/rotation.h"
+#include "core/numerics/mesh_files/file_coordinates.h"
+#include "core/numerics/sewing/panel_meshes.h"
+
+namespace drape {
+
+namespace {
+
+constexpr double gap_of_pieces = 0.05;  // between texture coordinates [m]
+
+using VertexPair = std::pair<int, int>;
+
+VertexPair in_order(int a, int b) { return std::minmax(a, b); }
+
+/// Panels' vertices, one panel's after another's, and what the stitches make of them.
+class Joints {
+ public:
+  explicit Joints(const std::vector<PanelMesh>& panels) {
+    int count = 0;
+    for (const PanelMesh& panel : panels) {
+      first_.push_back(count);
+      count += static_cast<int>(panel.flat.vertices.rows());
+    }
+    DisjointSets sets(count);
+    std::map<int, int> vertex_of;  // a vertex of each stitch
+    for (std::size_t p = 0; p < panels.size(); ++p)
+      for (int v = 0; v < panels[p].border(); ++v)
+        for (const int stitch : {panels[p].stitches[v], panels[p].ends[v]})
+          if (stitch >= 0) sets.unite(first_[p] + v, vertex_of.emplace(stitch, first_[p] + v).first->second);
+    std::vector<int> number(count, -1);
+    for (int v = 0; v < count; ++v) {
+      int& own = number[sets.find(v)];
+      if (own == -1) own = vertex_count_++;
+      joined_.push_back(own);
+    }
+  }
+  int vertex_count() const { return vertex_count_; }
+  int of(std::size_t panel, int vertex) const { return joined_[first_[panel] + vertex]; }
+
+ private:
+  std::vector<int> first_, joined_;
+  int vertex_count_ = 0;
+};
+
+/// Divides the edge from a to b, with the triangles on both of its sides, by a new vertex in its middle.
+void split_edge(TriangleMesh& mesh, int a, int b) {
+  const auto middle = static_cast<int>(mesh.vertices.rows());
+  mesh.vertices.conservativeResize(middle + 1, 3);
+  mesh.vertices.row(middle) = (mesh.vertices.row(a) + mesh.vertices.row(b)) / 2;
+  const Eigen::Index count = mesh.triangles.rows();
+  for (Eigen::Index t = 0; t < count; ++t)
+    for (int k = 0; k < 3; ++k) {
+      const int from = mesh.triangles(t, k), to = mesh.triangles(t, (k + 1) % 3);
+      if (in_order(from, to) != in_order(a, b)) continue;
+      const int other = mesh.triangles(t, (k + 2) % 3);
+      mesh.triangles.row(t) << from, middle, other;
+      mesh.triangles.conservativeResize(mesh.triangles.rows() + 1, 3);
+      mesh.triangles.bottomRows<1>() << middle, to, other;
+      break;
+    }
+}
+
+/// Divides the inner edges between two border vertices of a panel that the stitches lay on another edge, as
+/// at the corners of a bag: an edge has two triangles.
+void divide_doubled_chords(std::vector<PanelMesh>& panels, const Joints& joints) {
+  struct Use {
+    std::size_t panel;
+    VertexPair edge;
+    bool inner;
+  };
+  std::map<VertexPair, std::vector<Use>> uses;
+  for (std::size_t p = 0; p < panels.size(); ++p) {
+    std::map<VertexPair, int> count;
+    const Triangles& triangles = panels[p].flat.triangles;
+    for (Eigen::Index t = 0; t < triangles.rows(); ++t)
+      for (int k = 0; k < 3; ++k) ++count[in_order(triangles(t, k), triangles(t, (k + 1) % 3))];
+    for (const auto& [edge, triangles_there] : count)
+      if (edge.second < panels[p].border())
+        uses[in_order(joints.of(p, edge.first), joints.of(p, edge.second))].push_back(
+            {p, edge, triangles_there == 2});
+  }
+  for (const auto& [joined, all] : uses) {
+    const auto inner = std::ranges::count_if(all, &Use::inner);
+    if (inner < std::ssize(all) ? inner == 0 : inner == 1) continue;
+    for (const Use& use : all)
+      if (use.inner) split_edge(panels[use.panel].flat, use.edge.first, use.edge.second);
+  }
+}
+
+/// For each panel whether it is turned over, so that all have their right sides on the same side of the cloth
+/// but those beyond a seam of right on wrong sides. Appends the seams that leave the cloth one side.
+std::vector<char> turned_panels(const Pattern& pattern, ConfigErrors& errors) {
+  struct Neighbour {
+    int panel;
+    const Seam* seam;
+  };
+  std::vector<std::vector<Neighbour>> neighbours(pattern.panels.size());
+  for (const Seam& seam : pattern.seams)
+    for (const EdgeIndex& a : seam.sides[0])
+      for (const EdgeIndex& b : seam.sides[1]) {
+        neighbours[a.panel].push_back({b.panel, &seam});
+        neighbours[b.panel].push_back({a.panel, &seam});
+      }
+  std::vector<char> turned(pattern.panels.size(), 0), found(pattern.panels.size(), 0);
+  std::set<const Seam*> faulty;
+  for (int first = 0; first < std::ssize(turned); ++first) {
+    if (found[first]) continue;
+    std::vector<int> part = {first};
+    found[first] = 1;
+    for (std::size_t i = 0; i < part.size(); ++i)
+      for (const auto& [panel, seam] : neighbours[part[i]]) {
+        const char wanted = static_cast<char>(turned[part[i]] != static_cast<char>(seam->right_wrong));
+        if (!found[panel])
+          found[panel] = 1, turned[panel] = wanted, part.push_back(panel);
+        else if (turned[panel] != wanted && faulty.insert(seam).second)
+          errors.push_back(
+              {seam->where, "seam " + seam->name +
+                                " gives the cloth one side, as a Möbius band has; sew it the other way "
+                                "round (\"right_wrong\")"});
+      }
+    const auto count = std::ranges::count_if(part, [&](int p) { return turned[p] != 0; });
+    if (2 * count > std::ssize(part))
+      for (const int p : part) turned[p] = !turned[p];
+  }
+  return turned;
+}
+
+/// Appends where the joined panels are no sheet of two sides.
+void check_joints(const Pattern& pattern, const TriangleMesh& cloth, ConfigErrors& errors) {
+  MeshFaults faults = MeshFaults::of_elements(cloth);
+  const auto panel_of = [&](int t) -> const Panel& { return pattern.panels[cloth.piece[t]]; };
+  const auto names = [&](const std::vector<int>& triangles) {
+    std::set<std::string> panels;
+    for (const int t : triangles) panels.insert(panel_of(t).name);
+    std::string text;
+    for (const std::string& name : panels) text += (text.empty() ? "" : ", ") + name;
+    return (panels.size() == 1 ? "panel " : "panels ") + text;
+  };
+  constexpr const char* remedy = "; take one of the seams out, or choose a shorter \"edge_length\"";
+  std::set<std::string> told;
+  const auto add = [&](int t, const std::string& text) {
+    if (told.insert(text).second) errors.push_back({panel_of(t).where, text + remedy});
+  };
+  for (const int t : faults.repeating_triangles)
+    add(t, names({t}) + ": its seams join two vertices of one triangle");
+  if (!errors.empty()) return;
+  for (const auto& [t, other] : faults.doubled_triangles)
+    add(t, names({t, other}) + ": the seams lay one triangle on another");
+  if (!errors.empty()) return;
+  faults.find_connectivity(cloth.triangles, static_cast<int>(cloth.vertices.rows()),
+                           std::vector<char>(cloth.triangles.rows(), 0));
+  for (const FaultyEdge& edge : faults.crowded_edges)
+    add(edge.triangles[0], names(edge.triangles) + " meet at one edge, where a cloth has two triangles");
+  for (const auto& [v, fans] : faults.shared_vertices) {
+    std::vector<int> around;
+    for (int t = 0; t < cloth.triangles.rows(); ++t)
+      if ((cloth.triangles.row(t).array() == v).any()) around.push_back(t);
+    add(around[0], names(around) + " meet at a point only, as seams join it and no edges beside it");
+  }
+}
+
+}  // namespace
+
+OutlineSize outline_size(const Pattern& pattern) {
+  OutlineSize size;
+  for (const Panel& panel : pattern.panels)
+    for (const std::vector<int>& loop : panel.loops) {
+      constexpr int steps = 32;
+      double area = 0;
+      for (const int e : loop) {
+        const EdgeCurve& curve = panel.edges[e].curve;
+        size.border += curve.length();
+        for (int i = 0; i < steps; ++i) {
+          const Eigen::Vector2d a = curve.at(double(i) / steps), b = curve.at(double(i + 1) / steps);
+          area += (a.x() * b.y() - a.y() * b.x()) / 2;
+        }
+      }
+      size.area += (&loop == &panel.loops[0] ? 1 : -1) * std::abs(area);
+    }
+  return size;
+}
+
+std::optional<TriangleMesh> sew_pattern(const Pattern& pattern, double edge_length, ConfigErrors& errors) {
+  const std::size_t before = errors.size();
+  const auto divisions = divide_edges(pattern, edge_length, errors);
+  if (errors.size() > before) return std::nullopt;
+  std::vector<PanelMesh> panels = mesh_panels(pattern, edge_length, divisions, errors);
+  const std::vector<char> turned = turned_panels(pattern, errors);
+  if (errors.size() > before) return std::nullopt;
+  divide_doubled_chords(panels, Joints(panels));
+  const Joints joints(panels);
+
+  TriangleMesh cloth{Positions::Zero(joints.vertex_count(), 3), {}};
+  Eigen::Index triangle_count = 0, t = 0;
+  for (const PanelMesh& panel : panels) triangle_count += panel.flat.triangles.rows();
+  cloth.triangles.resize(triangle_count, 3);
+  cloth.uv.resize(triangle_count, 6);
+  Eigen::VectorXd places = Eigen::VectorXd::Zero(joints.vertex_count());
+  double right_end = 0;  // of the panels before, which lie in a row
+  for (std::size_t p = 0; p < panels.size(); ++p) {
+    const Panel& panel = pattern.panels[p];
+    const TriangleMesh& flat = panels[p].flat;
+    const Eigen::AlignedBox3d box = bounding_box(flat.vertices);
+    const Eigen::RowVector2d shift(right_end - box.min().x(), -box.min().y());
+    right_end += box.sizes().x() + gap_of_pieces;
+    const Eigen::Matrix3d rotation = rotation_matrix(panel.rotation);
+    for (int v = 0; v < flat.vertices.rows(); ++v) {
+      cloth.vertices.row(joints.of(p, v)) +=
+          (rotation * flat.vertices.row(v).transpose() + panel.translation).transpose();
+      ++places[joints.of(p, v)];
+    }
+    for (Eigen::Index i = 0; i < flat.triangles.rows(); ++i, ++t)
+      for (int k = 0; k < 3; ++k) {
+        const int corner = flat.triangles(i, turned[p] ? 2 - k : k);
+        cloth.triangles(t, k) = joints.of(p, corner);
+        cloth.uv.block<1, 2>(t, 2 * k) = flat.vertices.row(corner).head<2>() + shift;
+      }
+    cloth.piece.insert(cloth.piece.end(), flat.triangles.rows(), static_cast<int>(p));
+    cloth.piece_names.push_back(panel.name);
+  }
+  cloth.vertices.array().colwise() /= places.array();
+  FileCoordinates{"m", pattern.up}.convert(cloth.vertices);
+  cloth.sewing = Sewing{};
+  check_joints(pattern, cloth, errors);
+  if (errors.size() > before) return std::nullopt;
+  return cloth;
+}
+
+}  // namespace drape
