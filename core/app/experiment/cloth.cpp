@@ -116,6 +116,8 @@ int vertices_of(const ClothParameters& c) {
 }
 
 double vertices_of_file(const ClothParameters& c) {
+  ConfigErrors errors;
+  if (c.shape == "pattern") return static_cast<double>(cloth_of_pattern(c, errors).value().vertices.rows());
   const TriangleMesh mesh = read_cloth(c);
   return c.edge_length ? vertices_within(OutlineSize::of(mesh), *c.edge_length)
                        : c.vertices.value_or(static_cast<int>(mesh.vertices.rows()));
@@ -162,6 +164,8 @@ std::string levels_text(std::ptrdiff_t count) {
   return std::to_string(count) + (count == 1 ? " level" : " levels");
 }
 
+bool is_of_file(const ClothParameters& c) { return c.shape == "file" || c.shape == "pattern"; }
+
 bool is_grid(const ClothParameters& c) {
   return (c.shape == "square" || c.shape == "rectangle") && c.triangulation != "random";
 }
@@ -178,12 +182,13 @@ Positions AsReadParameters::in_file(Positions x) const {
 std::optional<TriangleMesh> checked_cloth(const Experiment& e, ConfigErrors& errors) {
   const ClothParameters& c = e.parameters.cloth;
   try {
-    TriangleMesh cloth = make_cloth(c);
-    std::vector<std::string> faults = check_mesh(cloth);
-    if (faults.empty() && cloth.sewing) faults = check_pieces(cloth);
-    if (faults.empty()) faults = cut(cloth, c);
+    std::optional<TriangleMesh> cloth = c.shape == "pattern" ? cloth_of_pattern(c, errors) : make_cloth(c);
+    if (!cloth) return std::nullopt;
+    std::vector<std::string> faults = check_mesh(*cloth);
+    if (faults.empty() && cloth->sewing) faults = check_pieces(*cloth);
+    if (faults.empty()) faults = cut(*cloth, c);
     for (const std::string& fault : faults)
-      errors.push_back({e.location_of("cloth"), (c.shape == "file" ? c.file + ": " : "") + fault});
+      errors.push_back({e.location_of("cloth"), (c.file.empty() ? "" : c.file + ": ") + fault});
     if (faults.empty()) return cloth;
   } catch (const std::exception& error) {
     errors.push_back({e.location_of("cloth"), reason_of(error)});
@@ -234,7 +239,7 @@ std::vector<double> estimated_vertices(const ExperimentParameters& p) {
   try {
     const bool grid = is_grid(p.cloth);
     const Eigen::Vector2i counts = grid ? grid_counts(p.cloth) : Eigen::Vector2i(0, 0);
-    const double coarsest = p.cloth.shape == "file" ? vertices_of_file(p.cloth) : vertices_of(p.cloth);
+    const double coarsest = is_of_file(p.cloth) ? vertices_of_file(p.cloth) : vertices_of(p.cloth);
     for (int l = 0; l < p.levels; ++l) {
       const double cells = std::pow(2.0, l);  // of the level, along a cell of the coarsest one
       vertices.push_back(grid ? (cells * (counts.x() - 1) + 1) * (cells * (counts.y() - 1) + 1)

@@ -36,6 +36,8 @@ void check_cloth_keys(const Experiment& e, ConfigErrors& errors) {
            "by this cloth; it is that of \"triangulation: random\", of a polygon or of a file that "
            "\"vertices\" or \"edge_length\" mesh anew");
   if (c.vertices && c.edge_length) refuse("edge_length", "beside \"vertices\"; leave one out");
+  if (c.shape != "pattern" && c.rest != "uv" && (c.seams.angle != 0 || c.seams.stiffness != 1))
+    refuse("seams", "by this cloth; only flat pieces have them (\"rest: uv\" or \"shape: pattern\")");
   if (!grid) return;
   if (random) {
     const std::string why = "with \"triangulation: random\"; \"vertices\" counts them";
@@ -169,7 +171,7 @@ std::optional<Experiment> read_experiment(ConfigNode source, const Registry& reg
   read_keys(e, errors);
   if (errors.empty()) return e;
   // The scene, which would append the faults of mesh files, cannot be built.
-  if (e.parameters.cloth.shape == "file" && !e.parameters.cloth.file.empty()) checked_cloth(e, errors);
+  if (!e.parameters.cloth.file.empty()) checked_cloth(e, errors);
   if (!e.parameters.start.file.empty()) start_mesh(e, errors);
   sort_by_place(errors, e.source.where.file);
   return std::nullopt;

@@ -101,8 +101,9 @@ void SeamParameters::declare(Declaration<SeamParameters>& d) {
 
 void ClothParameters::declare(Declaration<ClothParameters>& d) {
   d.add("shape", &ClothParameters::shape,
-        "flat pattern in z = 0 with a corner (of a disc, the centre) at the origin, or a mesh file")
-      .choices({"square", "rectangle", "disc", "polygon", "file"});
+        "flat pattern in z = 0 with a corner (of a disc, the centre) at the origin, a mesh file, or a sewing "
+        "pattern's file")
+      .choices({"square", "rectangle", "disc", "polygon", "file", "pattern"});
   extent(d.add("side", &ClothParameters::side, "side of a square")).only_with("shape", {"square"});
   extent(d.add("size", &ClothParameters::size, "width and height of a rectangle"))
       .only_with("shape", {"rectangle"});
@@ -110,9 +111,11 @@ void ClothParameters::declare(Declaration<ClothParameters>& d) {
   d.add_sections("loops", &ClothParameters::loops, "outline of a polygon, then its holes")
       .only_with("shape", {"polygon"});
   d.add("file", &ClothParameters::file,
-        "mesh of the rest shape (OBJ, OFF, PLY or STL), relative to this file")
+        "mesh of the rest shape (OBJ, OFF, PLY or STL), or a sewing pattern (GarmentCode's JSON, or YAML), "
+        "relative "
+        "to this file")
       .path()
-      .only_with("shape", {"file"});
+      .only_with("shape", {"file", "pattern"});
   declare_file_coordinates(d);
   d.declared("unit")
       .only_with("shape", {"file", "polygon"})
@@ -122,9 +125,10 @@ void ClothParameters::declare(Declaration<ClothParameters>& d) {
       .only_with("shape", {"file"})
       .description("scale factor on the file's mesh, and so on the rest shape, applied before `rotate`");
   declare_rotate(d)
-      .only_with("shape", {"file"})
+      .only_with("shape", {"file", "pattern"})
       .description(
-          "rotation of the file's mesh about the x, then y, then z axis; regions of pins count from the "
+          "rotation of the file's mesh, or of a pattern's placement, about the x, then y, then z axis; "
+          "regions of pins count from the "
           "result");
   d.add("rest", &ClothParameters::rest,
         "the rest shape: the file's surface in space, or flat pieces, sewn where the file's texture "
@@ -142,8 +146,7 @@ void ClothParameters::declare(Declaration<ClothParameters>& d) {
       .unit("m")
       .between(0, 0.1)
       .only_with("shape", {"file"});
-  d.add_section("seams", &ClothParameters::seams, "the folds along the seams of flat pieces")
-      .only_with("rest", {"uv"});
+  d.add_section("seams", &ClothParameters::seams, "the folds along the seams of flat pieces");
   d.add_section("as_read", &ClothParameters::as_read,
                 "how the cloth's file was read, which drape writes to the config of a run for `drape export "
                 "--as-read`; a record, from which nothing else is taken");
@@ -156,10 +159,11 @@ void ClothParameters::declare(Declaration<ClothParameters>& d) {
         "`rows`; a file's flat pieces are then meshed anew within their outlines")
       .between(3, bounds::most_vertices);
   d.add("edge_length", &ClothParameters::edge_length,
-        "length of the coarsest level's edges, in place of `vertices`")
+        "length of the coarsest level's edges, in place of `vertices`; 0.02 for a sewing pattern that has "
+        "neither")
       .unit("m")
       .between(bounds::smallest_length, bounds::largest_length)
-      .only_with("shape", {"disc", "polygon", "file"});
+      .only_with("shape", {"disc", "polygon", "file", "pattern"});
   natural(d.add("columns", &ClothParameters::columns,
                 "number of vertices along the width of a grid; 0 derives it from `vertices`"),
           bounds::most_vertices)

@@ -5,9 +5,13 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "core/app/experiment/pattern_file.h"
 #include "core/kernel/files/message_text.h"
 #include "core/numerics/mesh/flat_pieces.h"
+#include "core/numerics/mesh/rotation.h"
 #include "core/numerics/mesh/seams.h"
+#include "core/numerics/patterns/delaunay.h"
+#include "core/numerics/sewing/sew_pattern.h"
 
 namespace drape {
 
@@ -52,6 +56,17 @@ double normalised_length(const TriangleMesh& cloth) {
   return length.whole;
 }
 
+Sewing sewing_of(const ClothParameters& c, double uv_length) {
+  return {uv_length, c.seams.angle * std::numbers::pi / 180, c.seams.stiffness};
+}
+
+/// As asked for, or by the number of vertices; 2 cm without either.
+double edge_length_of(const Pattern& pattern, const ClothParameters& c) {
+  if (c.edge_length || !c.vertices) return c.edge_length.value_or(0.02);
+  const OutlineSize size = outline_size(pattern);
+  return even_spacing(size.area, size.border, *c.vertices);
+}
+
 }  // namespace
 
 void sew(TriangleMesh& cloth, const ClothParameters& c) {
@@ -62,7 +77,7 @@ void sew(TriangleMesh& cloth, const ClothParameters& c) {
         c.file +
         ": \"rest: uv\" needs texture coordinates, which the file has not; unwrap it, or leave out "
         "\"rest\"");
-  cloth.sewing = Sewing{1, c.seams.angle * std::numbers::pi / 180, c.seams.stiffness};
+  cloth.sewing = sewing_of(c, 1);
   if (cloth.piece.empty()) {
     cloth.piece =
         flat_pieces(cloth, Topology::of_any(cloth.triangles, static_cast<int>(cloth.vertices.rows())));
@@ -82,6 +97,17 @@ void sew(TriangleMesh& cloth, const ClothParameters& c) {
         three_digits(length) + " m: \"uv_unit: " + guessed_unit(length) + "\"?");
   }
   cloth.sewing->uv_length = unit->length;
+}
+
+std::optional<TriangleMesh> cloth_of_pattern(const ClothParameters& c, ConfigErrors& errors) {
+  if (c.file.empty()) throw std::runtime_error("\"shape: pattern\" needs \"file\", the pattern to read");
+  const std::optional<Pattern> pattern = read_pattern(c.file, errors);
+  if (!pattern) return std::nullopt;
+  std::optional<TriangleMesh> cloth = sew_pattern(*pattern, edge_length_of(*pattern, c), errors);
+  if (!cloth) return std::nullopt;
+  if (!c.rotate.isZero(0)) cloth->vertices *= rotation_matrix(c.rotate).transpose();
+  cloth->sewing = sewing_of(c, 1);
+  return cloth;
 }
 
 std::string sewing_text(const Level& coarsest) {

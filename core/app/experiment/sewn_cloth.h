@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -12,6 +13,10 @@ namespace drape {
 /// file does not. Throws std::runtime_error with what is missing, and with what the file's texture
 /// coordinates seem to be.
 void sew(TriangleMesh& cloth, const ClothParameters& c);
+
+/// The cloth of a sewing pattern's file. Nothing, with every fault appended at its place in that file, if it
+/// is none. Throws std::runtime_error without a file.
+std::optional<TriangleMesh> cloth_of_pattern(const ClothParameters& c, ConfigErrors& errors);
 
 /// A line about a cloth of flat pieces, as "3 flat pieces, 2.4 m of seams, …"; "" for another cloth.
 std::string sewing_text(const Level& coarsest);

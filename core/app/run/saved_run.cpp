@@ -92,9 +92,11 @@ ConfigNode saved_config(const Experiment& experiment) {
     set_path(config, "start", schema_of<StartParameters>().write(&start));
     set_path(config, "start.file", copy_named("start.ply"));
   }
-  if (p.cloth.shape == "file") {
+  if (!p.cloth.file.empty()) {
     ClothParameters cloth = p.cloth;
-    if (cloth.as_read.file.empty())
+    if (cloth.shape == "pattern")
+      cloth.shape = "file", cloth.rest = "uv", cloth.uv_unit = "m";
+    else if (cloth.as_read.file.empty())
       cloth.as_read = {p.cloth, fs::absolute(cloth.file).string(), cloth.scale, cloth.rotate, cloth.join};
     const ClothParameters as_written;  // in metres, with z up, and transformed
     cloth.unit = as_written.unit;

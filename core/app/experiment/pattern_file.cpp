@@ -1,0 +1,140 @@
+#include "core/app/experiment/pattern_file.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "core/app/experiment/panel_reader.h"
+#include "core/app/files/yaml_file.h"
+#include "core/kernel/files/message_text.h"
+#include "core/kernel/files/string_utils.h"
+
+namespace drape {
+
+namespace {
+
+using Kind = ConfigNode::Kind;
+
+/// The seams of a file, by panels that are read.
+class SeamReader {
+ public:
+  SeamReader(const std::vector<ReadPanel>& panels, ConfigErrors& errors) : panels_(panels), errors_(errors) {}
+
+  std::optional<Seam> read(const std::string& name, const ConfigNode& node, const Location& where) {
+    const std::size_t before = errors_.size();
+    PatternSeamParameters p;
+    schema_of<PatternSeamParameters>("seam " + excerpt(name))
+        .read(&p, node.kind == Kind::list ? in_map(node) : node, errors_);
+    if (errors_.size() > before) return std::nullopt;
+    Seam seam{excerpt(p.name.value_or(name)), {}, p.right_wrong, p.ease, where};
+    std::vector<ConfigNode> sides = p.sides.items;
+    if (sides.size() == 3 && sides[2].scalar == "right_wrong") seam.right_wrong = true, sides.pop_back();
+    if (sides.size() != 2) {
+      errors_.push_back({where, "seam " + seam.name +
+                                    " needs two sides, as in [front.side, back.side], or with "
+                                    "right_wrong behind them"});
+      return std::nullopt;
+    }
+    for (int k = 0; k < 2; ++k) {
+      const ConfigNode& side = sides[k];
+      const bool against = k == 1 && !seam.right_wrong;
+      for (const ConfigNode& edge : side.kind == Kind::list ? side.items : std::vector{side})
+        add_edge(edge, seam.name, against, seam.sides[k]);
+      if (side.kind == Kind::list && side.items.empty())
+        errors_.push_back({side.where, "seam " + seam.name + " has a side without edges"});
+    }
+    return errors_.size() > before ? std::nullopt : std::optional(std::move(seam));
+  }
+
+ private:
+  static ConfigNode in_map(const ConfigNode& sides) {
+    ConfigNode map;
+    map.where = sides.where;
+    map.add("sides", sides);
+    return map;
+  }
+
+  /// Adds an edge, or the parts of one with darts, in their order along the seam.
+  void add_edge(const ConfigNode& node, const std::string& seam, bool against, std::vector<EdgeIndex>& side) {
+    ConfigNode panel, edge;
+    if (const std::size_t dot = node.scalar.rfind('.'); dot != std::string::npos) {
+      panel = edge = node;
+      panel.scalar = node.scalar.substr(0, dot), edge.scalar = node.scalar.substr(dot + 1);
+    } else if (node.find("panel") && node.find("edge")) {
+      panel = *node.find("panel"), edge = *node.find("edge");
+    } else {
+      errors_.push_back({node.where, "seam " + seam +
+                                         ": a side is an edge, as in front.hem or {panel: front, edge: "
+                                         "2}, or a list of them, not " +
+                                         node.shown()});
+      return;
+    }
+    const auto named =
+        std::ranges::find(panels_, panel.scalar, [](const ReadPanel& p) { return p.panel.name; });
+    if (named == panels_.end()) {
+      std::vector<std::string> names;
+      for (const ReadPanel& p : panels_) names.push_back(p.panel.name);
+      errors_.push_back({panel.where, "seam " + seam + ": there is no panel " + panel.shown() + "; " +
+                                          did_you_mean(panel.scalar, names, "there are " + joined(names))});
+      return;
+    }
+    const auto number = named->edge_of(edge, "seam " + seam, errors_);
+    if (!number) return;
+    std::vector<int> parts = named->parts[*number];
+    if (against) std::ranges::reverse(parts);
+    for (const int part : parts) side.push_back({static_cast<int>(named - panels_.begin()), part});
+  }
+
+  const std::vector<ReadPanel>& panels_;
+  ConfigErrors& errors_;
+};
+
+}  // namespace
+
+std::optional<Pattern> read_pattern(const std::filesystem::path& file, ConfigErrors& errors) {
+  const std::size_t before = errors.size();
+  const ConfigNode source = read_yaml(file, errors);
+  if (errors.size() > before) return std::nullopt;
+  PatternFileParameters p;
+  schema_of<PatternFileParameters>().read(&p, source, errors);
+  if (errors.size() > before) return std::nullopt;
+  const PatternUnits units{1 / p.properties.units_in_meter, p.properties.curvature_coords == "relative"};
+  std::vector<ReadPanel> panels;
+  const ConfigNode& written = p.pattern.panels;
+  if (written.kind != Kind::map || written.entries.empty()) {
+    errors.push_back({written.kind == Kind::null ? source.where_of("pattern") : written.where,
+                      "the pattern has no panels; \"panels\" is a map from names to panels"});
+    return std::nullopt;
+  }
+  for (std::size_t i = 0; i < written.entries.size(); ++i) {
+    const auto& [name, node] = written.entries[i];
+    if (written.find(name) != &node)
+      errors.push_back({written.key_locations[i], "panel " + excerpt(name) + " is given twice; rename one"});
+    if (auto panel = read_panel(name, node, units, errors)) panels.push_back(std::move(*panel));
+  }
+  if (errors.size() > before) return std::nullopt;  // seams would miss edges
+  Pattern pattern;
+  pattern.up = p.properties.up;
+  SeamReader reader(panels, errors);
+  const auto add = [&](const std::string& name, const ConfigNode& node, const Location& where) {
+    if (auto seam = reader.read(name, node, where)) pattern.seams.push_back(std::move(*seam));
+  };
+  const ConfigNode& stitches = p.pattern.stitches;
+  for (std::size_t i = 0; i < stitches.items.size(); ++i)
+    add(std::to_string(i), stitches.items[i], stitches.items[i].where);
+  for (std::size_t i = 0; i < stitches.entries.size(); ++i)
+    add(stitches.entries[i].first, stitches.entries[i].second, stitches.key_locations[i]);
+  for (std::size_t k = 0; k < panels.size(); ++k) {
+    for (const auto& [leg, other] : panels[k].darts) {
+      const PanelEdge& edge = panels[k].panel.edges[leg];
+      pattern.seams.push_back({panels[k].panel.name + "." + edge.name,
+                               {std::vector{EdgeIndex{int(k), leg}}, std::vector{EdgeIndex{int(k), other}}},
+                               false,
+                               0.3,
+                               edge.where});
+    }
+    pattern.panels.push_back(std::move(panels[k].panel));
+  }
+  return errors.size() > before ? std::nullopt : std::optional(std::move(pattern));
+}
+
+}  // namespace drape

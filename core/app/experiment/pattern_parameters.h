@@ -1,0 +1,69 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/kernel/plugin/parameters.h"
+
+namespace drape {
+
+/// The keys of a pattern's file, which is GarmentCode's JSON, or YAML of the same structure. Nodes are read
+/// by pattern_file.cpp and panel_reader.cpp.
+
+/// A fold of a panel that is sewn shut, a triangle that an edge loses.
+struct DartParameters {
+  ConfigNode edge;
+  double at = 0.5, width = 0, depth = 0;
+  static void declare(Declaration<DartParameters>& d);
+};
+
+struct CurvatureParameters {
+  std::string type = "quadratic";
+  ConfigNode params;
+  static void declare(Declaration<CurvatureParameters>& d);
+};
+
+struct PanelEdgeParameters {
+  ConfigNode endpoints, curvature;
+  std::optional<std::string> name, label;
+  static void declare(Declaration<PanelEdgeParameters>& d);
+};
+
+struct PanelParameters {
+  Eigen::Vector3d translation{0, 0, 0}, rotation{0, 0, 0};
+  ConfigNode vertices, edges;
+  std::vector<DartParameters> darts;
+  std::optional<std::string> label;
+  static void declare(Declaration<PanelParameters>& d);
+};
+
+struct PatternSeamParameters {
+  std::optional<std::string> name;
+  ConfigNode sides;
+  double ease = 0.3;
+  bool right_wrong = false;
+  static void declare(Declaration<PatternSeamParameters>& d);
+};
+
+struct PatternParameters {
+  ConfigNode panels, stitches, panel_order;
+  static void declare(Declaration<PatternParameters>& d);
+};
+
+struct PatternPropertyParameters {
+  double units_in_meter = 1;
+  std::string curvature_coords = "relative", up = "y";
+  ConfigNode normalize_panel_translation, normalized_edge_loops, original_units_in_meter;
+  static void declare(Declaration<PatternPropertyParameters>& d);
+};
+
+struct PatternFileParameters {
+  PatternPropertyParameters properties;
+  PatternParameters pattern;
+  ConfigNode parameters, parameter_order, constraints, constraint_order;
+  static void declare(Declaration<PatternFileParameters>& d);
+};
+
+}  // namespace drape
