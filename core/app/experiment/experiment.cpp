@@ -36,7 +36,7 @@ void check_cloth_keys(const Experiment& e, ConfigErrors& errors) {
            "by this cloth; it is that of \"triangulation: random\", of a polygon or of a file that "
            "\"vertices\" or \"edge_length\" mesh anew");
   if (c.vertices && c.edge_length) refuse("edge_length", "beside \"vertices\"; leave one out");
-  if (c.shape != "pattern" && c.rest != "uv" && (c.seams.angle != 0 || c.seams.stiffness != 1))
+  if (!c.is_sewn() && (c.seams.angle != 0 || c.seams.stiffness != 1))
     refuse("seams", "by this cloth; only flat pieces have them (\"rest: uv\" or \"shape: pattern\")");
   if (!grid) return;
   if (random) {

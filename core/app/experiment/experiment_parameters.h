@@ -77,6 +77,7 @@ struct ClothParameters : FileCoordinates {
   GrainAxis grain_along = GrainAxis::x;
   std::vector<GrainRegionParameters> grain_regions;
   bool is_meshed_anew() const { return shape == "file" && (vertices || edge_length); }
+  bool is_sewn() const { return rest == "uv" || shape == "pattern"; }
   int vertex_count() const { return vertices.value_or(1024); }  ///< about that of a generated cloth
   static void declare(Declaration<ClothParameters>& d);
 };

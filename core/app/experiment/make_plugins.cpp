@@ -46,7 +46,7 @@ void make_refiner(Experiment& e, ConfigErrors& errors) {
   ConfigNode& node = e.parameters.refiner;
   // Flat pieces are refined at edge midpoints.
   if (node.kind == ConfigNode::Kind::null)
-    node = ConfigNode::of(e.parameters.cloth.rest == "uv" ? "midpoint" : default_refiner);
+    node = ConfigNode::of(e.parameters.cloth.is_sewn() ? "midpoint" : default_refiner);
   ConfigNode resolved;
   e.refiner = make_from<Refiner>(*e.registry, node, errors, &resolved);
   set_path(e.resolved, "refiner", resolved);

@@ -23,16 +23,17 @@ double area_of(const Polygon& loop) {
   return twice / 2;
 }
 
-/// Whether the loop leans to the left: the sign of the third moment of its sides about the middle of its box.
-/// That of a mirrored loop is the opposite one.
-bool leans_left(const Polygon& loop, double middle) {
-  double moment = 0;
+/// To which side a loop leans: -1 to the left of the middle of its box, 1 to the right, 0 for one that is
+/// symmetric but for rounding. That of a mirrored loop is the opposite one.
+int lean_of(const Polygon& loop, double middle) {
+  double moment = 0, size = 0;  // the third moment of the sides: it differs where the first one does not
   for (std::size_t i = 0; i < loop.size(); ++i) {
     const Vector2d &a = loop[i], &b = loop[(i + 1) % loop.size()];
-    const double x = (a.x() + b.x()) / 2 - middle;
-    moment += (b - a).norm() * (x + x * x * x);
+    const double x = (a.x() + b.x()) / 2 - middle, own = (b - a).norm() * (x + x * x * x);
+    moment += own, size += std::abs(own);
   }
-  return moment < 0;
+  constexpr double rounding = 1e-9;
+  return std::abs(moment) <= rounding * size ? 0 : moment < 0 ? -1 : 1;
 }
 
 double distance_to_side(const Vector2d& p, const Vector2d& a, const Vector2d& b) {
@@ -52,18 +53,31 @@ bool is_well_inside(const std::vector<Polygon>& loops, const Vector2d& p, double
   return inside;
 }
 
-/// The points of an equilateral lattice about the middle of the region's box that lie well inside.
-Polygon lattice(const std::vector<Polygon>& loops, const Eigen::AlignedBox2d& box, double edge_length) {
-  constexpr double gap = 0.6;  // of an edge: triangles at the border are about as high as others
+/// A number from -1 to 1 that looks random, of two integers.
+double scattered(long i, long j) {
+  const auto mixed = static_cast<unsigned long>(i * 73856093L + j * 19349663L);
+  return static_cast<double>((mixed * 2654435761UL >> 7) % 1024UL) / 511.5 - 1;
+}
+
+/// The points of an equilateral lattice about the middle of the region's box that lie well inside. They are
+/// moved a little, in a symmetric region to the left and to the right of the middle alike: points on a common
+/// circle have several Delaunay triangulations, of which rounding would choose.
+Polygon lattice(const std::vector<Polygon>& loops, const Eigen::AlignedBox2d& box, double edge_length,
+                bool symmetric) {
+  constexpr double gap = 0.6;     // of an edge: triangles at the border are about as high as others
+  constexpr double moved = 0.02;  // of an edge
   Polygon points;
   const double height = edge_length * std::numbers::sqrt3 / 2;
   const auto rows = static_cast<long>(std::ceil(box.sizes().y() / (2 * height)));
-  const auto columns = static_cast<long>(std::ceil(box.sizes().x() / (2 * edge_length))) + 1;
+  const auto columns = static_cast<long>(std::ceil(box.sizes().x() / edge_length)) + 1;
   for (long j = -rows; j <= rows; ++j)
     for (long i = -columns; i <= columns; ++i) {
-      const double shift = j % 2 == 0 ? 0.0 : 0.5;
-      const Vector2d p = box.center() + Vector2d((static_cast<double>(i) + shift) * edge_length,
-                                                 static_cast<double>(j) * height);
+      if ((i + j) % 2 != 0) continue;  // i counts half edges
+      const double side = symmetric ? static_cast<double>((i > 0) - (i < 0)) : 1;
+      const long column = symmetric ? std::abs(i) : i;
+      const double across = static_cast<double>(i) / 2 + moved * side * scattered(column, j);
+      const double along = static_cast<double>(j) + moved * scattered(j, column);
+      const Vector2d p = box.center() + Vector2d(across * edge_length, along * height);
       if (is_well_inside(loops, p, gap * edge_length)) points.push_back(p);
     }
   return points;
@@ -98,7 +112,8 @@ TriangleMesh mesh_panel(const std::vector<Polygon>& loops, double edge_length) {
   std::vector<Polygon> own = loops;
   Eigen::AlignedBox2d box;
   for (const Vector2d& p : own[0]) box.extend(p);
-  const bool mirrored = leans_left(own[0], box.center().x());
+  const int lean = lean_of(own[0], box.center().x());
+  const bool mirrored = lean < 0;
   if (mirrored)
     for (Polygon& loop : own)
       for (Vector2d& p : loop) p.x() = 2 * box.center().x() - p.x();
@@ -109,7 +124,7 @@ TriangleMesh mesh_panel(const std::vector<Polygon>& loops, double edge_length) {
     sizes.push_back(static_cast<int>(loop.size()));
   }
   const std::size_t first_inner = points.size();
-  for (const Vector2d& p : lattice(own, box, edge_length)) points.push_back(p);
+  for (const Vector2d& p : lattice(own, box, edge_length, lean == 0)) points.push_back(p);
   Triangles triangles = constrained_triangulation(points, sizes);
   for (int round = 0; round < rounds; ++round) {
     smooth(points, first_inner, triangles);

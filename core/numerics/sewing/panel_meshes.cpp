@@ -17,11 +17,13 @@ struct DividedLoops {
   std::vector<Polygon> loops;
   std::vector<std::vector<int>> edges;  ///< of each side
   std::vector<int> stitches, ends;      ///< as PanelMesh's
+  std::set<std::pair<int, int>> sewn;
 
   DividedLoops(const Panel& panel, const std::vector<EdgeDivision>& divisions) {
     for (const std::vector<int>& own : panel.loops) {
       Polygon& loop = loops.emplace_back();
       std::vector<int>& edge = edges.emplace_back();
+      const auto first = static_cast<int>(stitches.size());
       int before = divisions[own.back()].stitches.back();
       for (const int e : own) {
         const EdgeDivision& division = divisions[e];
@@ -33,6 +35,9 @@ struct DividedLoops {
         }
         before = division.stitches.back();
       }
+      const auto count = static_cast<int>(loop.size());
+      for (int i = 0; i < count; ++i)
+        if (divisions[edge[i]].stitches[0] >= 0) sewn.insert(std::minmax(first + i, first + (i + 1) % count));
     }
   }
 };
@@ -79,8 +84,8 @@ std::vector<PanelMesh> mesh_panels(const Pattern& pattern, double edge_length,
       errors.push_back(std::move(*fault));
       continue;
     }
-    meshes.push_back(
-        {mesh_panel(divided.loops, edge_length), std::move(divided.stitches), std::move(divided.ends)});
+    meshes.push_back({mesh_panel(divided.loops, edge_length), std::move(divided.stitches),
+                      std::move(divided.ends), std::move(divided.sewn)});
   }
   return meshes;
 }

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <set>
+#include <utility>
 #include <vector>
 
 #include "core/kernel/interfaces/triangle_mesh.h"
@@ -13,6 +15,7 @@ struct PanelMesh {
   std::vector<int>
       stitches;           ///< of the loops' vertices, the stitches of the edge that begins there; -1 for none
   std::vector<int> ends;  ///< … and of the edge that ends there
+  std::set<std::pair<int, int>> sewn;  ///< sides of the loops that are sewn, the smaller vertex first
   int border() const { return static_cast<int>(stitches.size()); }
 };
 

@@ -55,7 +55,7 @@ class Joints {
   int vertex_count_ = 0;
 };
 
-/// Divides the edge from a to b, with the triangles on both of its sides, by a new vertex in its middle.
+/// Divides the edge from a to b, and the triangles beside it, by a new vertex in its middle.
 void split_edge(TriangleMesh& mesh, int a, int b) {
   const auto middle = static_cast<int>(mesh.vertices.rows());
   mesh.vertices.conservativeResize(middle + 1, 3);
@@ -73,31 +73,26 @@ void split_edge(TriangleMesh& mesh, int a, int b) {
     }
 }
 
-/// Divides the inner edges between two border vertices of a panel that the stitches lay on another edge, as
-/// at the corners of a bag: an edge has two triangles.
-void divide_doubled_chords(std::vector<PanelMesh>& panels, const Joints& joints) {
+/// Divides the edges between border vertices of a panel that no seam joins, but that its stitches lay on
+/// another edge, as those across the corners of a bag and its opening, if that is one edge wide.
+void divide_doubled_edges(std::vector<PanelMesh>& panels, const Joints& joints) {
   struct Use {
     std::size_t panel;
     VertexPair edge;
-    bool inner;
   };
   std::map<VertexPair, std::vector<Use>> uses;
   for (std::size_t p = 0; p < panels.size(); ++p) {
-    std::map<VertexPair, int> count;
-    const Triangles& triangles = panels[p].flat.triangles;
-    for (Eigen::Index t = 0; t < triangles.rows(); ++t)
-      for (int k = 0; k < 3; ++k) ++count[in_order(triangles(t, k), triangles(t, (k + 1) % 3))];
-    for (const auto& [edge, triangles_there] : count)
+    std::set<VertexPair> edges;
+    for (const auto& t : panels[p].flat.triangles.rowwise())
+      for (int k = 0; k < 3; ++k) edges.insert(in_order(t[k], t[(k + 1) % 3]));
+    for (const VertexPair& edge : edges)
       if (edge.second < panels[p].border())
-        uses[in_order(joints.of(p, edge.first), joints.of(p, edge.second))].push_back(
-            {p, edge, triangles_there == 2});
+        uses[in_order(joints.of(p, edge.first), joints.of(p, edge.second))].push_back({p, edge});
   }
-  for (const auto& [joined, all] : uses) {
-    const auto inner = std::ranges::count_if(all, &Use::inner);
-    if (inner < std::ssize(all) ? inner == 0 : inner == 1) continue;
-    for (const Use& use : all)
-      if (use.inner) split_edge(panels[use.panel].flat, use.edge.first, use.edge.second);
-  }
+  for (const auto& [joined, all] : uses)
+    for (const auto& [panel, edge] : all)
+      if (all.size() > 1 && !panels[panel].sewn.contains(edge))
+        split_edge(panels[panel].flat, edge.first, edge.second);
 }
 
 /// For each panel whether it is turned over, so that all have their right sides on the same side of the cloth
@@ -200,7 +195,7 @@ std::optional<TriangleMesh> sew_pattern(const Pattern& pattern, double edge_leng
   std::vector<PanelMesh> panels = mesh_panels(pattern, edge_length, divisions, errors);
   const std::vector<char> turned = turned_panels(pattern, errors);
   if (errors.size() > before) return std::nullopt;
-  divide_doubled_chords(panels, Joints(panels));
+  divide_doubled_edges(panels, Joints(panels));
   const Joints joints(panels);
 
   TriangleMesh cloth{Positions::Zero(joints.vertex_count(), 3), {}};
