@@ -19,7 +19,8 @@ std::vector<fs::path> shipped(bool sweeps) {
     for (const auto& entry : fs::recursive_directory_iterator(folders::source() / folder)) {
       const fs::path& file = entry.path();
       const bool is_sweep = file.parent_path().filename() == "sweeps";
-      if (file.extension() == ".yaml" && is_sweep == sweeps && !needs_missing_data(file))
+      const bool is_pattern = file.parent_path().filename() == "garments";
+      if (file.extension() == ".yaml" && is_sweep == sweeps && !is_pattern && !needs_missing_data(file))
         files.push_back(file);
     }
   std::sort(files.begin(), files.end());
