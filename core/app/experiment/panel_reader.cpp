@@ -58,6 +58,7 @@ class PanelReader {
     if (failed()) return std::nullopt;
     read_.panel.translation = units_.length * p_.translation;
     read_.panel.rotation = p_.rotation;
+    read_.panel.grain = p_.grain;
     read_vertices();
     if (!failed()) read_edges();
     if (!failed()) find_loops();

@@ -57,6 +57,11 @@ void PanelParameters::declare(Declaration<PanelParameters>& d) {
         "after the outline has closed are holes")
       .required();
   d.add_sections("darts", &PanelParameters::darts, "darts that open to an edge");
+  d.add("grain", &PanelParameters::grain,
+        "direction of warp, from the panel's y axis counter-clockwise as it is drawn; `cloth.grain` replaces "
+        "it")
+      .unit("degree")
+      .between(-bounds::largest_angle, bounds::largest_angle);
   d.add("label", &PanelParameters::label, "part of the body that the panel covers; not read");
 }
 

@@ -33,6 +33,7 @@ struct PanelEdgeParameters {
 
 struct PanelParameters {
   Eigen::Vector3d translation{0, 0, 0}, rotation{0, 0, 0};
+  double grain = 0;
   ConfigNode vertices, edges;
   std::vector<DartParameters> darts;
   std::optional<std::string> label;

@@ -26,6 +26,7 @@ struct Panel {
   std::vector<std::vector<int>> loops;   ///< edges, each of which begins where the last ends; then the holes
   Eigen::Vector3d rotation{0, 0, 0};     ///< about x, then y, then z [degree]
   Eigen::Vector3d translation{0, 0, 0};  ///< applied after it [m]
+  double grain = 0;  ///< direction of warp, from the panel's y axis counter-clockwise as it is drawn [degree]
   Location where;
 };
 

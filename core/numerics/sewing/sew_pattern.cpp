@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <map>
+#include <numbers>
 #include <set>
 #include <string>
 #include <utility>
@@ -204,6 +205,7 @@ std::optional<TriangleMesh> sew_pattern(const Pattern& pattern, double edge_leng
   cloth.triangles.resize(triangle_count, 3);
   cloth.uv.resize(triangle_count, 6);
   Eigen::VectorXd places = Eigen::VectorXd::Zero(joints.vertex_count());
+  cloth.warp.resize(triangle_count, 3);
   double right_end = 0;  // of the panels before, which lie in a row
   for (std::size_t p = 0; p < panels.size(); ++p) {
     const Panel& panel = pattern.panels[p];
@@ -224,12 +226,17 @@ std::optional<TriangleMesh> sew_pattern(const Pattern& pattern, double edge_leng
         cloth.uv.block<1, 2>(t, 2 * k) = flat.vertices.row(corner).head<2>() + shift;
       }
     cloth.piece.insert(cloth.piece.end(), flat.triangles.rows(), static_cast<int>(p));
+    const double grain = panel.grain * std::numbers::pi / 180;
+    cloth.warp.middleRows(t - flat.triangles.rows(), flat.triangles.rows()).rowwise() =
+        Eigen::RowVector3d(-std::sin(grain), std::cos(grain), 0);
     cloth.piece_names.push_back(panel.name);
   }
   cloth.vertices.array().colwise() /= places.array();
   FileCoordinates{"m", pattern.up}.convert(cloth.vertices);
   cloth.sewing = Sewing{};
   check_joints(pattern, cloth, errors);
+  if (std::ranges::all_of(pattern.panels, [](const Panel& p) { return p.grain == 0; }))
+    cloth.warp.resize(0, 3);
   if (errors.size() > before) return std::nullopt;
   return cloth;
 }
