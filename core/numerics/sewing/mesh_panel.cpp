@@ -23,17 +23,16 @@ double area_of(const Polygon& loop) {
   return twice / 2;
 }
 
-/// To which side a loop leans: -1 to the left of the middle of its box, 1 to the right, 0 for one that is
-/// symmetric but for rounding. That of a mirrored loop is the opposite one.
-int lean_of(const Polygon& loop, double middle) {
-  double moment = 0, size = 0;  // the third moment of the sides: it differs where the first one does not
+/// Whether the loop leans to the left of the middle of its box. Its mirrored loop leans to the right, unless
+/// it is symmetric.
+bool leans_left(const Polygon& loop, double middle) {
+  double moment = 0;  // the third moment of the sides: it differs where the first one does not
   for (std::size_t i = 0; i < loop.size(); ++i) {
     const Vector2d &a = loop[i], &b = loop[(i + 1) % loop.size()];
-    const double x = (a.x() + b.x()) / 2 - middle, own = (b - a).norm() * (x + x * x * x);
-    moment += own, size += std::abs(own);
+    const double x = (a.x() + b.x()) / 2 - middle;
+    moment += (b - a).norm() * (x + x * x * x);
   }
-  constexpr double rounding = 1e-9;
-  return std::abs(moment) <= rounding * size ? 0 : moment < 0 ? -1 : 1;
+  return moment < 0;
 }
 
 double distance_to_side(const Vector2d& p, const Vector2d& a, const Vector2d& b) {
@@ -60,10 +59,9 @@ double scattered(long i, long j) {
 }
 
 /// The points of an equilateral lattice about the middle of the region's box that lie well inside. They are
-/// moved a little, in a symmetric region to the left and to the right of the middle alike: points on a common
-/// circle have several Delaunay triangulations, of which rounding would choose.
-Polygon lattice(const std::vector<Polygon>& loops, const Eigen::AlignedBox2d& box, double edge_length,
-                bool symmetric) {
+/// moved a little: points on a common circle have several Delaunay triangulations, of which rounding would
+/// choose.
+Polygon lattice(const std::vector<Polygon>& loops, const Eigen::AlignedBox2d& box, double edge_length) {
   constexpr double gap = 0.6;     // of an edge: triangles at the border are about as high as others
   constexpr double moved = 0.02;  // of an edge
   Polygon points;
@@ -73,10 +71,8 @@ Polygon lattice(const std::vector<Polygon>& loops, const Eigen::AlignedBox2d& bo
   for (long j = -rows; j <= rows; ++j)
     for (long i = -columns; i <= columns; ++i) {
       if ((i + j) % 2 != 0) continue;  // i counts half edges
-      const double side = symmetric ? static_cast<double>((i > 0) - (i < 0)) : 1;
-      const long column = symmetric ? std::abs(i) : i;
-      const double across = static_cast<double>(i) / 2 + moved * side * scattered(column, j);
-      const double along = static_cast<double>(j) + moved * scattered(j, column);
+      const double across = static_cast<double>(i) / 2 + moved * scattered(i, j);
+      const double along = static_cast<double>(j) + moved * scattered(j, i);
       const Vector2d p = box.center() + Vector2d(across * edge_length, along * height);
       if (is_well_inside(loops, p, gap * edge_length)) points.push_back(p);
     }
@@ -112,8 +108,7 @@ TriangleMesh mesh_panel(const std::vector<Polygon>& loops, double edge_length) {
   std::vector<Polygon> own = loops;
   Eigen::AlignedBox2d box;
   for (const Vector2d& p : own[0]) box.extend(p);
-  const int lean = lean_of(own[0], box.center().x());
-  const bool mirrored = lean < 0;
+  const bool mirrored = leans_left(own[0], box.center().x());
   if (mirrored)
     for (Polygon& loop : own)
       for (Vector2d& p : loop) p.x() = 2 * box.center().x() - p.x();
@@ -124,7 +119,7 @@ TriangleMesh mesh_panel(const std::vector<Polygon>& loops, double edge_length) {
     sizes.push_back(static_cast<int>(loop.size()));
   }
   const std::size_t first_inner = points.size();
-  for (const Vector2d& p : lattice(own, box, edge_length, lean == 0)) points.push_back(p);
+  for (const Vector2d& p : lattice(own, box, edge_length)) points.push_back(p);
   Triangles triangles = constrained_triangulation(points, sizes);
   for (int round = 0; round < rounds; ++round) {
     smooth(points, first_inner, triangles);
