@@ -9,6 +9,7 @@
 #include "core/app/experiment/experiment_path.h"
 #include "core/app/experiment/fabrics.h"
 #include "core/app/experiment/read_experiment.h"
+#include "core/app/experiment/sewn_cloth.h"
 #include "core/app/files/json_file.h"
 #include "core/app/files/yaml_file.h"
 #include "core/kernel/files/message_text.h"
@@ -160,6 +161,7 @@ std::optional<Experiment> read_experiment(ConfigNode source, const Registry& reg
   set_first_keys(e.source);
   apply_fabric(e.source, errors);
   experiment_schema().read(&e.parameters, e.source, errors);
+  find_label_edges(e.source, e.parameters, errors);
   e.resolved = experiment_schema().write(&e.parameters);
   if (const ConfigNode* name = e.source.find("name"); name && name->kind == ConfigNode::Kind::scalar)
     check_name("name", e.parameters.name, name->where, errors);

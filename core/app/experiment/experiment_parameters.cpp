@@ -21,12 +21,12 @@ ParameterHandle natural(ParameterHandle p, double most = bounds::largest_int) { 
 /// The parameters that pins and handles share.
 template <class Condition>
 void declare_selection(Declaration<Condition>& d) {
-  d.add(
-       "region", &VertexSelection::region,
-       "selects vertices by their rest positions: the coarsest level's vertex nearest to `point`, all "
-       "within `radius` of `point`, all in a box, the boundary, coarsest-level indices, those of a piece, or "
-       "the seams of a cloth of flat pieces")
-      .choices({"nearest", "ball", "box", "border", "vertices", "piece", "seam"});
+  d.add("region", &VertexSelection::region,
+        "selects vertices by their rest positions: the coarsest level's vertex nearest to `point`, all "
+        "within `radius` of `point`, all in a box, the boundary, coarsest-level indices, those of a piece, "
+        "the "
+        "seams of a cloth of flat pieces, or the edges of a pattern that have a label")
+      .choices({"nearest", "ball", "box", "border", "vertices", "piece", "seam", "label"});
   coordinate(
       d.add("point", &VertexSelection::point, "point of `nearest`, centre of `ball`, in the rest shape"))
       .only_with("region", {"nearest", "ball"});
@@ -45,6 +45,13 @@ void declare_selection(Declaration<Condition>& d) {
        "name of a piece, a group or material of the cloth's OBJ file; with `border` or `seam`, only those of "
        "that piece")
       .only_with("region", {"piece", "border", "seam"});
+  d.add("label", &VertexSelection::label, "label of edges of the cloth's sewing pattern")
+      .only_with("region", {"label"});
+  natural(d.add("label_edges", &VertexSelection::label_edges,
+                "the ends of the label's edges on the coarsest level, two by two, which drape writes to the "
+                "config of a "
+                "run, whose cloth is no pattern"))
+      .only_with("region", {"label"});
   coordinate(d.add("translate", &VertexSelection::translate,
                    "translation from the rest position to the target, applied after `rotate`; without both, "
                    "the target is the position at the start, without its noise"));

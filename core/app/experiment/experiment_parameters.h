@@ -111,7 +111,8 @@ struct VertexSelection {
   double radius = 0;
   Eigen::Vector3d lower{0, 0, 0}, upper{0, 0, 0};
   std::vector<int> vertices;
-  std::optional<std::string> piece;
+  std::optional<std::string> piece, label;
+  std::vector<int> label_edges;  ///< of the label on the coarsest level, two ends each
   std::optional<Eigen::Vector3d> translate;
   std::optional<Eigen::Vector3d> rotate;
   Eigen::Vector3d centre{0, 0, 0};

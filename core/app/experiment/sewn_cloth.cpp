@@ -7,6 +7,7 @@
 
 #include "core/app/experiment/pattern_file.h"
 #include "core/kernel/files/message_text.h"
+#include "core/kernel/files/string_utils.h"
 #include "core/numerics/mesh/flat_pieces.h"
 #include "core/numerics/mesh/rotation.h"
 #include "core/numerics/mesh/seams.h"
@@ -99,15 +100,42 @@ void sew(TriangleMesh& cloth, const ClothParameters& c) {
   cloth.sewing->uv_length = unit->length;
 }
 
-std::optional<TriangleMesh> cloth_of_pattern(const ClothParameters& c, ConfigErrors& errors) {
+std::optional<TriangleMesh> cloth_of_pattern(const ClothParameters& c, ConfigErrors& errors,
+                                             LabelEdges* labels) {
   if (c.file.empty()) throw std::runtime_error("\"shape: pattern\" needs \"file\", the pattern to read");
   const std::optional<Pattern> pattern = read_pattern(c.file, errors);
   if (!pattern) return std::nullopt;
-  std::optional<TriangleMesh> cloth = sew_pattern(*pattern, edge_length_of(*pattern, c), errors);
+  std::optional<TriangleMesh> cloth = sew_pattern(*pattern, edge_length_of(*pattern, c), errors, labels);
   if (!cloth) return std::nullopt;
   if (!c.rotate.isZero(0)) cloth->vertices *= rotation_matrix(c.rotate).transpose();
   cloth->sewing = sewing_of(c, 1);
   return cloth;
+}
+
+void find_label_edges(const ConfigNode& source, ExperimentParameters& p, ConfigErrors& errors) {
+  std::optional<LabelEdges> labels;
+  const auto find = [&](VertexSelection& selection, const char* key, std::size_t k) {
+    if (!selection.label || !selection.label_edges.empty()) return;
+    if (!labels) {
+      labels.emplace();
+      ConfigErrors of_cloth;  // which its check reports
+      if (p.cloth.shape == "pattern" && !p.cloth.file.empty() &&
+          !cloth_of_pattern(p.cloth, of_cloth, &*labels))
+        return;
+    }
+    selection.label_edges = (*labels)[*selection.label];
+    if (!selection.label_edges.empty()) return;
+    labels->erase(*selection.label);
+    std::vector<std::string> names;
+    for (const auto& [name, edges] : *labels) names.push_back(name);
+    errors.push_back({source.find(key)->items[k].where,
+                      "no edge of the cloth has the label \"" + excerpt(*selection.label) + "\"; " +
+                          (p.cloth.shape != "pattern" ? "only edges of a sewing pattern have labels"
+                           : names.empty()            ? "the pattern has no labels"
+                                                      : "the pattern has " + joined(names))});
+  };
+  for (std::size_t k = 0; k < p.pins.size(); ++k) find(p.pins[k], "pins", k);
+  for (std::size_t k = 0; k < p.handles.size(); ++k) find(p.handles[k], "handles", k);
 }
 
 std::string sewing_text(const Level& coarsest) {

@@ -6,6 +6,7 @@
 
 #include "core/app/experiment/experiment_parameters.h"
 #include "core/kernel/interfaces/level.h"
+#include "core/numerics/sewing/sew_pattern.h"
 
 namespace drape {
 
@@ -14,9 +15,13 @@ namespace drape {
 /// coordinates seem to be.
 void sew(TriangleMesh& cloth, const ClothParameters& c);
 
-/// The cloth of a sewing pattern's file. Nothing, with every fault appended at its place in that file, if it
-/// is none. Throws std::runtime_error without a file.
-std::optional<TriangleMesh> cloth_of_pattern(const ClothParameters& c, ConfigErrors& errors);
+/// The cloth of a sewing pattern's file, and the edges of its labels. Nothing, with every fault appended at
+/// its place in that file, if it is none. Throws std::runtime_error without a file.
+std::optional<TriangleMesh> cloth_of_pattern(const ClothParameters& c, ConfigErrors& errors,
+                                             LabelEdges* labels = nullptr);
+
+/// Finds the edges of the labels that pins and handles select. Appends the labels that a pattern has not.
+void find_label_edges(const ConfigNode& source, ExperimentParameters& p, ConfigErrors& errors);
 
 /// A line about a cloth of flat pieces, as "3 flat pieces, 2.4 m of seams, …"; "" for another cloth.
 std::string sewing_text(const Level& coarsest);

@@ -9,7 +9,6 @@
 #include "core/kernel/files/number_text.h"
 #include "core/kernel/files/string_utils.h"
 #include "core/numerics/mesh/rotation.h"
-#include "core/numerics/mesh/seams.h"
 #include "core/numerics/model/position_penalty.h"
 
 namespace drape {
@@ -90,28 +89,6 @@ std::string text_of(const Eigen::Vector3d& p) {
   return "(" + general_text(p.x(), 6) + ", " + general_text(p.y(), 6) + ", " + general_text(p.z(), 6) + ")";
 }
 
-/// The vertices of a piece, or the ends of its border edges or seams, or of all seams.
-std::vector<int> vertices_of_piece(const VertexSelection& selection, const Level& level) {
-  const TriangleMesh& rest = level.rest;
-  const auto has = [&](int t) {
-    return !selection.piece || (!rest.piece.empty() && rest.piece_names[rest.piece[t]] == *selection.piece);
-  };
-  std::vector<char> chosen(level.vertex_count(), 0);
-  for (int t = 0; t < level.triangle_count(); ++t)
-    for (int k = 0; k < 3 && has(t); ++k) {
-      const int e = level.topology.triangle_edges(t, k);
-      const bool whole = selection.region == "piece", edge = selection.region == "seam"
-                                                                 ? is_seam(rest, level.topology, e)
-                                                                 : level.topology.edge_triangles(e, 1) == -1;
-      if (whole || edge)
-        for (const int corner : {(k + 1) % 3, (k + 2) % 3}) chosen[rest.triangles(t, corner)] = 1;
-    }
-  std::vector<int> vertices;
-  for (int v = 0; v < level.vertex_count(); ++v)
-    if (chosen[v]) vertices.push_back(v);
-  return vertices;
-}
-
 /// Whether two targets of a vertex differ by more than round-off, on a cloth that is so large [m].
 bool differ(const Eigen::Vector3d& a, const Eigen::Vector3d& b, double diagonal) {
   constexpr double rounding = 1e-9;
@@ -153,6 +130,10 @@ void check_selection(const ExperimentParameters& parameters, LoadPart part, std:
   const std::string name = name_of(parameters, part, k);
   const bool by_index = p.region == "vertices";
   const auto& pieces = coarsest.rest.piece_names;
+  const auto beyond = [&](int v) { return v < 0 || v >= coarsest.vertex_count(); };
+  if (p.region == "label" && (!p.label || std::ranges::any_of(p.label_edges, beyond)))
+    return errors.push_back({where, name + (p.label ? ": \"label_edges\" name a vertex that is not there"
+                                                    : " needs \"label\", that of a pattern's edges")});
   if (p.region == "piece" && !p.piece)
     return errors.push_back({where, name + " needs \"piece\", the name of a piece: " + joined(pieces)});
   if (p.piece && std::ranges::find(pieces, *p.piece) == pieces.end())
@@ -178,7 +159,7 @@ void check_selection(const ExperimentParameters& parameters, LoadPart part, std:
         break;
       }
   for (int v : p.vertices)
-    if (by_index && (v < 0 || v >= coarsest.vertex_count()))
+    if (by_index && beyond(v))
       errors.push_back({where, name + " names vertex " + std::to_string(v) +
                                    ", but those of the coarsest level go from 0 to " +
                                    std::to_string(coarsest.vertex_count() - 1)});
@@ -196,41 +177,6 @@ Eigen::Vector3d StartParameters::transformed(const Eigen::Vector3d& rest, double
   Eigen::Vector3d p = rest.cwiseProduct(scale);
   p.z() += noise;
   return rotation_matrix(rotate) * p + translate;
-}
-
-std::vector<int> selected_vertices(const VertexSelection& selection, const Level& level,
-                                   const Level& coarsest) {
-  std::vector<int> selected;
-  if (selection.region == "nearest") {
-    Eigen::Index nearest = 0;
-    (coarsest.rest.vertices.rowwise() - selection.point.transpose())
-        .rowwise()
-        .squaredNorm()
-        .minCoeff(&nearest);
-    return {static_cast<int>(nearest)};
-  }
-  if (selection.region == "vertices") {
-    // Children of coarse vertices keep their index on every level.
-    for (int v : selection.vertices)
-      if (v >= 0 && v < coarsest.vertex_count()) selected.push_back(v);
-    std::ranges::sort(selected);
-    selected.erase(std::unique(selected.begin(), selected.end()), selected.end());
-    return selected;
-  }
-  if (selection.region == "piece" || selection.region == "seam" || selection.piece)
-    return vertices_of_piece(selection, level);
-  constexpr double rounding = 1e-12;  // round-off must not exclude vertices on a region's boundary
-  for (int i = 0; i < level.vertex_count(); ++i) {
-    const Eigen::Vector3d p = level.rest.vertices.row(i);
-    const bool in_ball = (p - selection.point).norm() <= selection.radius * (1 + rounding);
-    const bool in_box = (p.array() >= selection.lower.array() - rounding).all() &&
-                        (p.array() <= selection.upper.array() + rounding).all();
-    if (selection.region == "border" ? level.topology.on_border[i]
-        : selection.region == "ball" ? in_ball
-                                     : in_box)
-      selected.push_back(i);
-  }
-  return selected;
 }
 
 void check_selections(const Experiment& e, const ExperimentParameters& load, const std::vector<Level>& levels,

@@ -18,6 +18,7 @@ struct DividedLoops {
   std::vector<std::vector<int>> edges;  ///< of each side
   std::vector<int> stitches, ends;      ///< as PanelMesh's
   std::set<std::pair<int, int>> sewn;
+  std::map<std::pair<int, int>, int> sides;
 
   DividedLoops(const Panel& panel, const std::vector<EdgeDivision>& divisions) {
     for (const std::vector<int>& own : panel.loops) {
@@ -36,8 +37,11 @@ struct DividedLoops {
         before = division.stitches.back();
       }
       const auto count = static_cast<int>(loop.size());
-      for (int i = 0; i < count; ++i)
-        if (divisions[edge[i]].stitches[0] >= 0) sewn.insert(std::minmax(first + i, first + (i + 1) % count));
+      for (int i = 0; i < count; ++i) {
+        const std::pair<int, int> side = std::minmax(first + i, first + (i + 1) % count);
+        sides[side] = edge[i];
+        if (divisions[edge[i]].stitches[0] >= 0) sewn.insert(side);
+      }
     }
   }
 };
@@ -85,7 +89,7 @@ std::vector<PanelMesh> mesh_panels(const Pattern& pattern, double edge_length,
       continue;
     }
     meshes.push_back({mesh_panel(divided.loops, edge_length), std::move(divided.stitches),
-                      std::move(divided.ends), std::move(divided.sewn)});
+                      std::move(divided.ends), std::move(divided.sewn), std::move(divided.sides)});
   }
   return meshes;
 }

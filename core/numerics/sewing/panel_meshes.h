@@ -1,5 +1,6 @@
 #pragma once
 
+#include <map>
 #include <set>
 #include <utility>
 #include <vector>
@@ -16,6 +17,8 @@ struct PanelMesh {
       stitches;           ///< of the loops' vertices, the stitches of the edge that begins there; -1 for none
   std::vector<int> ends;  ///< … and of the edge that ends there
   std::set<std::pair<int, int>> sewn;  ///< sides of the loops that are sewn, the smaller vertex first
+  std::map<std::pair<int, int>, int>
+      sides;  ///< edges of the panel by the two vertices of each side, as `sewn`
   int border() const { return static_cast<int>(stitches.size()); }
 };
 

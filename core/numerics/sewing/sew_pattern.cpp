@@ -189,7 +189,8 @@ OutlineSize outline_size(const Pattern& pattern) {
   return size;
 }
 
-std::optional<TriangleMesh> sew_pattern(const Pattern& pattern, double edge_length, ConfigErrors& errors) {
+std::optional<TriangleMesh> sew_pattern(const Pattern& pattern, double edge_length, ConfigErrors& errors,
+                                        LabelEdges* labels) {
   const std::size_t before = errors.size();
   const auto divisions = divide_edges(pattern, edge_length, errors);
   if (errors.size() > before) return std::nullopt;
@@ -204,8 +205,8 @@ std::optional<TriangleMesh> sew_pattern(const Pattern& pattern, double edge_leng
   for (const PanelMesh& panel : panels) triangle_count += panel.flat.triangles.rows();
   cloth.triangles.resize(triangle_count, 3);
   cloth.uv.resize(triangle_count, 6);
-  Eigen::VectorXd places = Eigen::VectorXd::Zero(joints.vertex_count());
   cloth.warp.resize(triangle_count, 3);
+  Eigen::VectorXd places = Eigen::VectorXd::Zero(joints.vertex_count());
   double right_end = 0;  // of the panels before, which lie in a row
   for (std::size_t p = 0; p < panels.size(); ++p) {
     const Panel& panel = pattern.panels[p];
@@ -225,18 +226,21 @@ std::optional<TriangleMesh> sew_pattern(const Pattern& pattern, double edge_leng
         cloth.triangles(t, k) = joints.of(p, corner);
         cloth.uv.block<1, 2>(t, 2 * k) = flat.vertices.row(corner).head<2>() + shift;
       }
-    cloth.piece.insert(cloth.piece.end(), flat.triangles.rows(), static_cast<int>(p));
     const double grain = panel.grain * std::numbers::pi / 180;
     cloth.warp.middleRows(t - flat.triangles.rows(), flat.triangles.rows()).rowwise() =
         Eigen::RowVector3d(-std::sin(grain), std::cos(grain), 0);
+    cloth.piece.insert(cloth.piece.end(), flat.triangles.rows(), static_cast<int>(p));
     cloth.piece_names.push_back(panel.name);
+    for (const auto& [side, edge] : panels[p].sides)
+      if (const auto& label = panel.edges[edge].label; label && labels)
+        for (const int v : {side.first, side.second}) (*labels)[*label].push_back(joints.of(p, v));
   }
+  if (std::ranges::all_of(pattern.panels, [](const Panel& p) { return p.grain == 0; }))
+    cloth.warp.resize(0, 3);
   cloth.vertices.array().colwise() /= places.array();
   FileCoordinates{"m", pattern.up}.convert(cloth.vertices);
   cloth.sewing = Sewing{};
   check_joints(pattern, cloth, errors);
-  if (std::ranges::all_of(pattern.panels, [](const Panel& p) { return p.grain == 0; }))
-    cloth.warp.resize(0, 3);
   if (errors.size() > before) return std::nullopt;
   return cloth;
 }
