@@ -6,6 +6,7 @@
 #include "core/app/experiment/describe.h"
 #include "core/app/experiment/exit_codes.h"
 #include "core/app/experiment/experiment.h"
+#include "core/app/experiment/pattern_parameters.h"
 #include "core/app/files/json_file.h"
 #include "core/app/sweep/sweep.h"
 #include "core/kernel/files/file.h"
@@ -89,6 +90,7 @@ int reference(const Registry& registry) {
     for (const RegistryEntry* entry : registry.of_kind(kind))
       std::cout << "\n" << describe_markdown(*entry, &newton);
   }
+  std::cout << "\n## Sewing pattern\n\n" << describe_pattern_markdown();
   std::cout << "\n## Sweep\n\n" << describe_sweep_markdown();
   return exit_done;
 }

@@ -1,5 +1,6 @@
 #include "core/app/experiment/pattern_parameters.h"
 
+#include "core/app/experiment/describe.h"
 #include "core/kernel/plugin/bounds.h"
 
 namespace drape {
@@ -56,12 +57,12 @@ void PanelParameters::declare(Declaration<PanelParameters>& d) {
         "line. Edges "
         "after the outline has closed are holes")
       .required();
-  d.add_sections("darts", &PanelParameters::darts, "darts that open to an edge");
   d.add("grain", &PanelParameters::grain,
         "direction of warp, from the panel's y axis counter-clockwise as it is drawn; `cloth.grain` replaces "
         "it")
       .unit("degree")
       .between(-bounds::largest_angle, bounds::largest_angle);
+  d.add_sections("darts", &PanelParameters::darts, "darts that open to an edge");
   d.add("label", &PanelParameters::label, "part of the body that the panel covers; not read");
 }
 
@@ -108,6 +109,16 @@ void PatternFileParameters::declare(Declaration<PatternFileParameters>& d) {
   d.add("parameter_order", &PatternFileParameters::parameter_order, "not read");
   d.add("constraints", &PatternFileParameters::constraints, "not read");
   d.add("constraint_order", &PatternFileParameters::constraint_order, "not read");
+}
+
+std::string describe_pattern_markdown() {
+  return "The file of `cloth: {shape: pattern}`, as JSON or YAML ([how to write "
+         "one](../guide/patterns.md)).\n\n" +
+         describe_markdown(schema_of<PatternFileParameters>()) + "\n### A panel\n\n" +
+         describe_markdown(schema_of<PanelParameters>()) + "\n### An edge of a panel\n\n" +
+         describe_markdown(schema_of<PanelEdgeParameters>()) + "\n### Its curvature\n\n" +
+         describe_markdown(schema_of<CurvatureParameters>()) + "\n### A seam\n\n" +
+         describe_markdown(schema_of<PatternSeamParameters>());
 }
 
 }  // namespace drape

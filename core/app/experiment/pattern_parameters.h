@@ -67,4 +67,7 @@ struct PatternFileParameters {
   static void declare(Declaration<PatternFileParameters>& d);
 };
 
+/// The tables of these keys for the reference page.
+std::string describe_pattern_markdown();
+
 }  // namespace drape

@@ -163,11 +163,6 @@ TEST_CASE("a mirrored panel has a mirrored mesh") {
     CHECK((b.vertices.rowwise() - p).rowwise().norm().minCoeff() < 1e-12);
   }
   CHECK(a.triangles.rows() == b.triangles.rows());
-  const TriangleMesh even = mesh_panel({{{0, 0}, {0.2, 0}, {0.2, 0.2}, {0.1, 0.3}, {0, 0.2}}}, 0.03);
-  for (Eigen::Index v = 0; v < even.vertices.rows(); ++v) {
-    const Eigen::RowVector3d p(0.2 - even.vertices(v, 0), even.vertices(v, 1), 0);
-    CHECK((even.vertices.rowwise() - p).rowwise().norm().minCoeff() < 1e-12);
-  }
 }
 
 TEST_CASE(
@@ -265,6 +260,35 @@ TEST_CASE("seams that give the cloth one side are refused, and right_wrong turns
       Contains("seam b gives the cloth one side"));
   const TriangleMesh lining = sewn(squares("{a: [front.left, back.right, right_wrong]}"), 0.04);
   CHECK(check_mesh(lining).empty());
+}
+
+TEST_CASE("a panel may be cut at an angle: its warp is as it is drawn") {
+  std::string text = squares("{a: [front.left, back.left]}");
+  CHECK(sewn(text, 0.1).warp.rows() == 0);
+  text.insert(text.find("translation:"), "grain: 30, ");
+  const TriangleMesh cloth = sewn(text, 0.1);
+  REQUIRE(cloth.warp.rows() == cloth.triangles.rows());
+  for (Eigen::Index t = 0; t < cloth.warp.rows(); ++t) {
+    const Eigen::RowVector3d drawn =
+        cloth.piece[t] == 0 ? Eigen::RowVector3d(-0.5, std::sqrt(0.75), 0) : Eigen::RowVector3d(0, 1, 0);
+    CHECK((cloth.warp.row(t) - drawn).norm() < 1e-15);
+  }
+}
+
+TEST_CASE("labels name the edges that have them, by their two ends") {
+  std::string text = squares("{a: [front.left, back.left]}");
+  text.replace(text.find("top: [2, 3]"), 11, "top: {endpoints: [2, 3], label: rim}");
+  ConfigErrors errors;
+  LabelEdges labels;
+  const auto cloth = sew_pattern(pattern_of(text), 0.05, errors, &labels);
+  REQUIRE(cloth);
+  REQUIRE(labels.size() == 1);
+  CHECK(labels["rim"].size() == 8);
+  double length = 0;
+  for (std::size_t i = 0; i < labels["rim"].size(); i += 2)
+    length +=
+        (cloth->vertices.row(labels["rim"][i]) - cloth->vertices.row(labels["rim"][i + 1])).head<1>().norm();
+  CHECK(length == Approx(0.2));
 }
 
 TEST_CASE("an opening of one edge stays open") {

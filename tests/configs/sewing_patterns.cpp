@@ -1,0 +1,152 @@
+// Sewing patterns by the command: the project's own, pins by label, and the faults of others, each in a
+// sentence.
+
+#include "tests/configs/runs.h"
+
+namespace {
+
+const std::string of_pattern =
+    "name: sewn\nlevels: 2\ncloth: {shape: pattern, file: p.yaml, edge_length: 0.04}\nenergies: [stvk, "
+    "hinge]\nmethods: {pcs: {}}\n";
+
+/// Two squares of 20 cm that are sewn along three sides, on lines of their own: 4 for the front, 9 for the
+/// back.
+struct Bag {
+  std::string front = "{0: [0, 0], 1: [20, 0], 2: [20, 20], 3: [0, 20]}";
+  std::string front_edges =
+      "{bottom: [0, 1], right: [1, 2], top: {endpoints: [2, 3], label: rim}, left: [3, 0]}";
+  std::string stitches =
+      "{left: [front.left, back.left], bottom: [front.bottom, back.bottom], right: [front.right, "
+      "back.right]}";
+};
+
+std::string pattern(const Bag& bag) {
+  return "properties: {units_in_meter: 100}\npattern:\n  panels:\n    front:\n      translation: [0, 0, 5]\n "
+         "     vertices: " +
+         bag.front + "\n      edges: " + bag.front_edges +
+         "\n    back:\n      vertices: [[0, 0], [0, 20], [20, 20], [20, 0]]\n      edges: {left: [0, 1], "
+         "top: [1, 2], right: [2, "
+         "3], bottom: [3, 0]}\n  stitches: " +
+         bag.stitches + "\n";
+}
+
+/// What a check of this pattern says, which must be refused; "FILE" stands for the pattern's file.
+std::string refused_pattern(const std::string& text) {
+  const Scratch folder(of_pattern);
+  folder.write("p.yaml", text);
+  const std::string said = refused(folder, "check e.yaml");
+  CHECK(std::count(said.begin(), said.end(), '\n') == 1);
+  return said;
+}
+
+}  // namespace
+
+TEST_CASE("drape check reads every pattern of the project, and says pieces, seams and vertices") {
+  for (const auto& [name, pieces] :
+       {std::pair("tshirt", 6), {"shirt", 10}, {"skirt", 4}, {"trousers", 4}, {"bag", 4}}) {
+    const Scratch folder(of_pattern);
+    const fs::path file = folders::source() / "configs/garments" / (std::string(name) + ".yaml");
+    const std::string said = shown_by("check e.yaml --set cloth.file=" + file.string(), folder.path);
+    CAPTURE(name, said);
+    CHECK_THAT(said, Contains("valid. Vertices by level: ") && Contains("1 part") &&
+                         Contains("cloth: " + std::to_string(pieces) + " flat pieces, ") &&
+                         Contains(" m of seams"));
+  }
+}
+
+TEST_CASE("a pattern in JSON is the one in YAML, whatever else its file has") {
+  const Scratch folder(of_pattern);
+  folder.write("p.yaml", pattern({}));
+  folder.write(
+      "p.json",
+      "{\"pattern\": {\"panels\": {\"front\": {\"translation\": [0, 0, 5], \"rotation\": [0, 0, 0], "
+      "\"vertices\": [[0, 0], "
+      "[20, 0], [20, 20], [0, 20]], \"label\": \"body\", \"edges\": [{\"endpoints\": [0, 1]}, "
+      "{\"endpoints\": [1, 2]}, "
+      "{\"endpoints\": [2, 3], \"label\": \"rim\"}, {\"endpoints\": [3, 0]}]}, \"back\": {\"translation\": "
+      "[0, 0, 0], "
+      "\"rotation\": [0, 0, 0], \"vertices\": [[0, 0], [0, 20], [20, 20], [20, 0]], \"edges\": "
+      "[{\"endpoints\": [0, 1]}, "
+      "{\"endpoints\": [1, 2]}, {\"endpoints\": [2, 3]}, {\"endpoints\": [3, 0]}]}}, \"stitches\": "
+      "[[{\"panel\": \"front\", "
+      "\"edge\": 3}, {\"panel\": \"back\", \"edge\": 0}], [{\"panel\": \"front\", \"edge\": 0}, {\"panel\": "
+      "\"back\", \"edge\": "
+      "3}], [{\"panel\": \"front\", \"edge\": 1}, {\"panel\": \"back\", \"edge\": 2}]], \"panel_order\": "
+      "[\"front\", "
+      "\"back\"]}, \"parameters\": {}, \"parameter_order\": [], \"properties\": {\"curvature_coords\": "
+      "\"relative\", "
+      "\"normalize_panel_translation\": false, \"units_in_meter\": 100, \"normalized_edge_loops\": true}}\n");
+  const std::string run = "--quiet --no-report -j 1 --set newton.force_tolerance=1e9 ";
+  drape_ends("run e.yaml --out a " + run, folder);
+  drape_ends("run e.yaml --set cloth.file=p.json --out b " + run, folder);
+  check_same_files(folder / "a", folder / "b", {"rest/l0.ply", "rest/l1.ply"});
+}
+
+TEST_CASE("pins select the edges of a label on every level, and the run's own config keeps them") {
+  const Scratch folder(of_pattern + "pins: [{region: label, label: rim}]\n");
+  folder.write("p.yaml", pattern({}));
+  run_into("out", folder, "-j 1");
+  const std::string config = text_of(folder / "out/config.yaml");
+  CHECK_THAT(config, Contains("label_edges: [") && Contains("label: rim"));
+  drape_ends("run out/config.yaml --quiet --no-report -j 1 --out again", folder);
+  check_same_files(folder / "out", folder / "again",
+                   {"rest/l0.ply", "levels/pcs_l0.ply", "levels/pcs_l1.ply"});
+  check_error(refused(folder, "check e.yaml --set pins.0.label=waist"),
+              "e.yaml:6:8: no edge of the cloth has the label \"waist\"; the pattern has rim");
+}
+
+TEST_CASE("patterns that cannot be sewn are refused with file, line, panel and edge") {
+  const auto said = [](auto Bag::*part, const std::string& text) {
+    Bag bag;
+    bag.*part = text;
+    return refused_pattern(pattern(bag));
+  };
+  // An edge and a panel that are not there.
+  check_error(said(&Bag::stitches, "{left: [front.lfet, back.left]}"),
+              "p.yaml:11:21: seam left: panel front has no edge \"lfet\"; did you mean \"left\"?");
+  check_error(said(&Bag::stitches, "[[{panel: front, edge: 4}, {panel: back, edge: 0}]]"),
+              "p.yaml:11:36: seam 0: panel front has no edge 4; it has bottom, right, top, left");
+  check_error(said(&Bag::stitches, "{left: [fornt.left, back.left]}"),
+              "p.yaml:11:21: seam left: there is no panel \"fornt\"; did you mean \"front\"?");
+  check_error(said(&Bag::stitches, "{left: [front.left]}"), "p.yaml:11:14: seam left needs two sides");
+  // Loops that do not close, that cross themselves, that are empty.
+  check_error(said(&Bag::front_edges, "{bottom: [0, 1], right: [1, 2], left: [3, 0]}"),
+              "p.yaml:7:46: panel front: edge left begins at vertex 3, but the one before ends at 2: the "
+              "edges do not close");
+  check_error(said(&Bag::front_edges, "{bottom: [0, 1], right: [1, 2], top: [2, 3]}"),
+              "p.yaml:7:46: panel front: edge top ends at vertex 3, but its loop began at 0: the edges do "
+              "not close a loop");
+  check_error(
+      said(&Bag::front, "{0: [0, 0], 1: [20, 0], 2: [0, 20], 3: [20, 20]}"),
+      "p.yaml:7:84: panel front: edges right and left cross or touch; an outline must not meet itself");
+  check_error(said(&Bag::front, "[]"),
+              "p.yaml:6:17: panel front: it is empty: it has 0 vertices, and needs three");
+  check_error(said(&Bag::front_edges, "[]"), "p.yaml:7:14: panel front: it is empty: it has no edges");
+  check_error(
+      said(&Bag::front_edges, "{bottom: [0, 4]}"),
+      "p.yaml:7:27: panel front: edge bottom ends at vertex 4, which is not there; it has 0, 1, 2, 3");
+  // Stitched twice, lengths that differ, one side, curves of no known kind.
+  check_error(said(&Bag::stitches, "{left: [front.left, back.left], again: [front.left, back.top]}"),
+              "p.yaml:11:45: edge left of panel front is in seam again and in seam left; an edge is sewn to "
+              "one other");
+  check_error(
+      said(&Bag::front, "{0: [0, 0], 1: [20, 0], 2: [20, 20], 3: [0, 30]}"),
+      "p.yaml:11:14: the sides of seam left are 30 and 20 cm long, which differ by 33.3 % of the longer one");
+  check_error(
+      said(&Bag::stitches, "{left: [front.left, back.left], right: [front.right, back.right, right_wrong]}"),
+      "p.yaml:11:45: seam right gives the cloth one side, as a Möbius band has");
+  check_error(
+      said(&Bag::front_edges, "{bottom: {endpoints: [0, 1], curvature: {type: spiral, params: [1]}}}"),
+      "p.yaml:7:61: \"type\" must be \"quadratic\", \"cubic\" or \"circle\", not \"spiral\"");
+  check_error(
+      said(&Bag::front_edges, "{bottom: {endpoints: [0, 1], curvature: {type: circle, params: [9, 0, 1]}}}"),
+      "p.yaml:7:77: panel front: edge bottom: no circle of that radius has both of its ends; at least 10");
+  check_error(refused_pattern("pattern: {panels: {}}\n"), "p.yaml:1:19: the pattern has no panels");
+}
+
+TEST_CASE("a pattern is no cloth of other keys, and other cloth has no seams") {
+  check_error(said_of("name: a\ncloth: {shape: pattern}\nenergies: [stvk]\nmethods: {newton: {}}\n"),
+              "e.yaml:2:8: \"shape: pattern\" needs \"file\", the pattern to read");
+  check_error(said_of("name: a\ncloth: {seams: {stiffness: 3}}\nenergies: [stvk]\nmethods: {newton: {}}\n"),
+              "e.yaml:2:16: \"seams\" in cloth is not read by this cloth; only flat pieces have them");
+}
