@@ -1,0 +1,93 @@
+#include "core/numerics/dressing/implicit_smoothing.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <stdexcept>
+#include <vector>
+
+#include "core/kernel/interfaces/topology.h"
+#include "core/numerics/linear_algebra/block_cholesky.h"
+
+namespace drape {
+
+namespace {
+
+/// M + L over the edges of triangles, whose weights are added one by one.
+class Laplacian {
+ public:
+  Laplacian(const Triangles& triangles, const Eigen::VectorXd& mass)
+      : matrix_(BlockPattern::of(static_cast<int>(mass.size()), {Stencils(triangles)})), mass_(mass) {
+    for (int i = 0; i < mass.size(); ++i) add(i, i, mass[i]);
+  }
+
+  void add_edge(int i, int j, double weight) {
+    add(i, i, weight), add(j, j, weight), add(std::min(i, j), std::max(i, j), -weight);
+  }
+
+  /// (M + L)⁻¹ M x.
+  Positions solve(const Positions& x) const {
+    BlockCholesky factor;
+    factor.analyse(matrix_.pattern, std::vector<char>(mass_.size(), 0));
+    Positions solution;
+    if (!factor.factorise(matrix_, Eigen::VectorXd::Zero(mass_.size())) ||
+        !factor.solve(mass_.asDiagonal() * x, solution))
+      throw std::runtime_error("the surface cannot be smoothed: its coordinates are too large or too small");
+    return solution;
+  }
+
+ private:
+  void add(int i, int j, double value) {
+    double* block = matrix_.block(matrix_.pattern->find(i, j));
+    for (int c = 0; c < 3; ++c) block[4 * c] += value;
+  }
+
+  BlockMatrix matrix_;
+  const Eigen::VectorXd& mass_;
+};
+
+}  // namespace
+
+double surface_area(const TriangleMesh& mesh) {
+  double area = 0;
+  for (const auto& t : mesh.triangles.rowwise()) {
+    const Eigen::Vector3d a = mesh.vertices.row(t[0]), b = mesh.vertices.row(t[1]),
+                          c = mesh.vertices.row(t[2]);
+    area += (b - a).cross(c - a).norm() / 2;
+  }
+  return area;
+}
+
+Positions contracted(const TriangleMesh& mesh, double time) {
+  constexpr double least_cotangent = 0.05, largest_cotangent = 5, least_share = 1e-6;
+  const Positions& x = mesh.vertices;
+  Eigen::VectorXd mass = Eigen::VectorXd::Zero(x.rows());
+  const auto corner = [&](Eigen::Index t, int k) -> Eigen::Vector3d {
+    return x.row(mesh.triangles(t, k % 3));
+  };
+  const auto area_vector = [&](Eigen::Index t, int k) -> Eigen::Vector3d {
+    return (corner(t, k) - corner(t, k + 2)).cross(corner(t, k + 1) - corner(t, k + 2));
+  };
+  for (Eigen::Index t = 0; t < mesh.triangles.rows(); ++t)
+    for (int k = 0; k < 3; ++k) mass[mesh.triangles(t, k)] += area_vector(t, 0).norm() / 6;
+  mass = mass.cwiseMax(least_share * mass.mean());  // of vertices around which all triangles are flat
+  Laplacian system(mesh.triangles, mass);
+  for (Eigen::Index t = 0; t < mesh.triangles.rows(); ++t)
+    for (int k = 0; k < 3; ++k) {
+      const double cosine = (corner(t, k) - corner(t, k + 2)).dot(corner(t, k + 1) - corner(t, k + 2)),
+                   sine = area_vector(t, k).norm();
+      const double cotangent = std::clamp(cosine, least_cotangent * sine, largest_cotangent * sine) / sine;
+      system.add_edge(mesh.triangles(t, k), mesh.triangles(t, (k + 1) % 3),
+                      time * (sine > 0 ? cotangent : least_cotangent) / 2);
+    }
+  return system.solve(x);
+}
+
+Positions smoothed(const Triangles& triangles, const Positions& x, double time) {
+  const Eigen::VectorXd ones = Eigen::VectorXd::Ones(x.rows());
+  Laplacian system(triangles, ones);
+  const Topology topology = Topology::of(triangles, static_cast<int>(x.rows()));
+  for (const auto& edge : topology.edges.rowwise()) system.add_edge(edge[0], edge[1], time);
+  return system.solve(x);
+}
+
+}  // namespace drape

@@ -1,0 +1,76 @@
+// Bodies that contract, starts that are smoothed, and rest shapes between two.
+
+#include "core/numerics/dressing/implicit_smoothing.h"
+#include "core/numerics/dressing/intermediate_rest.h"
+#include "core/numerics/elements/stretch.h"
+#include "core/numerics/patterns/generate.h"
+#include "tests/support/sewn.h"
+
+using namespace drape;
+
+TEST_CASE("A sphere contracts by mean curvature flow as its curvature says, in any unit") {
+  // L x = 2 x / r² M x on a sphere of radius r, so that one implicit step makes r / (1 + 2 t / r²) of it.
+  for (const double unit : {1.0, 100.0}) {
+    TriangleMesh sphere = unit_sphere(4);
+    sphere.vertices *= 0.1 * unit;
+    const double time = 0.01 * surface_area(sphere), radius = 0.1 * unit;
+    CHECK(surface_area(sphere) == Approx(4 * M_PI * radius * radius).epsilon(0.01));
+    const Eigen::VectorXd radii = contracted(sphere, time).rowwise().norm();
+    CHECK(radii.minCoeff() == Approx(radius / (1 + 2 * time / (radius * radius))).epsilon(0.01));
+    CHECK(radii.maxCoeff() == Approx(radius / (1 + 2 * time / (radius * radius))).epsilon(0.01));
+  }
+}
+
+TEST_CASE("An open body contracts within its hull, and a vertex of no triangle stays") {
+  TriangleMesh sheet = grid({1, 0.2}, 21, 5, Diagonals::criss_cross);
+  sheet.vertices.conservativeResize(sheet.vertices.rows() + 1, 3);
+  sheet.vertices.bottomRows(1) << 0.5, 0.1, 2;
+  const Positions x = contracted(sheet, 0.005);
+  REQUIRE(x.allFinite());
+  CHECK(x.bottomRows(1).isApprox(sheet.vertices.bottomRows(1)));
+  const Eigen::AlignedBox3d box = bounding_box(x.topRows(x.rows() - 1));
+  CHECK(box.sizes().x() < 0.99);
+  CHECK(box.sizes().y() < 0.15);
+  CHECK(box.min().minCoeff() > -1e-12);
+}
+
+TEST_CASE("Smoothing shares a long edge's length with its neighbours and keeps the mean place") {
+  const TriangleMesh sheet = grid({1, 1}, 11, 11, Diagonals::one_way);
+  Positions x = sheet.vertices;
+  for (int v = 0; v < x.rows(); ++v)
+    if (x(v, 0) > 0.55) x(v, 0) += 3;
+  const auto longest = [&](const Positions& at) {
+    double most = 0;
+    for (const auto& t : sheet.triangles.rowwise())
+      for (int k = 0; k < 3; ++k) most = std::max(most, (at.row(t[k]) - at.row(t[(k + 1) % 3])).norm());
+    return most;
+  };
+  const Positions smooth = smoothed(sheet.triangles, x, 4);
+  CHECK(longest(smooth) < 0.4 * longest(x));
+  CHECK((smooth.colwise().mean() - x.colwise().mean()).norm() < 1e-12);
+  CHECK((smoothed(sheet.triangles, x, 0) - x).norm() < 1e-12);
+}
+
+TEST_CASE("Rest shapes between two have the mean of their metrics, and turn over nowhere") {
+  const Level flat = Level::of(0, as_piece(grid({1, 1}, 5, 5, Diagonals::criss_cross)));
+  Positions placed = flat.rest.vertices;
+  for (int v = 0; v < placed.rows(); ++v)  // stretched by 80, sheared, and turned out of the plane
+    placed.row(v) << 3 * placed(v, 1) + placed(v, 0), 0.2, -80 * placed(v, 0);
+  for (const double weight : {1.0, 0.1, 1e-4, 0.0}) {
+    const Level between = with_intermediate_rest(flat, placed, weight);
+    CHECK(between.vertex_area == flat.vertex_area);
+    double difference = 0;
+    for (int t = 0; t < flat.triangle_count(); ++t) {
+      const Eigen::Matrix3d c = rest_corners(between.rest, t), c0 = rest_corners(flat.rest, t);
+      const auto v = flat.rest.triangles.row(t);
+      for (int k = 0; k < 3; ++k) {
+        const int next = (k + 1) % 3;
+        const double wanted = weight * (placed.row(v[next]) - placed.row(v[k])).squaredNorm() +
+                              (1 - weight) * (c0.col(next) - c0.col(k)).squaredNorm();
+        difference = std::max(difference, std::abs((c.col(next) - c.col(k)).squaredNorm() / wanted - 1));
+      }
+      CHECK((c.col(1) - c.col(0)).cross(c.col(2) - c.col(0)).z() > 0);
+    }
+    CHECK(difference < 1e-12);
+  }
+}
