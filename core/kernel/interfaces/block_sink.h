@@ -27,6 +27,9 @@ class BlockSink {
     return {slots_ + static_cast<std::ptrdiff_t>(first) * pairs_, pairs_, values_, factor_};
   }
 
+  /// This sink, whose blocks are multiplied by a further factor.
+  BlockSink scaled(double factor) const { return {slots_, pairs_, values_, factor * factor_}; }
+
   /// Adds the element's 3×3 block h, row-major, whose rows belong to its vertex a and whose columns belong to
   /// its vertex b. Only pairs a ≤ b are given: the other half follows by symmetry. Nothing is checked.
   void add(int element, int a, int b, const double* h) {

@@ -32,9 +32,10 @@ LevelModel LevelModel::with_effective_membranes(int levels_below, const std::vec
     if (term.role == EnergyRole::bending) stiffness += term.kind->plate_stiffness(material_);
   const double s = buckling_bound(stiffness, levels_below);
   std::optional<Level> softened;
+  const Level& own = level_of(EnergyRole::membrane);
   if (!lone_pins.empty()) {
-    softened = *level_;
-    softened->softening = softening_at_pins(*level_, lone_pins, material_.poisson_ratio, levels_below);
+    softened = own;
+    softened->softening = softening_at_pins(own, lone_pins, material_.poisson_ratio, levels_below);
   }
   // Several laws would each wrinkle by itself, also where their sum is taut.
   const bool alone = std::ranges::count(terms_, EnergyRole::membrane, &Term::role) == 1;
@@ -43,7 +44,7 @@ LevelModel LevelModel::with_effective_membranes(int levels_below, const std::vec
     if (term.role != EnergyRole::membrane) continue;
     const Stencils plain = term.energy->stencils();
     // A law of its triangle's size, whose midpoint factor is not 1, would take the softened area for its own.
-    const Level& level = softened && term.kind->midpoint_factor() == 1 ? *softened : *level_;
+    const Level& level = softened && term.kind->midpoint_factor() == 1 ? *softened : own;
     term.energy = alone ? term.kind->bind_buckling(level, material_, s) : term.kind->bind(level, material_);
     if (!term.energy || !same_entries(term.energy->stencils(), plain))
       throw std::runtime_error("energy " + term.name +

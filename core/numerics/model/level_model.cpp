@@ -50,8 +50,10 @@ double free_norm(const Positions& g, const std::vector<char>& fixed) { return no
 
 LevelModel::LevelModel(const Level& level, const Material& material, const std::vector<NamedEnergy>& energies,
                        std::vector<DirichletVertex> dirichlet,
-                       const std::vector<std::shared_ptr<ContactModel>>& contacts, const LevelModel* before)
+                       const std::vector<std::shared_ptr<ContactModel>>& contacts, const LevelModel* before,
+                       std::shared_ptr<const Level> membranes)
     : level_(&level),
+      membranes_(std::move(membranes)),
       material_(material),
       dirichlet_(std::move(dirichlet)),
       fixed_(level.vertex_count(), 0),
@@ -95,12 +97,13 @@ void LevelModel::bind_energies(const std::vector<NamedEnergy>& energies, const L
   for (std::size_t t = 0; t < energies.size(); ++t) {
     const NamedEnergy& e = energies[t];
     const Term* old = before ? &before->terms_.at(t) : nullptr;
-    if (old && old->kind == e.energy && before->material_ == material_) {
+    const Level& level = level_of(e.energy->role());
+    if (old && old->kind == e.energy && old->level == &level && before->material_ == material_) {
       terms_.push_back(*old);
     } else {
-      Term term{unused_name(e.name), e.energy->role(), e.energy, nullptr, nullptr};
+      Term term{unused_name(e.name), e.energy->role(), e.energy, &level, nullptr, nullptr};
       const auto bind = [&](const Level& own) { return bound_energy(*e.energy, own, material_); };
-      term.energy = with_name("energy " + term.name, [&] { return bind_with_seams(*level_, bind); });
+      term.energy = with_name("energy " + term.name, [&] { return bind_with_seams(level, bind); });
       Stencils own = term.energy->stencils();
       if (old && !same_entries(own, old->energy->stencils()))
         throw std::runtime_error("energy " + term.name +

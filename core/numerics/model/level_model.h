@@ -34,11 +34,12 @@ class LevelModel {
  public:
   /// `dirichlet` must not list a vertex twice. Shares with `before`, a model of the same level at another
   /// pseudo-time, all that is equal. Throws std::runtime_error if an energy's stencils differ from those in
-  /// `before`: the sparsity pattern must not change over time.
+  /// `before`: the sparsity pattern must not change over time. Membranes rest as in `membranes`, the same
+  /// level with another rest shape, as while a garment is sewn; without it as in `level`.
   LevelModel(const Level& level, const Material& material, const std::vector<NamedEnergy>& energies,
              std::vector<DirichletVertex> dirichlet,
              const std::vector<std::shared_ptr<ContactModel>>& contacts = {},
-             const LevelModel* before = nullptr);
+             const LevelModel* before = nullptr, std::shared_ptr<const Level> membranes = nullptr);
 
   const Level& level() const { return *level_; }
   const Material& material() const { return material_; }
@@ -114,6 +115,7 @@ class LevelModel {
     std::string name;
     EnergyRole role;
     std::shared_ptr<const Energy> kind;  // the energy that was bound
+    const Level* level = nullptr;        // to this one
     std::shared_ptr<const BoundEnergy> energy;
     std::shared_ptr<const BlockSlots> slots;  // null for linear energies and limits
 
@@ -136,7 +138,13 @@ class LevelModel {
   /// gradient.
   double linear_value(const Positions& x, Positions* g, Roles roles) const;
 
+  /// The level with the rest shape of an energy of this role.
+  const Level& level_of(EnergyRole role) const {
+    return role == EnergyRole::membrane && membranes_ ? *membranes_ : *level_;
+  }
+
   const Level* level_;
+  std::shared_ptr<const Level> membranes_;  // may be null
   Material material_;
   std::vector<DirichletVertex> dirichlet_;
   std::vector<char> fixed_;
