@@ -7,6 +7,7 @@
 #include "core/kernel/files/message_text.h"
 #include "core/kernel/plugin/bounds.h"
 #include "core/kernel/plugin/refused_parameters.h"
+#include "core/numerics/dressing/implicit_smoothing.h"
 #include "core/numerics/mesh/check.h"
 #include "core/numerics/mesh/repair.h"
 #include "core/numerics/mesh_files/io.h"
@@ -77,6 +78,7 @@ ObstacleMeshes frames_of(const ObstacleParameters& p) {
   if (p.meshed_shape == "box") return {{ValidatedMesh::of(unit_box())}, {}, ""};
   if (p.meshed_shape == "sphere") return {{ValidatedMesh::of(unit_sphere(p.subdivisions))}, {}, ""};
   if (p.animation.empty()) return load_meshes({p.mesh}, p, p.strict);
+  if (p.contraction > 0) throw std::runtime_error("\"contraction\" needs a \"mesh\" without \"animation\"");
   if (p.cages.count > 0) throw std::runtime_error("\"cages\" need a mesh without \"animation\"");
   return load_meshes(p.animation, p, p.strict);
 }
@@ -120,6 +122,16 @@ void ObstacleParameters::declare(Declaration<ObstacleParameters>& d) {
   d.add("frame", &P::frame, "frame of the animation, from 0, interpolated linearly; for a schedule to change")
       .unit("1")
       .between(0, 1e6);
+  d.add("contraction", &P::contraction,
+        "how far a mesh shrinks before it is grown, as the time of one implicit step of mean curvature flow "
+        "over its area: limbs become thin, a torso keeps half of its width. `dress` finds it")
+      .unit("1")
+      .between(0, 1)
+      .source("Desbrun et al. 1999");
+  d.add("grown", &P::grown,
+        "from the contracted mesh (0) to the whole one (1), linearly; for a schedule to change")
+      .unit("1")
+      .between(0, 1);
   d.add("strict", &P::strict,
         "whether a mesh that a cloth could not have is refused; otherwise it is repaired");
   d.add_section("cages", &P::cages, "closed surfaces around the obstacle that replace it on coarse levels");
@@ -143,6 +155,12 @@ ObstacleMeshes ObstacleMeshes::of(const ObstacleParameters& p, int number) {
     ObstacleMeshes meshes = frames_of(p);
     if (!meshes.repair.empty()) meshes.repair = "obstacle " + name_of(p, number) + ": " + meshes.repair;
     if (p.cages.count > 0) meshes.cages = make_cages(*meshes.frames[0], p.cages);
+    if (p.contraction > 0) {
+      if (p.cages.count > 0) throw std::runtime_error("\"cages\" need a mesh without \"contraction\"");
+      TriangleMesh small = meshes.frames[0]->mesh;
+      small.vertices = contracted(small, p.contraction * surface_area(small));
+      meshes.frames.insert(meshes.frames.begin(), ValidatedMesh::of(std::move(small)));
+    }
     return meshes;
   } catch (const RefusedParameters& refused) {
     std::vector<ParameterFault> faults = refused.faults;
@@ -155,8 +173,8 @@ ObstacleMeshes ObstacleMeshes::of(const ObstacleParameters& p, int number) {
 
 bool ObstacleMeshes::are_same(const ObstacleParameters& a, const ObstacleParameters& b) {
   return a.mesh == b.mesh && a.meshed_shape == b.meshed_shape && a.subdivisions == b.subdivisions &&
-         a.animation == b.animation && a.strict == b.strict && FileCoordinates(a) == FileCoordinates(b) &&
-         a.cages == b.cages;
+         a.animation == b.animation && a.contraction == b.contraction && a.strict == b.strict &&
+         FileCoordinates(a) == FileCoordinates(b) && a.cages == b.cages;
 }
 
 Obstacle Obstacle::of(const ObstacleParameters& p, int number, const ObstacleMeshes& meshes, int level) {
@@ -167,6 +185,7 @@ Obstacle Obstacle::of(const ObstacleParameters& p, int number, const ObstacleMes
   if (p.frame != 0 && p.animation.empty())
     throw std::runtime_error(
         fault_text(body.name, "\"frame\" is of an \"animation\", which it does not have; leave it out"));
+  if (p.contraction > 0) geometry.frame = p.grown;
   if (p.meshed_shape == "box") {
     geometry.local_scale = p.size;
   } else if (p.meshed_shape == "sphere") {

@@ -24,6 +24,7 @@ struct ObstacleParameters : CommonObstacleParameters, FileCoordinates {
   int subdivisions = 4;
   std::vector<std::string> animation;
   double frame = 0;
+  double contraction = 0, grown = 1;
   bool strict = false;  ///< refuse a mesh in place of repairing it
   CageParameters cages;
   double scale = 1;
