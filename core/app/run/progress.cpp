@@ -43,6 +43,7 @@ void Progress::level_started(int) {
   first_residual_ = 0;
   done_ = 0;
   to_go_ = 0;
+  phase_.clear();
 }
 
 void Progress::iteration(const IterationRow& row, const Positions&) {
@@ -64,6 +65,8 @@ void Progress::take_note(const IterationRow& row) {
             last = scheduled ? load_stepping_->increment_count() : 0;
   if (first_residual_ == 0 || increment != increment_) first_residual_ = best_residual_ = row.force_residual;
   increment_ = increment;
+  if (std::string phase = scheduled ? load_stepping_->phase() : ""; phase != phase_)
+    begin_phase(row, std::move(phase));
   best_residual_ = std::min(best_residual_, row.force_residual);
   const bool is_solved = !scheduled || load_stepping_->equilibrates() || increment == last;
   const double decades = std::log(first_residual_ / tolerance_);
@@ -78,7 +81,7 @@ std::string Progress::line(const IterationRow& row) const {
   char text[256];
   if (load_stepping_ && row.time) {
     std::snprintf(text, sizeof text, "increment %d/%d of ", increment_, load_stepping_->increment_count());
-    increment = text + changing_ + " ";
+    increment = text + (phase_.empty() ? changing_ : phase_) + " ";
   }
   if (to_go_ >= 0.5) {
     std::snprintf(text, sizeof text, "  about %.0f s to go", to_go_);
@@ -116,6 +119,18 @@ void Progress::draw(const IterationRow& row) {
 void Progress::clear_line() {
   if (drawn_) std::fputs("\r\033[K", stderr);
   drawn_ = false;
+}
+
+/// Writes a line for the phase that has ended, and begins the next.
+void Progress::begin_phase(const IterationRow& row, std::string phase) {
+  if (verbosity_ != Verbosity::quiet && !phase_.empty()) {
+    clear_line();
+    std::fprintf(stderr, "%-9s level %d/%d %-12s %5d steps %8.2f s\n", method_.c_str(), row.level,
+                 levels_ - 1, phase_.c_str(), row.step - phase_begin_.step,
+                 row.seconds - phase_begin_.seconds);
+  }
+  phase_ = std::move(phase);
+  phase_begin_ = row;
 }
 
 void Progress::level_finished(const LevelResult& r) {

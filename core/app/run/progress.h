@@ -35,6 +35,7 @@ class Progress : public Observer {
 
  private:
   void take_note(const IterationRow& row);
+  void begin_phase(const IterationRow& row, std::string phase);
   void draw(const IterationRow& row);
   void clear_line();
 
@@ -44,6 +45,8 @@ class Progress : public Observer {
   bool terminal_, drawn_ = false;
   const LoadStepping* load_stepping_;
   std::string changing_, method_;
+  std::string phase_;  // of the schedule, which began with this iteration:
+  IterationRow phase_begin_;
   Stopwatch level_clock_;
   double last_draw_ = 0;
   int increment_ = 0;                              // of the residuals

@@ -236,17 +236,19 @@ void Recorder::increment_finished(const IncrementRow& r, const Positions& x) {
   const LevelModel& model = *scene_.model(r.level);
   const double seconds = std::max(s_.last.seconds - s_.increments, 0.0);  // without what recording took
   s_.increments += seconds;
-  method_entry()["increments"].push_back(
-      {{"level", r.level},
-       {"increment", r.increment},
-       {"time", r.time},
-       {"steps", r.steps},
-       {"iterations", r.iterations},
-       {"seconds", seconds},
-       {"energy", r.energy},
-       {"energy_released", model.value(scene_.placed[r.level]) - model.value(x)},
-       {"force_residual", r.force_residual},
-       {"max_constraint_violation", r.max_constraint_violation}});
+  Json& increments = method_entry()["increments"];
+  increments.push_back({{"level", r.level},
+                        {"increment", r.increment},
+                        {"time", r.time},
+                        {"steps", r.steps},
+                        {"iterations", r.iterations},
+                        {"seconds", seconds},
+                        {"energy", r.energy},
+                        {"energy_released", model.value(scene_.placed[r.level]) - model.value(x)},
+                        {"force_residual", r.force_residual},
+                        {"max_constraint_violation", r.max_constraint_violation}});
+  if (const std::string phase = scene_.load_stepping->phase(); !phase.empty())
+    increments.back()["phase"] = phase;
   exclude(watch.seconds());
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "core/kernel/interfaces/energy.h"
@@ -46,6 +47,10 @@ class LoadStepping {
   bool finished() const { return increment() == increment_count() && complete(); }
   /// Pseudo-time of the current increment, in the schedule's unit.
   virtual double time() const = 0;
+  /// The name of the phase that the current increment belongs to; empty for a schedule without phases.
+  virtual std::string phase() const { return ""; }
+  /// How many times the force tolerance is enough for an equilibrium of the current increment [1].
+  virtual double slack() const { return 1; }
 
   /// Continues the current increment, or begins the next, as far as a cloth at x (n×3) [m] allows on this
   /// level. Returns the fraction of the remaining increment that was applied.

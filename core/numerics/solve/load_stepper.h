@@ -54,6 +54,8 @@ class LoadStepper {
   std::optional<double> time() const {
     return load_stepping_ ? std::optional(load_stepping_->time()) : std::nullopt;
   }
+  /// How many times the force tolerance is enough for an equilibrium of the current increment [1].
+  double slack() const { return load_stepping_ ? load_stepping_->slack() : 1; }
   /// Stores how far load stepping has come.
   void store_progress(LevelResult& result) const;
 

@@ -95,6 +95,7 @@ class Newton {
     if (!std::isfinite(iterate_.force_residual())) return false;
     dirichlet_.enforce();
     check_.restart_drift();  // what pins carry along has not drifted
+    check_.set_slack(load_.slack());
     return true;
   }
 
@@ -233,6 +234,7 @@ class Newton {
     step_.controller().end_limit();
     saddle_exit_.restart();
     load_.advance(at_equilibrium);
+    check_.set_slack(load_.slack());
     check_.restart();
     dirichlet_.enforce();
     check_.restart_drift();

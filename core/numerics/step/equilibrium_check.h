@@ -26,6 +26,7 @@ class EquilibriumCheck {
     double lowest_residual = unknown;  ///< the lowest force residual at the end of a step [1]
     int steps_since_lowest = 0;        ///< how many steps ago that was
     double strictness = 1;             ///< the force tolerance is divided by it
+    double slack = 1;                  ///< and multiplied by this
   };
   const State& state() const { return s_; }
   void restore(const State& state) { s_ = state; }
@@ -55,16 +56,18 @@ class EquilibriumCheck {
   }
 
   /// The force tolerance [1].
-  double force_tolerance() const { return p_.force_tolerance / s_.strictness; }
+  double force_tolerance() const { return p_.force_tolerance * s_.slack / s_.strictness; }
   /// Divides the force tolerance by this; 1 ends it.
   void tighten(double strictness) { s_.strictness = strictness; }
+  /// Multiplies it by this, until the next call.
+  void set_slack(double slack) { s_.slack = slack; }
 
   /// Notes the decrement of an iteration, before the iteration is counted.
   void note_decrement(double decrement) { s_.decrements[iterate_.result().iterations % 3] = decrement; }
   /// Notes the end of a step with this `inertia` [J].
   void note_step(double inertia);
   /// For another objective: restarts the count of idle steps, and forgets cycles, residuals and decrements.
-  void restart() { s_ = {.initial_centroid = s_.initial_centroid, .strictness = s_.strictness}; }
+  void restart() { s_ = {.initial_centroid = s_.initial_centroid, .strictness = s_.strictness, .slack = s_.slack}; }
   /// Measures the drift from here on.
   void restart_drift() { s_.initial_centroid = iterate_.free_centroid(); }
 
