@@ -160,6 +160,7 @@ std::optional<Experiment> read_experiment(ConfigNode source, const Registry& reg
   e.registry = &registry;
   set_first_keys(e.source);
   apply_fabric(e.source, errors);
+  apply_dress(e.source, errors);
   experiment_schema().read(&e.parameters, e.source, errors);
   find_label_edges(e.source, e.parameters, errors);
   e.resolved = experiment_schema().write(&e.parameters);
@@ -170,6 +171,7 @@ std::optional<Experiment> read_experiment(ConfigNode source, const Registry& reg
   check_motions(e, errors);
   check_material(e, errors);
   make_plugins(e, errors);
+  make_dressing_schedule(e, errors);
   read_keys(e, errors);
   if (errors.empty()) return e;
   // The scene, which would append the faults of mesh files, cannot be built.

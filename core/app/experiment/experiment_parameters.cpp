@@ -273,6 +273,11 @@ void ExperimentParameters::declare(Declaration<ExperimentParameters>& d) {
   d.add_sections("handles", &ExperimentParameters::handles,
                  "penalty boundary conditions: vertices on springs to their targets (soft positions)");
   d.add_section(
+       "dress", &ExperimentParameters::dress,
+       "a garment of flat pieces is put on a body: the body grows inside it, the pieces are sewn, and "
+       "weight and friction come last; the name of the body's file is a shorthand")
+      .shorthand("body");
+  d.add_section(
       "schedule", &ExperimentParameters::schedule,
       "load stepping on a level that begins from `start`; later levels are solved under the final loads");
   d.add("energies", &ExperimentParameters::energies, "energies; their sum is minimised")

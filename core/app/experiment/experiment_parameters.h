@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "core/app/experiment/dress.h"
 #include "core/kernel/interfaces/material.h"
 #include "core/kernel/plugin/declared_numbers.h"
 #include "core/numerics/mesh/grain.h"
@@ -145,7 +146,7 @@ struct HandleParameters : VertexSelection {
 enum class KeyInterpolation { linear, log, step };
 
 /// What load stepping makes anew: parts of the experiment, each of which has an index among its like.
-enum class LoadPart { material, pins, handles, energies, contact };
+enum class LoadPart { material, pins, handles, energies, contact, dress };
 
 /// The declared numbers that a schedule's key changes, in the struct of their part: the parameters of an
 /// energy or a contact model, otherwise ExperimentParameters.
@@ -209,6 +210,7 @@ struct ExperimentParameters {
   StartParameters start;
   std::vector<PinParameters> pins;
   std::vector<HandleParameters> handles;
+  DressParameters dress;
   ScheduleParameters schedule;
   std::vector<ConfigNode> energies;
   ConfigNode refiner, contact;

@@ -84,7 +84,7 @@ class KeyReader {
     if (key.parameter.empty()) return;  // the schema has reported it
     key.values = values_of(key);
     const auto not_positive = [](const std::vector<double>& value) { return std::ranges::min(value) <= 0; };
-    if (!is_changeable(key.parameter))
+    if (!is_changeable(key.parameter) && !e_.parameters.dress.is_asked())  // whose keys drape makes itself
       refuse(key, "cannot change while a level is solved; keys are for parameters of " + joined(changeable));
     else if (!std::is_sorted(key.times.begin(), key.times.end(), std::less_equal<>()))
       refuse(key, "must have ascending \"times\"");
@@ -126,8 +126,8 @@ class KeyReader {
     } else if ((part == "energies" || part == "contact") && (item || !is_list)) {
       const std::vector<std::string> within(words.begin() + (item ? 2 : 1), words.end());
       add_target(key, part == "contact" ? LoadPart::contact : LoadPart::energies, item.value_or(0), within);
-    } else if (part == "material") {
-      add_target(key, LoadPart::material, 0, words);
+    } else if (part == "material" || part == "dress") {
+      add_target(key, part == "dress" ? LoadPart::dress : LoadPart::material, 0, words);
     } else if (item) {
       add_target(key, part == "pins" ? LoadPart::pins : LoadPart::handles, *item, words);
     }

@@ -1,13 +1,12 @@
 #include "core/app/scene/load_schedule.h"
 
 #include <algorithm>
-#include <map>
 #include <stdexcept>
 
 #include "core/app/experiment/read_experiment.h"
 #include "core/app/scene/boundary_conditions.h"
-#include "core/kernel/files/message_text.h"
-#include "core/numerics/model/stretch_limit.h"
+#include "core/numerics/dressing/intermediate_rest.h"
+#include "core/numerics/elements/scaled_energy.h"
 
 namespace drape {
 
@@ -25,181 +24,23 @@ void make_again(const PluginParameters& parameters, std::shared_ptr<Interface>& 
   throw_first(errors);
 }
 
-/// An increment is tried at most this often, in ever smaller fractions, before it waits for equilibrium.
-constexpr int max_tries = 30;
-constexpr double min_fraction = 1e-6;  // of what remains of the increment
-
-/// Largest feasible motion of the obstacles from one model to the other with the cloth at x.
-StepLimit obstacle_step_limit(const LevelModel& from, const LevelModel& to, const Positions& x) {
-  StepLimit limit;
-  for (std::size_t k = 0; k < to.contacts().size(); ++k) {
-    if (to.contacts()[k] == from.contacts()[k]) continue;
-    StepLimit own = to.contacts()[k]->max_step(*from.contacts()[k], x);
-    if (own.fraction < limit.fraction) limit = std::move(own);
-  }
-  return limit;
-}
-
-/// The times of a key, and one between each two.
-std::vector<double> times_with_between(const std::vector<double>& times) {
-  constexpr double fraction = 0.38196601125;  // no round one, where two motions may happen to meet
-  std::vector<double> all;
-  for (std::size_t i = 0; i < times.size(); ++i) {
-    if (i > 0) all.push_back(times[i - 1] + fraction * (times[i] - times[i - 1]));
-    all.push_back(times[i]);
-  }
-  return all;
-}
-
-/// The faults of load_stepping_of.
-void check_on_levels(const Experiment& e, const Scene& scene, const LoadSchedule& schedule,
-                     ConfigErrors& errors) {
-  const std::vector<Level>& levels = scene.hierarchy.levels;
-  std::map<double, Conflicts> conflicts;  // of all pins and handles, at the times of their keys
-  for (const ScheduleKey& key : e.parameters.schedule.keys) {
-    const LoadPart part = key.targets[0].part;
-    if (part == LoadPart::contact) continue;
-    const bool of_vertices = part == LoadPart::pins || part == LoadPart::handles;
-    const Location& where = key.written.where;
-    // Whether check(load, faults) finds no fault at any of these times; appends those of the first that has.
-    const auto hold_at = [&](const std::vector<double>& times, const auto& check) {
-      for (const double time : times) {
-        ConfigErrors own;
-        try {
-          check(time, own);
-        } catch (const std::runtime_error& problem) {
-          own.push_back({where, problem.what()});
-        }
-        for (const ConfigError& error : own)
-          errors.push_back({where, "key \"" + excerpt(key.parameter) + "\" at pseudo-time " +
-                                       three_digits(time) + ": " + error.message});
-        if (!own.empty()) return false;
-      }
-      return true;
-    };
-    // With the values that all other keys have at that time: two keys may move the bounds of one region.
-    const auto load_at = [&](double time) { return schedule.at(schedule.keys().values_at(time)); };
-    const bool bound = hold_at(key.times, [&](double time, ConfigErrors& own) {
-      const LoadState load = *load_at(time);
-      if (of_vertices) check_selections(e, *load.parameters, levels, own, &key.targets[0]);
-      if (!own.empty() || part == LoadPart::pins) return;
-      for (const auto& first : scene.models)  // throws for an energy that load stepping could not bind
-        LevelModel(first->level(), load.parameters->material, load.energies, {}, {}, first.get());
-    });
-    if (bound && of_vertices)
-      hold_at(times_with_between(key.times), [&](double time, ConfigErrors& own) {
-        const auto [found, is_new] = conflicts.try_emplace(time);
-        if (is_new) found->second = conflicts_of(*load_at(time)->parameters, levels, scene.placed);
-        report(found->second, e, levels, own, &key.targets[0]);
-      });
-  }
-}
-
-/// Load stepping along a scene's schedule: how far it has come, and the load and model of each level. A
-/// level's model is made when it is asked for.
-class ScheduleStepping final : public LoadStepping {
- public:
-  ScheduleStepping(LoadSchedule schedule, const Scene& scene)
-      : schedule_(std::move(schedule)), load_(schedule_.first()) {
-    for (const auto& model : scene.models) levels_.push_back({load_, load_, model});
-  }
-
-  int increment_count() const override { return schedule_.keys().steps; }
-  bool equilibrates() const override { return schedule_.keys().equilibrate; }
-  LoadSteppingState state() const override { return {increment_, load_->values}; }
-  int increment() const override { return increment_; }
-  bool complete() const override { return load_->values == schedule_.values(increment_); }
-  double time() const override { return schedule_.keys().time(increment_); }
-
-  void begin(int level, bool from_start) override {
-    if (from_start)
-      restore(level, {0, schedule_.values(0)});
-    else
-      set_load(level, load_);
-  }
-
-  void restore(int level, const LoadSteppingState& state) override {
-    increment_ = state.increment;
-    set_load(level, load_at(state.values));
-  }
-
-  std::shared_ptr<const LevelModel> model(int level) override {
-    LoadedLevel& l = levels_[level];
-    if (l.made_of != l.load) {
-      l.model = schedule_.model(*l.load, level, *l.model);
-      l.made_of = l.load;
-    }
-    return l.model;
-  }
-
-  StepLimit advance(int level, const Positions& x) override {
-    if (complete()) ++increment_;
-    StepLimit limit{0, {}};
-    double part = 1;
-    for (int tries = 0; tries < max_tries && part >= min_fraction; ++tries) {
-      StepLimit allowed = try_fraction(part, level, x);
-      if (allowed.fraction == 1) return {part, std::move(limit.by)};
-      if (!allowed.by.empty()) limit.by = std::move(allowed.by);
-      part *= allowed.fraction;
-    }
-    return limit;
-  }
-
-  bool advance_by(double fraction, int level, const Positions& x) override {
-    return try_fraction(fraction, level, x).fraction == 1;
-  }
-
- private:
-  /// A level's load, and its model, which was made for the load `made_of`.
-  struct LoadedLevel {
-    std::shared_ptr<const LoadState> load, made_of;
-    std::shared_ptr<const LevelModel> model;
-  };
-
-  /// The load with these values of all keys. Throws std::runtime_error naming the pseudo-time and the fault.
-  std::shared_ptr<const LoadState> load_at(std::vector<double> values) const {
-    try {
-      return schedule_.at(std::move(values), *load_);
-    } catch (const std::exception& error) {
-      throw std::runtime_error("the schedule at pseudo-time " + std::to_string(time()) + ": " + error.what());
-    }
-  }
-
-  /// Gives this level and all finer ones a load.
-  void set_load(int level, std::shared_ptr<const LoadState> load) {
-    load_ = std::move(load);
-    for (std::size_t l = level; l < levels_.size(); ++l) levels_[l].load = load_;
-  }
-
-  /// Applies a fraction of the remaining increment if a cloth at x allows it. Returns 1 if so, else an
-  /// estimate of the feasible part of that fraction.
-  StepLimit try_fraction(double fraction, int level, const Positions& x) {
-    std::vector<double> values = schedule_.values(increment_);
-    if (fraction < 1)
-      for (std::size_t c = 0; c < values.size(); ++c)
-        values[c] = load_->values[c] + fraction * (values[c] - load_->values[c]);
-    if (fraction < 1 && values == load_->values) return {0, {}};  // less than the numbers can express
-    const std::shared_ptr<const LoadState> next = load_at(std::move(values));
-    const std::shared_ptr<const LevelModel> now = model(level);
-    std::shared_ptr<const LevelModel> then = schedule_.model(*next, level, *now);
-    if (std::string refused = strain_limit_violations(then->limits(), x, 1); !refused.empty())
-      return {0.5, std::move(refused)};  // a limit gives no fraction: try half
-    if (StepLimit limit = obstacle_step_limit(*now, *then, x); limit.fraction < 1) return limit;
-    set_load(level, next);
-    levels_[level] = {next, next, std::move(then)};
-    return {};
-  }
-
-  const LoadSchedule schedule_;
-  int increment_ = 0;
-  std::shared_ptr<const LoadState> load_;
-  std::vector<LoadedLevel> levels_;
-};
-
 }  // namespace
 
+std::shared_ptr<const Level> IntermediateRests::level(int level) const {
+  const std::lock_guard lock(busy_);
+  std::shared_ptr<const Level>& own = levels_[level];
+  if (!own)
+    own = std::make_shared<const Level>(
+        with_intermediate_rest(scene_.hierarchy.levels[level], scene_.dressing->garments[level], placed_));
+  return own;
+}
+
 LoadSchedule::LoadSchedule(const Experiment& e, const Scene& scene)
-    : scene_(scene), keys_(e.parameters.schedule) {
+    : scene_(scene), keys_([&] {
+        ScheduleParameters keys = e.parameters.schedule;
+        if (e.parameters.dress.is_asked()) keys.keys[0].values[0][0] = scene.dressing->contraction;
+        return keys;
+      }()) {
   std::size_t first = 0;
   for (const ScheduleKey& key : e.parameters.schedule.keys) {
     for (const KeyTarget& target : key.targets)
@@ -208,8 +49,11 @@ LoadSchedule::LoadSchedule(const Experiment& e, const Scene& scene)
   }
   const auto parameters = std::make_shared<ExperimentParameters>(e.parameters);
   parameters->schedule = {};  // of which each load would have a copy
+  // The scene's own models have a schedule's first load, but are those of a garment that is worn.
+  std::vector<double> values =
+      e.parameters.dress.is_asked() ? keys_.values_at(keys_.time(keys_.steps)) : keys_.values_at(0);
   first_ = std::make_shared<const LoadState>(
-      LoadState{keys_.values_at(0), parameters, scene.energies, e.contacts});
+      LoadState{std::move(values), parameters, scene.energies, e.contacts, nullptr, nullptr});
 }
 
 LoadSchedule::Change& LoadSchedule::change_of(const Experiment& e, const KeyTarget& target) {
@@ -244,10 +88,29 @@ std::shared_ptr<const LoadState> LoadSchedule::at(std::vector<double> values, co
     if (change.part == LoadPart::contact) make_again(own, load->contacts[change.item]);
   }
   if (parameters) load->parameters = parameters;
+  if (parameters && parameters->dress.is_asked()) dress(*load, before);
   if (new_handles)
     load->energies.back().energy = handles_energy(*parameters, scene_.hierarchy.levels[0], scene_.placed);
   load->values = std::move(values);
   return load;
+}
+
+Positions LoadSchedule::placed(const LoadState& load, int level) const {
+  if (!load.sewn) return scene_.placed[level];
+  const Hierarchy& hierarchy = scene_.hierarchy;
+  return hierarchy.prolong(*load.sewn, 0, level, hierarchy.linear);
+}
+
+/// Gives a load the loads and the rest shapes of its phase.
+void LoadSchedule::dress(LoadState& load, const LoadState& before) const {
+  const DressParameters &own = load.parameters->dress, &old = before.parameters->dress;
+  if (own.placed != old.placed)
+    load.rests = own.placed > 0 ? std::make_shared<const IntermediateRests>(scene_, own.placed) : nullptr;
+  if (own.loads == old.loads) return;
+  for (std::size_t k = 0; k < load.energies.size(); ++k) {
+    const std::shared_ptr<const Energy>& whole = scene_.energies[k].energy;
+    if (whole->role() == EnergyRole::external) load.energies[k].energy = scaled(whole, own.loads);
+  }
 }
 
 std::shared_ptr<const LevelModel> LoadSchedule::model(const LoadState& load, int level,
@@ -255,24 +118,17 @@ std::shared_ptr<const LevelModel> LoadSchedule::model(const LoadState& load, int
   const Level &own = scene_.hierarchy.levels[level], &coarsest = scene_.hierarchy.levels[0];
   const auto with = [&](std::vector<DirichletVertex> dirichlet, const LevelModel& shared) {
     return std::make_shared<const LevelModel>(own, load.parameters->material, load.energies,
-                                              std::move(dirichlet), load.contacts, &shared);
+                                              std::move(dirichlet), load.contacts, &shared,
+                                              load.rests ? load.rests->level(level) : nullptr);
   };
+  if (load.parameters->dress.loads == 0) return with({}, before);
   std::vector<DirichletVertex> dirichlet =
-      dirichlet_vertices(*load.parameters, own, coarsest, scene_.placed[level]);
+      dirichlet_vertices(*load.parameters, own, coarsest, placed(load, level));
   const FollowingVertices& following = scene_.following[level];
   if (following.empty()) return with(std::move(dirichlet), before);
   const auto moved = with({}, before);  // where the obstacles are decides the targets
   move_targets(following, moved->contacts(), dirichlet);
   return with(std::move(dirichlet), *moved);
-}
-
-std::unique_ptr<LoadStepping> load_stepping_of(const Experiment& e, const Scene& scene,
-                                               ConfigErrors& errors) {
-  LoadSchedule schedule(e, scene);
-  const std::size_t before = errors.size();
-  check_on_levels(e, scene, schedule, errors);
-  if (errors.size() > before) return nullptr;
-  return std::make_unique<ScheduleStepping>(std::move(schedule), scene);
 }
 
 }  // namespace drape

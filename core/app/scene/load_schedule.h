@@ -1,9 +1,27 @@
 #pragma once
 
+#include <map>
+#include <mutex>
+
 #include "core/app/scene/scene.h"
 #include "core/kernel/plugin/make.h"
 
 namespace drape {
+
+/// The levels of a garment whose pieces rest between the shape that they were placed in and their own, each
+/// made when it is asked for.
+class IntermediateRests {
+ public:
+  /// Refers to the scene, which has a DressingStart. `placed` is the weight of the placed shape's metric.
+  IntermediateRests(const Scene& scene, double placed) : scene_(scene), placed_(placed) {}
+  std::shared_ptr<const Level> level(int level) const;
+
+ private:
+  const Scene& scene_;
+  const double placed_;
+  mutable std::mutex busy_;
+  mutable std::map<int, std::shared_ptr<const Level>> levels_;
+};
 
 /// What the models of all levels are made from under one load. Immutable; shares with other loads what is
 /// equal.
@@ -12,6 +30,10 @@ struct LoadState {
   std::shared_ptr<const ExperimentParameters> parameters;  ///< for material, pins and handles
   std::vector<NamedEnergy> energies;                       ///< handles last
   std::vector<std::shared_ptr<ContactModel>> contacts;
+  std::shared_ptr<const IntermediateRests> rests;  ///< of membranes; null: those of the levels
+  /// Where pins hold a garment that has been sewn: the coarsest level's positions then, n×3 [m]; null: where
+  /// the scene placed it.
+  std::shared_ptr<const Positions> sewn;
 };
 
 /// The loads of a scene, with its levels and models, as a function of its keyed parameters. Immutable; refers
@@ -47,6 +69,9 @@ class LoadSchedule {
     std::vector<std::pair<DeclaredNumbers, std::size_t>> numbers;  // with the index of their first value
   };
   Change& change_of(const Experiment& experiment, const KeyTarget& target);
+  void dress(LoadState& load, const LoadState& before) const;
+  /// Where pins and handles without a transform hold.
+  Positions placed(const LoadState& load, int level) const;
 
   const Scene& scene_;
   const ScheduleParameters keys_;

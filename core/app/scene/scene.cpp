@@ -7,9 +7,11 @@
 #include "core/app/experiment/cloth.h"
 #include "core/app/experiment/sewn_cloth.h"
 #include "core/app/scene/boundary_conditions.h"
+#include "core/app/scene/dressing.h"
 #include "core/app/scene/load_schedule.h"
 #include "core/app/scene/scene_summary.h"
 #include "core/kernel/files/message_text.h"
+#include "core/kernel/files/number_text.h"
 #include "core/numerics/mesh/check.h"
 #include "core/numerics/mesh/same_entries.h"
 #include "core/numerics/mesh/unjoined_borders.h"
@@ -163,6 +165,9 @@ std::vector<std::string> remarks_of(const Experiment& e, const Scene& scene) {
     all.push_back(std::to_string(read_mesh(cloth.file).vertices.rows() - coarsest.vertex_count()) +
                   " vertices of the cloth's file were joined to others (cloth.join)");
   if (const std::string text = sewing_text(coarsest); !text.empty()) all.push_back("cloth: " + text);
+  if (scene.dressing)
+    all.push_back("dress: the garment starts smoothed by " + general_text(scene.dressing->smoothing, 3) +
+                  ", the body contracted by " + general_text(scene.dressing->contraction, 3) + " of its area");
   for (const auto& contact : e.contacts)
     for (std::string& line : contact->input_remarks()) all.push_back(std::move(line));
   for (const auto& model : scene.models)
@@ -216,11 +221,13 @@ std::unique_ptr<Scene> build_scene(const Experiment& e, ConfigErrors& errors, La
       errors.push_back({e.location_of("energies"), message_in_flight()});
       return nullptr;
     }
-    if (intersecting == IntersectingStart::refused)
+    if (intersecting == IntersectingStart::refused && !p.dress.is_asked())
       refuse_intersecting_start(e, *scene->models.back(), scene->starts.back(), errors);
     if (!errors.empty()) return nullptr;
   }
   scene->following = following_vertices(e, *scene, errors);
+  if (p.dress.is_asked() && errors.empty()) find_dressing_start(e, *scene, errors);
+  if (!errors.empty()) return nullptr;
   if (!p.schedule.keys.empty()) scene->load_stepping = load_stepping_of(e, *scene, errors);
   if (!errors.empty()) return nullptr;
   scene->reference = read_reference(e, scene->hierarchy, errors);

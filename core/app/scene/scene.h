@@ -24,6 +24,13 @@ struct FollowingVertex {
 };
 using FollowingVertices = std::vector<FollowingVertex>;
 
+/// The start of a garment around a contracted body, as find_dressing_start found it.
+struct DressingStart {
+  double contraction = 0;           ///< of the body, of its area [1]
+  double smoothing = 0;             ///< of the placed garment [1]
+  std::vector<Positions> garments;  ///< of every level, n×3 [m]
+};
+
 /// The problem of an experiment, and what it was made from.
 struct Scene : Problem {
   explicit Scene(Hierarchy all) : Problem{levels, {}, {}, nullptr}, levels(std::move(all)) {}
@@ -34,6 +41,7 @@ struct Scene : Problem {
   std::vector<NamedEnergy> energies;         ///< of the models, handles included
   std::vector<Positions> placed;             ///< the starts without noise, where pins and handles hold [m]
   std::vector<FollowingVertices> following;  ///< of each level
+  std::optional<DressingStart> dressing;     ///< if the experiment asks for `dress`
   std::optional<Positions> reference;        ///< on the finest level, if the experiment names its file
 
   /// The finest level's model under the load that it has reached; valid until the next load step.

@@ -1,0 +1,151 @@
+#include "core/app/experiment/dress.h"
+
+#include <cmath>
+
+#include "core/app/experiment/experiment.h"
+#include "core/kernel/plugin/placement.h"
+
+namespace drape {
+
+namespace {
+
+/// Keys of `dress` that are the obstacle's.
+constexpr const char* placement_keys[] = {"unit", "up", "scale", "rotate", "translate"};
+/// The name of a body that `dress` reads.
+constexpr const char* body_name = "body";
+/// The weight of the placed metric in the last increment of sewing but one.
+constexpr double least_weight = 1e-4;
+
+ConfigNode list_of(const std::vector<double>& values) {
+  ConfigNode list;
+  list.kind = ConfigNode::Kind::list;
+  for (const double value : values) list.items.push_back(ConfigNode::of(value));
+  return list;
+}
+
+/// Makes the keys of a dressing schedule.
+class KeyMaker {
+ public:
+  explicit KeyMaker(Experiment& e) : e_(e) {}
+
+  void add(const std::string& parameter, std::vector<double> times, const std::vector<double>& values,
+           KeyInterpolation interpolation = KeyInterpolation::linear) {
+    ScheduleKey key;
+    key.parameter = parameter;
+    key.times = std::move(times);
+    key.written = list_of(values);
+    key.written.where = e_.location_of("dress");
+    key.interpolation = interpolation;
+    e_.parameters.schedule.keys.push_back(std::move(key));
+  }
+
+ private:
+  Experiment& e_;
+};
+
+}  // namespace
+
+void DressParameters::declare(Declaration<DressParameters>& d) {
+  d.add("body", &DressParameters::body,
+        "mesh of the body (OBJ, OFF, PLY or STL), closed or open, relative to this file; it becomes the "
+        "obstacle "
+        "`body`")
+      .path();
+  declare_file_coordinates(d);
+  declare_scale(d);
+  declare_placement(d);
+  d.add("obstacle", &DressParameters::obstacle,
+        "instead of `body`: the name of the obstacle that is the body, for one with keys of its own");
+  d.add("growth", &DressParameters::growth,
+        "increments in which the body grows to its size inside the garment")
+      .between(1, 1000);
+  d.add("sewing", &DressParameters::sewing,
+        "increments in which the pieces go from the shape that they were placed in to their own")
+      .between(1, 500);
+  d.add("placed", &DressParameters::placed,
+        "weight of the placed shape's metric in the pieces' rest shape; the phases go from 1 to 0")
+      .unit("1")
+      .between(0, 1);
+  d.add("loads", &DressParameters::loads, "factor on loads; the phases go from 0 to 1")
+      .unit("1")
+      .between(0, 1);
+}
+
+void apply_dress(ConfigNode& experiment, ConfigErrors& errors) {
+  for (std::size_t i = 0; i < experiment.entries.size(); ++i) {
+    if (experiment.entries[i].first != "dress") continue;
+    ConfigNode dress = experiment.entries[i].second.as_map("body");
+    const ConfigNode* written = dress.find("body");
+    if (!written || written->scalar.empty()) return;
+    const ConfigNode file = *written;
+    if (const ConfigNode* other = dress.find("obstacle"); other && !other->scalar.empty())
+      errors.push_back(
+          {other->where, "\"dress\" takes either a \"body\" or the \"obstacle\" that is one, not both"});
+    ConfigNode body;
+    body.where = file.where;
+    body.add("name", ConfigNode::of(body_name));
+    body.add("mesh", file);
+    for (const char* key : placement_keys)
+      if (const ConfigNode* own = dress.find(key)) {
+        body.add(key, *own);
+        dress.remove(key);
+      }
+    dress.remove("body");
+    dress.remove("obstacle");
+    dress.add("obstacle", ConfigNode::of(body_name));
+    experiment.entries[i].second = dress;
+    if (!experiment.find("obstacles")) {
+      ConfigNode none;
+      none.kind = ConfigNode::Kind::list;
+      none.where = file.where;
+      experiment.add("obstacles", none);
+    }
+    for (auto& [key, obstacles] : experiment.entries)
+      if (key == "obstacles") obstacles.items.push_back(body);
+    return;
+  }
+}
+
+void make_dressing_schedule(Experiment& e, ConfigErrors& errors) {
+  ExperimentParameters& p = e.parameters;
+  const DressParameters& dress = p.dress;
+  if (!dress.is_asked()) return;
+  const auto refuse = [&](const std::string& key, const std::string& why) {
+    errors.push_back({e.location_of(key), "\"dress\" " + why});
+  };
+  if (p.cloth.rest != "uv" && p.cloth.shape != "pattern")
+    refuse("cloth", "needs a cloth of flat pieces, as of \"rest: uv\"");
+  if (!p.schedule.keys.empty())
+    refuse(
+        "schedule",
+        "makes the schedule itself; leave \"schedule\" out, and move what is dressed in a second experiment "
+        "that begins \"--from\" the first");
+  for (const NamedEnergy& energy : e.energies)
+    if (energy.energy && energy.energy->role() == EnergyRole::limit)
+      refuse("energies",
+             "stretches the cloth on the way beyond what " + energy.name + " allows; leave it out");
+  if (!errors.empty()) return;
+  const double grown = dress.growth, sewn = grown + dress.sewing, whole = sewn + 1;
+  const std::string body = "obstacles." + dress.obstacle;
+  KeyMaker keys(e);
+  keys.add(body + ".contraction", {0}, {0});
+  keys.add(body + ".grown", {0, grown}, {0, 1});
+  std::vector<double> times = {0}, weights = {1};
+  for (int k = 0; k <= dress.sewing; ++k) {
+    times.push_back(grown + k);
+    weights.push_back(k == dress.sewing ? 0 : std::pow(least_weight, k / std::max(1.0, dress.sewing - 1.0)));
+  }
+  keys.add("dress.placed", times, weights);
+  keys.add("dress.loads", {0, whole}, {0, 1}, KeyInterpolation::step);
+  if (p.friction > 0) keys.add("friction", {0, whole}, {0, p.friction}, KeyInterpolation::step);
+  p.schedule.steps = static_cast<int>(whole);
+}
+
+std::string dressing_phase(const DressParameters& dress, int increment) {
+  if (increment == 0) return "start";
+  if (increment <= dress.growth) return "growth";
+  if (increment <= dress.growth + dress.sewing) return "sewing";
+  return increment == dress.growth + dress.sewing + 1 ? "weight" : "";
+}
+
+}  // namespace drape
