@@ -173,12 +173,14 @@ function convergence(run) {
       points: increments.filter(row => row.method === line.method && (row.level ?? 0) === line.level).map(row => ({x: row.time, y: row[y]}))}))});
     return plot.element;
   };
+  const pieces = run.order.flatMap(method => (run.results.methods[method].levels || []).flatMap(level => (level.pieces || []).map(row => ({method, level: level.level, ...row}))));
   const phases = Object.values(increments.filter(row => row.phase).reduce((all, row) => {
     const own = all[`${row.method} ${row.level} ${row.phase}`] ??= {phase: row.phase, method: row.method, level: row.level, steps: 0, iterations: 0, seconds: 0};
     for (const key of ['steps', 'iterations', 'seconds']) own[key] += row[key];
     return all;
   }, {}));
   return h('section', {id: 'convergence-section'}, h('h2', {}, 'On the way'),
+    pieces.length ? fold('The garment, by piece', dataTable('pieces', 'of pieces', columnsOf(Object.keys(pieces[0]), Object.keys(pieces[0]), run.of), pieces)) : null,
     phases.length ? fold('Phases', dataTable('phases', 'of phases', columnsOf(Object.keys(phases[0]), Object.keys(phases[0]), run.of), phases)) : null,
     increments.length ? fold('Load stepping', under('increment-energy', 'energy_released', 'energy released [J]'), under('increment-steps', 'steps', 'steps')) : null,
     fold('Convergence', h('p', {class: 'controls'}, choice('plot', Object.fromEntries(Object.entries(plots).map(([k, [title]]) => [k, title])), 'residual_seconds', draw, 'convergence-kind')), chart.element),

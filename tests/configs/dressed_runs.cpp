@@ -11,6 +11,12 @@ using namespace drape;
 
 namespace {
 
+/// A tube that would fall, held by the top of its front.
+const std::string held =
+    "pins: [{region: box, lower: [-1, -1, 0.099], upper: [1, -0.01, 1]}]\n"
+    "material: {density: 300, thickness: 5e-4, membrane_modulus: 4e5, bending_modulus: 1e5}\n"
+    "energies: [neo_hookean, hinge, gravity]\n";
+
 constexpr const char* cloth =
     "material: {density: 300, thickness: 5e-4, membrane_modulus: 4e5, bending_modulus: 1e5}\n"
     "energies: [neo_hookean, hinge, gravity]\n";
@@ -27,12 +33,13 @@ std::string refused(const TubeDress& tube, const std::string& more = cloth) {
 
 TEST_CASE("A dressing that is killed in each phase resumes to the same bits") {
   const Scratch folder;
-  small_tube().write(folder, cloth);
+  small_tube().write(folder, held);
   const Experiment experiment = experiment_in(folder / "e.yaml");
   run_experiment(experiment, *scene_of(experiment), silent(folder / "whole"));
   std::map<std::string, int> steps;  // at the end of each phase
   int all = 0;
-  for (const auto& row : read_results(folder / "whole")["methods"]["newton"]["increments"]) {
+  const Json whole = read_results(folder / "whole");
+  for (const auto& row : whole["methods"]["newton"]["increments"]) {
     all += row["steps"].get<int>();
     if (row.contains("phase")) steps[row["phase"]] = all;
   }
@@ -56,6 +63,26 @@ TEST_CASE("A dressing that is killed in each phase resumes to the same bits") {
   }
 }
 
+TEST_CASE("A pin holds a garment that would fall where the sewing has left it") {
+  TubeDress loose = small_tube();
+  loose.width = 0.4;
+  const Scratch folder;
+  loose.write(folder, held);
+  Solved s{experiment_in(folder / "e.yaml", {{"friction", "0"}}), nullptr, {}};
+  s.scene = scene_of(s.experiment);
+  run_method(s);
+  INFO(s.levels[0].message);
+  REQUIRE(s.levels[0].outcome == Outcome::converged);
+  const std::vector<DirichletVertex>& pinned = s.model().dirichlet();
+  REQUIRE(pinned.size() == 7);
+  for (const DirichletVertex& d : pinned) {
+    CHECK(s.x().row(d.vertex) == d.target.transpose());
+    CHECK(std::abs(d.target.z() - 0.1) < 0.01);
+    CHECK(std::hypot(d.target.x(), d.target.y()) > loose.radius);
+    CHECK(std::abs(d.target.y()) < 0.7 * loose.apart);  // not where it was placed
+  }
+}
+
 TEST_CASE("A dressing has the same bits on any number of threads") {
   const Scratch folder;
   small_tube().write(folder, cloth);
@@ -71,8 +98,13 @@ TEST_CASE("A dressing has the same bits on any number of threads") {
 TEST_CASE("What cannot be dressed is refused in a sentence") {
   TubeDress elsewhere = small_tube();
   elsewhere.at = {3, 0, 0};
-  CHECK(refused(elsewhere).ends_with(
-      "the garment is nowhere near its body; are the unit, the axis and the place of both right?"));
+  CHECK(
+      refused(elsewhere).ends_with("the garment is nowhere near its body: it is 0.28 × 0.4 × 0.2 m, and the "
+                                   "body 0.16 × 0.16 × 0.6 m; are the "
+                                   "unit, the axis and the place of both right?"));
+  TubeDress giant = small_tube();
+  giant.radius = 5, giant.body_height = 30, giant.at = {1, 0, 0};
+  CHECK_THAT(refused(giant), Catch::Contains("the garment is inside its body: it is 0.28 × 0.4 × 0.2 m"));
   TubeDress beside = small_tube();  // the front passes through the axis
   beside.at = {0, -beside.apart, 0};
   CHECK_THAT(refused(beside),

@@ -48,7 +48,7 @@ Worn measured(const Solved& s, const TubeDress& tube) {
 
 TEST_CASE("A tube dressed on a cylinder has the stretch, the tension and the pressure of the closed form") {
   table("Tube on a cylinder", "cloth", "stretch around", "along", "pressure [Pa]", "closed form", "error");
-  const TubeDress tube{.columns = 24, .rows = 10};
+  const TubeDress tube{.columns = 32, .rows = 13};
   for (const bool woven : {false, true}) {
     const Scratch folder;
     tube.write(folder,

@@ -10,13 +10,20 @@ void SnapshotRecorder::iteration(const Cost& cost, const Positions& x, int most)
   const bool wanted = most > 1 && seen % spacing == 0;
   ++seen;
   if (!wanted) return;
-  if (static_cast<int>(snapshots.size()) == most - 1) {  // the last state takes one
-    for (std::size_t k = 1; 2 * k < snapshots.size(); ++k) snapshots[k] = std::move(snapshots[2 * k]);
-    snapshots.resize((snapshots.size() + 1) / 2);
+  const auto spaced = [&] { return std::ranges::count(snapshots, false, &Snapshot::kept); };
+  if (spaced() == most - 1) {  // the last state takes one
+    int k = 0;
+    std::erase_if(snapshots, [&](const Snapshot& s) { return !s.kept && k++ % 2 == 1; });
     spacing *= 2;
-    if ((seen - 1) % spacing != 0 || static_cast<int>(snapshots.size()) == most - 1) return;
+    if ((seen - 1) % spacing != 0 || spaced() == most - 1) return;
   }
   snapshots.push_back({cost, x});
+}
+
+void SnapshotRecorder::keep(const Cost& cost, const Positions& x) {
+  if (snapshots.empty() || snapshots.back().cost.iterations != cost.iterations)
+    snapshots.push_back({cost, x});
+  snapshots.back().kept = true;
 }
 
 std::vector<Snapshot> SnapshotRecorder::end_level(const Cost& cost, const Positions& last) {

@@ -24,12 +24,13 @@ inline Cost operator+(const Cost& a, const Cost& b) {
 
 /// An intermediate state of a level.
 struct Snapshot {
-  Cost cost;    ///< since the beginning of the level
-  Positions x;  ///< n×3 [m]
+  Cost cost;          ///< since the beginning of the level
+  Positions x;        ///< n×3 [m]
+  bool kept = false;  ///< whatever the spacing
 };
 
-/// Records states of a level, evenly spaced over its iterations. When there are too many, it drops every
-/// second one and doubles the spacing.
+/// Records states of a level, evenly spaced over its iterations, and those that are kept. When there are too
+/// many, it drops every second one and doubles the spacing.
 struct SnapshotRecorder {
   int spacing = 1, seen = 0;
   std::vector<Snapshot> snapshots = {};  ///< of the level so far
@@ -37,6 +38,8 @@ struct SnapshotRecorder {
   /// Takes the state after an iteration; `cost` counts from the beginning of the level. At most `most`
   /// snapshots are kept, the last state included.
   void iteration(const Cost& cost, const Positions& x, int most);
+  /// Takes the state after this iteration beyond that number, as at the end of a phase.
+  void keep(const Cost& cost, const Positions& x);
   /// The level's snapshots, ending with `last`.
   std::vector<Snapshot> end_level(const Cost& cost, const Positions& last);
 };

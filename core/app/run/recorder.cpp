@@ -7,6 +7,7 @@
 #include "core/app/files/json_file.h"
 #include "core/app/files/machine.h"
 #include "core/app/run/recorder_files.h"
+#include "core/app/view/garment_fields.h"
 #include "core/kernel/files/file.h"
 #include "core/kernel/files/number_text.h"
 #include "core/kernel/threads/parallel.h"
@@ -247,8 +248,11 @@ void Recorder::increment_finished(const IncrementRow& r, const Positions& x) {
                         {"energy_released", model.value(scene_.placed[r.level]) - model.value(x)},
                         {"force_residual", r.force_residual},
                         {"max_constraint_violation", r.max_constraint_violation}});
-  if (const std::string phase = scene_.load_stepping->phase(); !phase.empty())
-    increments.back()["phase"] = phase;
+  const std::string phase = scene_.load_stepping->phase();
+  if (!phase.empty()) increments.back()["phase"] = phase;
+  if (scene_.dressing && phase != dressing_phase(experiment_.parameters.dress, r.increment + 1) &&
+      experiment_.parameters.snapshots > 0)
+    s_.snapshots.keep(s_.last, x);
   exclude(watch.seconds());
 }
 
@@ -263,6 +267,9 @@ void Recorder::level_finished(const LevelResult& r) {
   const Cost cost = {std::max(own, s_.last.seconds), r.iterations, r.flops};
   entry["levels"].push_back(state_entry(r, cost));
   entry["levels"].back()["mesh_checksum"] = mesh_checksum;
+  if (scene_.dressing)
+    entry["levels"].back()["pieces"] =
+        garment_pieces(scene_.hierarchy.levels[r.level], garment_fields_of(state), state.contact_pressure);
   if (experiment_.parameters.snapshots > 0)
     entry["levels"].back()["snapshots"] = add_snapshots(r, cost, state);
   s_.states.push_back(std::move(state));

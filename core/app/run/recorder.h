@@ -91,6 +91,8 @@ class Recorder : public Observer {
   void write_obstacles();
   /// Returns the checksum of the .ply.
   std::uint32_t write_state(const RecordedState& state);
+  /// None of a scene without dressing.
+  VertexFields garment_fields_of(const RecordedState& state) const;
   /// The states of a method as a ParaView collection.
   void write_collection(const std::string& method);
   /// Measures the fields of finished methods again whose file is not as recorded.

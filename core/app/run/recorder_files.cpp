@@ -8,6 +8,7 @@
 
 #include "core/app/files/json_file.h"
 #include "core/app/report/run_data.h"
+#include "core/app/view/garment_fields.h"
 #include "core/kernel/files/file.h"
 #include "core/kernel/files/number_text.h"
 #include "core/kernel/files/string_utils.h"
@@ -137,10 +138,17 @@ void Recorder::follow_schedule() {
   write_obstacles();
 }
 
+VertexFields Recorder::garment_fields_of(const RecordedState& state) const {
+  if (!scene_.dressing) return {};
+  return garment_fields_at(scene_.hierarchy.levels[state.level], state.x,
+                           obstacles_of(scene_.finest_model().contacts()));
+}
+
 std::uint32_t Recorder::write_state(const RecordedState& state) {
   const TriangleMesh mesh{state.x, scene_.hierarchy.levels[state.level].rest.triangles};
   VertexFields fields;
   if (state.contact_pressure.size() > 0) fields.push_back({"contact_pressure", state.contact_pressure});
+  for (VertexField& field : garment_fields_of(state)) fields.push_back(std::move(field));
   const std::string ply = ply_bytes(mesh, fields);
   const auto write_level = [&](const char* extension, const std::string& bytes) {
     const std::string name = level_file(state.method, state.level, extension);

@@ -6,8 +6,8 @@
 #include <set>
 
 #include "core/app/scene/load_schedule.h"
+#include "core/app/scene/scene_summary.h"
 #include "core/kernel/files/message_text.h"
-#include "core/kernel/files/number_text.h"
 #include "core/numerics/dressing/implicit_smoothing.h"
 
 namespace drape {
@@ -15,7 +15,7 @@ namespace drape {
 namespace {
 
 /// Times of the smoothing and of the contraction that are tried.
-constexpr double smoothings[] = {1, 0.3, 2, 4, 8, 16};
+constexpr double smoothings[] = {1, 0.3, 2, 4};
 constexpr double contractions[] = {0.009, 0.018, 0.028, 0.05};
 
 /// The pieces of the cloth's triangles that a start's intersections name, with how often.
@@ -34,6 +34,13 @@ std::vector<Intersection> intersections_of(const LevelModel& model, const Positi
   for (const auto& contact : model.contacts())
     for (Intersection& pair : contact->intersections(x)) all.push_back(std::move(pair));
   return all;
+}
+
+/// The body that is dressed, as a model has it.
+TriangleMesh body_of(const Experiment& e, const LevelModel& model) {
+  const std::vector<std::string> names = e.obstacle_names();
+  const auto index = std::ranges::find(names, e.parameters.dress.obstacle) - names.begin();
+  return obstacles_of(model.contacts()).at(index);
 }
 
 /// The error of the best start that was tried.
@@ -64,19 +71,21 @@ void find_dressing_start(const Experiment& e, Scene& scene, ConfigErrors& errors
     take(contraction, 0);
     const LoadSchedule schedule(e, scene);
     const auto model = schedule.model(*schedule.at(schedule.values(0)), 0, *scene.models[0]);
-    const TriangleMesh body = obstacles_of(model->contacts()).at(0);
-    if (!bounding_box(body.vertices).intersects(bounding_box(scene.placed[0]))) {
-      errors.push_back({where,
-                        "the garment is nowhere near its body; are the unit, the axis and the place of both "
-                        "right?"});
-      return;
-    }
+    const TriangleMesh body = body_of(e, *model);
+    const Eigen::AlignedBox3d box = bounding_box(body.vertices), own = bounding_box(scene.placed[0]);
+    const auto refuse = [&](const std::string& what) {
+      errors.push_back({where, "the garment is " + what + " its body: it is " + size_text(own.sizes()) +
+                                   ", and the body " + size_text(box.sizes()) +
+                                   "; are the unit, the axis and the place of both right?"});
+    };
+    if (!box.intersects(own)) return refuse("nowhere near");
     for (std::size_t k = 0; k < shapes.size(); ++k) {
       if (crossed.contains(k)) continue;
       std::vector<Intersection> found = intersections_of(*model, shapes[k]);
+      if (found.empty() && is_inside(shapes[k].topRows(1), body)) return refuse("inside");
       if (found.empty()) {
         take(contraction, k);
-        scene.starts = scene.dressing->garments;
+        scene.placed = scene.starts = scene.dressing->garments;
         return;
       }
       if (touches_itself(found)) crossed.insert(k);

@@ -151,6 +151,14 @@ void check_membrane(const Experiment& e, Warnings& warnings) {
 }
 
 void check_start(const Experiment& e, const SceneSummary& s, Warnings& warnings) {
+  if (e.parameters.dress.is_asked()) {  // whose seams start long
+    if (e.parameters.pins.empty() && e.parameters.friction == 0)
+      warnings.add(
+          "dress",
+          "no pin and no friction holds the garment: it stays only where the body's shape carries it, "
+          "and falls elsewhere; set \"friction\", or pin a piece, as in {region: piece, piece: NAME}");
+    return;
+  }
   if (!s.enclosing.empty())
     warnings.add("start", "the cloth starts inside the obstacle " + s.enclosing +
                               "; if it should lie on it, move it by \"translate\"");

@@ -36,6 +36,14 @@ void lower_to_distance(Eigen::VectorXd& gap, const BoxTree& points, const Positi
     });
 }
 
+BoxTree tree_of(const Positions& x) {
+  std::vector<Box> boxes(x.rows());
+  for (Eigen::Index i = 0; i < x.rows(); ++i) boxes[i] = Box::around(x.row(i), x.row(i), 0);
+  BoxTree points;
+  points.build(boxes);
+  return points;
+}
+
 /// The quantile of all finite |values|; 0 without any.
 double magnitude_quantile(const std::vector<const Eigen::VectorXd*>& fields, double quantile) {
   std::vector<double> all;
@@ -64,17 +72,22 @@ const std::vector<FieldKind>& surface_fields() {
   return kinds;
 }
 
-Eigen::VectorXd contact_gap(const Level& level, const Positions& x,
-                            const std::vector<TriangleMesh>& obstacles, double range) {
-  constexpr double infinity = std::numeric_limits<double>::infinity();
-  Eigen::VectorXd gap = Eigen::VectorXd::Constant(x.rows(), infinity);
-  std::vector<Box> boxes(x.rows());
-  for (Eigen::Index i = 0; i < x.rows(); ++i) boxes[i] = Box::around(x.row(i), x.row(i), 0);
-  BoxTree points;
-  points.build(boxes);
+Eigen::VectorXd obstacle_distance(const Positions& x, const std::vector<TriangleMesh>& obstacles,
+                                  double range) {
+  Eigen::VectorXd gap = Eigen::VectorXd::Constant(x.rows(), std::numeric_limits<double>::infinity());
+  const BoxTree points = tree_of(x);
   for (const TriangleMesh& obstacle : obstacles)
     lower_to_distance(gap, points, x, obstacle.vertices, obstacle.triangles, range,
                       [](int, int) { return true; });
+  for (double& g : gap) g = g <= range ? g : nan;
+  return gap;
+}
+
+Eigen::VectorXd contact_gap(const Level& level, const Positions& x,
+                            const std::vector<TriangleMesh>& obstacles, double range) {
+  Eigen::VectorXd gap = obstacle_distance(x, obstacles, range);
+  gap = gap.array().isNaN().select(std::numeric_limits<double>::infinity(), gap);
+  const BoxTree points = tree_of(x);
   // A vertex's neighbourhood along the cloth is always near and is no contact.
   const Positions& rest = level.rest.vertices;
   const Triangles& triangles = level.rest.triangles;

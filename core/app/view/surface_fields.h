@@ -29,6 +29,10 @@ using SurfaceFields = std::map<std::string, Eigen::VectorXd>;
 Eigen::VectorXd contact_gap(const Level& level, const Positions& x,
                             const std::vector<TriangleMesh>& obstacles, double range);
 
+/// n distances to the nearest triangle of the obstacles [m]; NaN beyond `range`.
+Eigen::VectorXd obstacle_distance(const Positions& x, const std::vector<TriangleMesh>& obstacles,
+                                  double range);
+
 /// Adds LevelModel::contact_pressure, unless it is empty. NaN where there is no force.
 void add_contact_pressure(SurfaceFields& fields, const Eigen::VectorXd& pressure);
 
