@@ -77,7 +77,7 @@ TEST_CASE("A pin holds a garment that would fall where the sewing has left it") 
   REQUIRE(pinned.size() == 7);
   for (const DirichletVertex& d : pinned) {
     CHECK(s.x().row(d.vertex) == d.target.transpose());
-    CHECK(std::abs(d.target.z() - 0.1) < 0.01);
+    CHECK(std::abs(d.target.z() - 0.1) < 0.02);
     CHECK(std::hypot(d.target.x(), d.target.y()) > loose.radius);
     CHECK(std::abs(d.target.y()) < 0.7 * loose.apart);  // not where it was placed
   }
@@ -100,13 +100,12 @@ TEST_CASE("What cannot be dressed is refused in a sentence") {
   elsewhere.at = {3, 0, 0};
   CHECK(
       refused(elsewhere).ends_with("the garment is nowhere near its body: it is 0.28 × 0.4 × 0.2 m, and the "
-                                   "body 0.16 × 0.16 × 0.6 m; are the "
+                                   "body 0.2 × 0.2 × 0.6 m; are the "
                                    "unit, the axis and the place of both right?"));
   TubeDress giant = small_tube();
   giant.radius = 5, giant.body_height = 30, giant.at = {1, 0, 0};
   CHECK_THAT(refused(giant), Catch::Contains("the garment is inside its body: it is 0.28 × 0.4 × 0.2 m"));
-  TubeDress beside = small_tube();  // the front passes through the axis
-  beside.at = {0, -beside.apart, 0};
+  const TubeDress beside{.at = {0, -0.2, 0}};  // the front passes through the axis
   CHECK_THAT(refused(beside),
              Catch::Matches(".*no start is free of intersections: of all that were tried, the best "
                             "still has [0-9]+ pairs, most of piece front: .*place the pieces around "

@@ -13,8 +13,9 @@ namespace {
 constexpr const char* placement_keys[] = {"unit", "up", "scale", "rotate", "translate"};
 /// The name of a body that `dress` reads.
 constexpr const char* body_name = "body";
-/// The weight of the placed metric in the last increment of sewing but one.
-constexpr double least_weight = 1e-4;
+/// The weight of the placed metric at the start, where a triangle without area still rests as one with some,
+/// and in the last increment of sewing but one.
+constexpr double first_weight = 0.99, least_weight = 1e-4;
 
 ConfigNode list_of(const std::vector<double>& values) {
   ConfigNode list;
@@ -130,10 +131,11 @@ void make_dressing_schedule(Experiment& e, ConfigErrors& errors) {
   KeyMaker keys(e);
   keys.add(body + ".contraction", {0}, {0});
   keys.add(body + ".grown", {0, grown}, {0, 1});
-  std::vector<double> times = {0}, weights = {1};
+  std::vector<double> times = {0}, weights = {first_weight};
   for (int k = 0; k <= dress.sewing; ++k) {
     times.push_back(grown + k);
-    weights.push_back(k == dress.sewing ? 0 : std::pow(least_weight, k / std::max(1.0, dress.sewing - 1.0)));
+    weights.push_back(
+        k == dress.sewing ? 0 : first_weight * std::pow(least_weight, k / std::max(1.0, dress.sewing - 1.0)));
   }
   keys.add("dress.placed", times, weights);
   keys.add("dress.loads", {0, whole}, {0, 1}, KeyInterpolation::step);

@@ -58,6 +58,14 @@ std::string refusal(const std::vector<Intersection>& found, const TriangleMesh& 
 void find_dressing_start(const Experiment& e, Scene& scene, ConfigErrors& errors) {
   const Level& level = scene.hierarchy.levels[0];
   const Location& where = e.location_of("dress");
+  const Eigen::AlignedBox3d own = bounding_box(scene.placed[0]),
+                            body = bounding_box(body_of(e, *scene.models[0]).vertices);
+  const auto refuse = [&](const std::string& what) {
+    errors.push_back({where, "the garment is " + what + " its body: it is " + size_text(own.sizes()) +
+                                 ", and the body " + size_text(body.sizes()) +
+                                 "; are the unit, the axis and the place of both right?"});
+  };
+  if (!body.intersects(own)) return refuse("nowhere near");
   std::vector<Positions> shapes;
   for (const double t : smoothings) shapes.push_back(smoothed(level.rest.triangles, scene.placed[0], t));
   const auto take = [&](double contraction, std::size_t shape) {
@@ -71,18 +79,11 @@ void find_dressing_start(const Experiment& e, Scene& scene, ConfigErrors& errors
     take(contraction, 0);
     const LoadSchedule schedule(e, scene);
     const auto model = schedule.model(*schedule.at(schedule.values(0)), 0, *scene.models[0]);
-    const TriangleMesh body = body_of(e, *model);
-    const Eigen::AlignedBox3d box = bounding_box(body.vertices), own = bounding_box(scene.placed[0]);
-    const auto refuse = [&](const std::string& what) {
-      errors.push_back({where, "the garment is " + what + " its body: it is " + size_text(own.sizes()) +
-                                   ", and the body " + size_text(box.sizes()) +
-                                   "; are the unit, the axis and the place of both right?"});
-    };
-    if (!box.intersects(own)) return refuse("nowhere near");
+    const TriangleMesh small = body_of(e, *model);
     for (std::size_t k = 0; k < shapes.size(); ++k) {
       if (crossed.contains(k)) continue;
       std::vector<Intersection> found = intersections_of(*model, shapes[k]);
-      if (found.empty() && is_inside(shapes[k].topRows(1), body)) return refuse("inside");
+      if (found.empty() && is_inside(shapes[k].topRows(1), small)) return refuse("inside");
       if (found.empty()) {
         take(contraction, k);
         scene.placed = scene.starts = scene.dressing->garments;

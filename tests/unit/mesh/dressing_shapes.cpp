@@ -55,7 +55,8 @@ TEST_CASE("Rest shapes between two have the mean of their metrics, and turn over
   const Level flat = Level::of(0, as_piece(grid({1, 1}, 5, 5, Diagonals::criss_cross)));
   Positions placed = flat.rest.vertices;
   for (int v = 0; v < placed.rows(); ++v)  // stretched by 80, sheared, and turned out of the plane
-    placed.row(v) << 3 * placed(v, 1) + placed(v, 0), 0.2, -80 * placed(v, 0);
+    placed.row(v) << 3 * flat.rest.vertices(v, 1) + flat.rest.vertices(v, 0), 0.2,
+        -80 * flat.rest.vertices(v, 0);
   for (const double weight : {1.0, 0.1, 1e-4, 0.0}) {
     const Level between = with_intermediate_rest(flat, placed, weight);
     CHECK(between.vertex_area == flat.vertex_area);
