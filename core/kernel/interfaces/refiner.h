@@ -1,18 +1,34 @@
 #pragma once
 
+#include <optional>
+#include <vector>
+
 #include "core/kernel/interfaces/level.h"
 #include "core/kernel/interfaces/prolongation_matrix.h"
 
 namespace drape {
 
-/// Says where the vertices of a 1→4 subdivision lie, by the level's rest shape and connectivity alone.
+/// A mesh below another one, and the operator between them.
+struct CoarserMesh {
+  TriangleMesh rest;
+  std::vector<int> vertices;   ///< the finer mesh's vertex that each of its own is, ascending
+  ProlongationMatrix weights;  ///< n_f × n_c, linear over the coarse rest shape; rows sum to 1
+};
+
+/// Makes a hierarchy of one mesh: finer levels by 1→4 subdivision, and, if it can, coarser ones.
 class Refiner {
  public:
   static constexpr const char* kind = "refiner";  ///< in the registry
   virtual ~Refiner() = default;
-  /// P_{l→l+1}: a row for each vertex of the level, then one for each edge in the order of Topology::edges;
-  /// a column for each vertex. Rows sum to 1.
+  /// P_{l→l+1}, by the level's rest shape and connectivity alone: a row for each vertex of the level, then
+  /// one for each edge in the order of Topology::edges; a column for each vertex. Rows sum to 1.
   virtual ProlongationMatrix weights(const Level& coarse) const = 0;
+  /// A mesh with about a quarter of the level's vertices, all of which are vertices of the level. Nothing,
+  /// the default, from a refiner that makes no coarser levels. Throws std::runtime_error for a cloth that it
+  /// cannot coarsen.
+  virtual std::optional<CoarserMesh> coarser([[maybe_unused]] const Level& fine) const {
+    return std::nullopt;
+  }
 };
 
 /// Which prolongation maps a coarse level's vertices to a finer level.

@@ -8,8 +8,6 @@
 namespace drape {
 namespace {
 
-/// Meshes with fewer vertices need no coarser one: their matrix is factorised in milliseconds.
-constexpr int small_mesh = 2000;
 /// Relative residual of a direction, and the one with which it is taken when cycles run out: contacts leave
 /// soft modes that take many, and Newton makes up for them.
 constexpr double tolerance = 0.1, sufficient = 0.4;

@@ -23,6 +23,9 @@ namespace drape {
 /// grow with their power of 1.5. Gives the same bits with any number of threads.
 class Multigrid {
  public:
+  /// Meshes with fewer vertices need no coarser one: their matrix is factorised in milliseconds.
+  static constexpr int small_mesh = 2000;
+
   /// `prolongations` lead from the coarsest mesh to the matrix's own, at least one. Need not outlive the
   /// object.
   explicit Multigrid(std::span<const ProlongationMatrix> prolongations);

@@ -15,9 +15,9 @@ std::unique_ptr<Multigrid> multigrid_for(const Level& level, const NewtonParamet
       p.form == NewtonForm::quasistatic &&
       (p.linear_solver == LinearSolver::multigrid ||
        (p.linear_solver == LinearSolver::automatic && level.vertex_count() >= multigrid_from));
-  if (!wanted || !hierarchy || level.index == 0) return nullptr;
-  return std::make_unique<Multigrid>(
-      std::span(hierarchy->prolongations).first(static_cast<std::size_t>(level.index)));
+  if (!wanted || !hierarchy) return nullptr;
+  const std::vector<ProlongationMatrix> prolongations = hierarchy->leading_to(level.index);
+  return prolongations.empty() ? nullptr : std::make_unique<Multigrid>(prolongations);
 }
 
 LinearSolver direct_solver(const NewtonParameters& p) {
