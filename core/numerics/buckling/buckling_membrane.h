@@ -187,13 +187,16 @@ std::unique_ptr<BoundEnergy> bind_stretches(const Law& law, const Level& level,
 }
 
 /// Binds a law to all triangles of a level on which the cloth buckles below the mesh. Plain's constants are
-/// the numbers of a MaterialTriangle from its area on; s [J] as in Buckling, the same for all triangles.
+/// the numbers of a MaterialTriangle from its area on; s [J] as in Buckling, times
+/// the level's factors.
 template <class Plain>
 std::unique_ptr<BoundEnergy> bind_buckling_membrane(const Plain& plain,
                                                     const std::vector<MaterialTriangle>& triangles,
                                                     const Level& level, double s) {
   const BucklingLaw<Plain> law{plain};
-  return bind_stretches(law, level, [&](int t) { return law.constants_of(triangles[t].data() + 4, s); });
+  return bind_stretches(law, level, [&](int t) {
+    return law.constants_of(triangles[t].data() + 4, s * level.bound_factor(t));
+  });
 }
 
 }  // namespace drape

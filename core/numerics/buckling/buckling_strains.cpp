@@ -14,16 +14,15 @@ using P = Pack<native_pack_width>;
 using Mask = P::Mask;
 using Strains = Eigen::Matrix<P, 3, 1>;
 
-/// The kernel of ElementEnergy, for packs. Rest is a MaterialTriangle, its slack strains, and the energy
-/// there.
+/// The kernel of ElementEnergy, for packs. Rest is a MaterialTriangle, its slack strains, the energy there,
+/// and s.
 struct BucklingStrains {
   static constexpr int vertices = 3;
   static constexpr bool convex = false;
-  using Rest = Eigen::Matrix<double, 12, 1>;
+  using Rest = Eigen::Matrix<double, 13, 1>;
   using Vector = Eigen::Matrix<P, 3, 1>;
 
   StrainLaw law;
-  double s;
 
   P value(const Vector* e, const P* rest) const {
     return relaxed(GreenStrain<P>(e, rest), rest + 4, false).value;
@@ -47,6 +46,7 @@ struct BucklingStrains {
 
   [[gnu::noinline]] Jet<3, P> relaxed(const GreenStrain<P>& strain, const P* place, bool derivatives) const {
     const Strains g(strain.g11, strain.g22, strain.g12);
+    const P s = place[8];
     const Jet<3, P> plain = law(g, place);
     const Mask finite = abs(plain.value) <= std::numeric_limits<double>::max();
     const Mask compressed = finite & !positive(plain.first[0] + s, plain.first[1] + s, 0.5 * plain.first[2]);
@@ -75,7 +75,7 @@ struct BucklingStrains {
   void set_alone(int i, const Strains& g, const P* place, bool derivatives, Jet<3, P>& buckled) const {
     const Vector3d own(g[0][i], g[1][i], g[2][i]);
     const double own_place[] = {place[0][i], place[1][i], place[2][i], place[3][i]};
-    const Jet<3, double> w = wrinkled(law, own, own_place, s, derivatives);
+    const Jet<3, double> w = wrinkled(law, own, own_place, place[8][i], derivatives);
     buckled.value.v[i] = w.value;
     for (int k = 0; k < 3; ++k) buckled.first[k].v[i] = w.first[k];
     for (int k = 0; k < 6; ++k) buckled.second[k].v[i] = w.second[k];
@@ -88,13 +88,13 @@ std::unique_ptr<BoundEnergy> bind_buckling_strains(const StrainLaw& law,
                                                    const std::vector<MaterialTriangle>& triangles,
                                                    const Level& level, double s) {
   std::vector<BucklingStrains::Rest> rest;
-  for (const MaterialTriangle& triangle : triangles) {
-    const double* place = triangle.data() + 4;
-    const Vector3d slack = slack_strains(law, place, s);
-    rest.emplace_back() << triangle, slack, energy_of_one(law, slack, place).value;
+  for (int t = 0; t < std::ssize(triangles); ++t) {
+    const double *place = triangles[t].data() + 4, own = s * level.bound_factor(t);
+    const Vector3d slack = slack_strains(law, place, own);
+    rest.emplace_back() << triangles[t], slack, energy_of_one(law, slack, place).value, own;
   }
   return std::make_unique<ElementEnergy<BucklingStrains>>(level.rest.triangles, rest, level.triangle_order,
-                                                          BucklingStrains{law, s});
+                                                          BucklingStrains{law});
 }
 
 }  // namespace drape

@@ -4,14 +4,14 @@
 
 namespace drape {
 
-OneDirection::OneDirection(const StrainLaw& law, const Strains& g, const P* place, double s,
+OneDirection::OneDirection(const StrainLaw& law, const Strains& g, const P* place, const P& s,
                            const Jet<3, P>& plain, Mask counts)
     : law_(law), g_(g), place_(place), s_(s) {
   start(plain);
   found_ = counts & minimise(counts);
 }
 
-OneDirection::Forces::Forces(const State& at, double s) {
+OneDirection::Forces::Forces(const State& at, const P& s) {
   const P xx = at.x * at.x, yy = at.y * at.y, xy = at.x * at.y;
   const Strains n(xx, yy, xy), turned(-2.0 * xy, 2.0 * xy, xx - yy),
       first(at.w.first[0], at.w.first[1], at.w.first[2]);

@@ -16,7 +16,7 @@ class OneDirection {
   using Strains = Eigen::Matrix<P, 3, 1>;
 
   /// `plain` is the law at g. All references are kept.
-  OneDirection(const StrainLaw& law, const Strains& g, const P* place, double s, const Jet<3, P>& plain,
+  OneDirection(const StrainLaw& law, const Strains& g, const P* place, const P& s, const Jet<3, P>& plain,
                Mask counts);
 
   /// The triangles whose minimum over all A this is.
@@ -36,7 +36,7 @@ class OneDirection {
     Strains coupling_q, coupling_arc;  ///< by q or the arc, and by G
     P curvature_q, curvature_arc, mixed;
 
-    Forces(const State& at, double s);
+    Forces(const State& at, const P& s);
     /// The curvature along the arc if q follows, a Schur complement.
     P reduced_curvature() const { return curvature_arc - mixed * mixed / curvature_q; }
   };
@@ -52,7 +52,7 @@ class OneDirection {
   const StrainLaw& law_;
   const Strains& g_;
   const P* place_;
-  double s_;
+  P s_;
   State now_;
   Mask found_;
 };

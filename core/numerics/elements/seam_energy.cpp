@@ -1,5 +1,7 @@
 #include "core/numerics/elements/seam_energy.h"
 
+#include <cmath>
+#include <map>
 #include <numeric>
 #include <utility>
 #include <vector>
@@ -9,72 +11,106 @@
 namespace drape {
 namespace {
 
-/// The level with those of its hinges alone that are seams, or are none.
-Level part_of(Level level, bool seams) {
-  std::vector<int> own, edges;
-  for (int h = 0; h < level.hinges.rows(); ++h)
-    if (is_seam(level.rest, level.topology, level.hinge_edges[h]) == seams)
-      own.push_back(h), edges.push_back(level.hinge_edges[h]);
+/// The level with some of its hinges only.
+Level part_of(Level level, const std::vector<int>& own) {
+  std::vector<int> edges;
+  for (const int h : own) edges.push_back(level.hinge_edges[h]);
   level.hinges = Stencils(level.hinges(own, Eigen::all));
   level.hinge_edges = std::move(edges);
   level.hinge_order = ElementOrder::of(level.hinges, level.rest.vertices);
   return level;
 }
 
-/// E_cloth + factor E_seams.
-class SeamEnergy final : public BoundEnergy {
+/// Σ factor E_group over groups of hinges.
+class GroupedHinges final : public BoundEnergy {
  public:
-  SeamEnergy(std::unique_ptr<BoundEnergy> cloth, std::unique_ptr<BoundEnergy> seams, double factor)
-      : cloth_(std::move(cloth)), seams_(std::move(seams)), factor_(factor) {}
+  struct Group {
+    double factor;
+    std::unique_ptr<BoundEnergy> energy;
+  };
+  explicit GroupedHinges(std::vector<Group> groups) : groups_(std::move(groups)) {}
 
-  double value(const Positions& x) const override { return cloth_->value(x) + factor_ * seams_->value(x); }
+  double value(const Positions& x) const override {
+    double sum = 0;
+    for (const Group& group : groups_) sum += group.factor * group.energy->value(x);
+    return sum;
+  }
 
   double add_gradient(const Positions& x, Positions& g) const override {
-    Positions by_seams = Positions::Zero(g.rows(), 3);
-    const double energy = cloth_->add_gradient(x, g) + factor_ * seams_->add_gradient(x, by_seams);
-    g += factor_ * by_seams;
-    return energy;
+    double sum = 0;
+    for (const Group& group : groups_) {
+      if (group.factor == 1) {
+        sum += group.energy->add_gradient(x, g);
+        continue;
+      }
+      Positions own = Positions::Zero(g.rows(), 3);
+      sum += group.factor * group.energy->add_gradient(x, own);
+      g += group.factor * own;
+    }
+    return sum;
   }
 
   Stencils stencils() const override {
-    const Stencils cloth = cloth_->stencils(), seams = seams_->stencils();
-    Stencils all(cloth.rows() + seams.rows(), 4);
-    if (cloth.rows() > 0) all.topRows(cloth.rows()) = cloth;
-    if (seams.rows() > 0) all.bottomRows(seams.rows()) = seams;
+    Stencils all(0, 4);
+    for (const Group& group : groups_) {
+      const Stencils own = group.energy->stencils();
+      all.conservativeResize(all.rows() + own.rows(), 4);
+      all.bottomRows(own.rows()) = own;
+    }
     return all;
   }
 
   void add_hessian(const Positions& x, Projection projection, BlockSink& sink) const override {
     constexpr int pairs = 10;
-    cloth_->add_hessian(x, projection, sink);
-    const auto first = static_cast<int>(cloth_->stencils().rows()),
-               count = static_cast<int>(seams_->stencils().rows());
-    std::vector<int> slots(static_cast<std::size_t>(count) * pairs);
-    std::iota(slots.begin(), slots.end(), 0);
-    std::vector<double> blocks(9 * slots.size(), 0);
-    BlockSink own(slots.data(), pairs, blocks.data(), factor_);
-    seams_->add_hessian(x, projection, own);
-    for (int e = 0; e < count; ++e)
-      for (int b = 0, k = 0; b < 4; ++b)
-        for (int a = 0; a <= b; ++a, ++k)
-          sink.add(first + e, a, b, &blocks[9 * (static_cast<std::size_t>(e) * pairs + k)]);
+    int first = 0;
+    for (const Group& group : groups_) {
+      const auto count = static_cast<int>(group.energy->stencils().rows());
+      std::vector<int> slots(static_cast<std::size_t>(count) * pairs);
+      std::iota(slots.begin(), slots.end(), 0);
+      std::vector<double> blocks(9 * slots.size(), 0);
+      BlockSink own(slots.data(), pairs, blocks.data(), group.factor);
+      group.energy->add_hessian(x, projection, own);
+      for (int e = 0; e < count; ++e)
+        for (int b = 0, k = 0; b < 4; ++b)
+          for (int a = 0; a <= b; ++a, ++k)
+            sink.add(first + e, a, b, &blocks[9 * (static_cast<std::size_t>(e) * pairs + k)]);
+      first += count;
+    }
   }
 
  private:
-  std::unique_ptr<BoundEnergy> cloth_, seams_;
-  double factor_;
+  std::vector<Group> groups_;
 };
+
+/// The hinges by their factors, ascending but for 1, which comes first.
+std::vector<std::pair<double, std::vector<int>>> grouped(const Level& level, const Eigen::VectorXd& factors) {
+  std::map<double, std::vector<int>> by_factor;
+  const double seams = level.rest.sewing ? level.rest.sewing->seam_stiffness : 1;
+  for (int h = 0; h < level.hinges.rows(); ++h) {
+    double factor = factors.size() > 0 ? std::exp2(std::round(4 * std::log2(factors[h])) / 4) : 1;
+    if (seams != 1 && is_seam(level.rest, level.topology, level.hinge_edges[h])) factor *= seams;
+    by_factor[factor].push_back(h);
+  }
+  std::vector<std::pair<double, std::vector<int>>> groups;
+  if (const auto plain = by_factor.extract(1); plain) groups.emplace_back(1, std::move(plain.mapped()));
+  for (auto& [factor, hinges] : by_factor) groups.emplace_back(factor, std::move(hinges));
+  return groups;
+}
 
 }  // namespace
 
 std::unique_ptr<BoundEnergy> bind_with_seams(
-    const Level& level, const std::function<std::unique_ptr<BoundEnergy>(const Level&)>& bind) {
+    const Level& level, const std::function<std::unique_ptr<BoundEnergy>(const Level&)>& bind,
+    const Eigen::VectorXd& factors) {
   std::unique_ptr<BoundEnergy> whole = bind(level);
-  if (!whole || !level.rest.sewing || level.rest.sewing->seam_stiffness == 1) return whole;
+  const bool plain = factors.size() == 0 && (!level.rest.sewing || level.rest.sewing->seam_stiffness == 1);
+  if (!whole || plain) return whole;
   const Stencils elements = whole->stencils();
   if (elements.rows() == 0 || elements.cols() != 4 || elements.rows() != level.hinges.rows()) return whole;
-  return std::make_unique<SeamEnergy>(bind(part_of(level, false)), bind(part_of(level, true)),
-                                      level.rest.sewing->seam_stiffness);
+  std::vector<GroupedHinges::Group> groups;
+  for (const auto& [factor, hinges] : grouped(level, factors))
+    groups.push_back({factor, bind(part_of(level, hinges))});
+  return std::make_unique<GroupedHinges>(std::move(groups));
 }
 
 }  // namespace drape

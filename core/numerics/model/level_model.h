@@ -10,6 +10,7 @@
 #include "core/kernel/interfaces/energy.h"
 #include "core/kernel/interfaces/level.h"
 #include "core/kernel/interfaces/material.h"
+#include "core/numerics/hierarchy/fineness.h"
 #include "core/numerics/linear_algebra/block_matrix.h"
 
 namespace drape {
@@ -75,9 +76,12 @@ class LevelModel {
   double load_pressure(const Positions& x) const;
 
   /// The model with membranes that buckle below the mesh (Energy::bind_buckling) and give way at lone pins
-  /// (softening_at_pins), for a level `levels_below` ≥ 1 below the finest. Its contacts and other energies
-  /// are shared with this model.
-  LevelModel with_effective_membranes(int levels_below, const std::vector<int>& lone_pins = {}) const;
+  /// (softening_at_pins), for a level below the finest. Its contacts and other energies are shared with this
+  /// model.
+  LevelModel with_effective_membranes(const Fineness& finest, const std::vector<int>& lone_pins = {}) const;
+  /// The model whose folds are as stiff as those of the finest level's mesh around them make them, over their
+  /// mean, which midpoint_factor gives: on uneven meshes a fold is that many times too soft or stiff.
+  LevelModel with_local_folds(const Fineness& finest) const;
 
   /// The energies of role `limit`, S_l.
   const std::vector<const BoundEnergy*>& limits() const { return limits_; }

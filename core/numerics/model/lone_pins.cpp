@@ -55,12 +55,13 @@ std::vector<int> lone_pins(const LevelModel& coarse,
     if (!has_fixed_neighbour(coarse, d.vertex)) lone.push_back(d.vertex);
   if (lone.empty()) return lone;
   const std::shared_ptr<const LevelModel> fine = finest();
-  std::erase_if(lone, [&](int vertex) { return has_fixed_neighbour(*fine, vertex); });
+  std::erase_if(lone,
+                [&](int vertex) { return has_fixed_neighbour(*fine, coarse.level().cloth_vertex(vertex)); });
   return lone;
 }
 
 Eigen::VectorXd softening_at_pins(const Level& level, const std::vector<int>& pins, double poisson_ratio,
-                                  int levels_below) {
+                                  double levels_below) {
   Eigen::VectorXd softening = Eigen::VectorXd::Ones(level.triangle_count());
   for (const int vertex : pins) {
     const double compliance =

@@ -9,7 +9,7 @@
 namespace drape {
 
 /// Vertices of a coarse level at which single points hold the cloth: those with a Dirichlet condition that no
-/// neighbour has, here and on the finest level, where they have the same indices. `finest` is not called for
+/// neighbour has, here and on the finest level, which has them too. `finest` is not called for
 /// a level without such vertices.
 std::vector<int> lone_pins(const LevelModel& coarse,
                            const std::function<std::shared_ptr<const LevelModel>()>& finest);
@@ -22,6 +22,6 @@ std::vector<int> lone_pins(const LevelModel& coarse,
 /// times to 1 / K, K the stiffness of the vertex between resting neighbours along the angle's axis, or its
 /// mean inside the cloth (Timoshenko and Goodier 1970, sections 38 and 42).
 Eigen::VectorXd softening_at_pins(const Level& level, const std::vector<int>& pins, double poisson_ratio,
-                                  int levels_below);
+                                  double levels_below);
 
 }  // namespace drape

@@ -43,6 +43,7 @@ void add_blocks(const BlockMatrix& part, const std::vector<int>& slots, double f
 std::vector<ProxyPart> proxy_parts(const Problem& problem, int level, const ProxyOptions& options) {
   const ProxyInterpolation& seen_by = options.seen_by;
   const int above = problem.finest() - level;
+  const double halvings = Fineness::of(problem.hierarchy, level).levels;
   std::vector<ProxyPart> parts;
   for (const auto& [role, interpolated_by] :
        {std::pair(EnergyRole::membrane, seen_by.membrane), std::pair(EnergyRole::external, seen_by.external),
@@ -50,7 +51,7 @@ std::vector<ProxyPart> proxy_parts(const Problem& problem, int level, const Prox
     ProxyPart part;
     const auto factor = problem.model(level)->midpoint_factor(role);
     if (interpolated_by == Interpolation::midpoint && factor) {
-      part.factor = std::pow(*factor, above);
+      part.factor = std::pow(*factor, halvings);
     } else {
       part.above = above;
       part.matrix_above = std::min(options.depth, above);
@@ -67,7 +68,11 @@ std::vector<ProxyPart> proxy_parts(const Problem& problem, int level, const Prox
 }
 
 ProxyObjective::ProxyObjective(const Problem& problem, int level, const ProxyOptions& options)
-    : Objective(problem.model(level)), problem_(problem), level_(level), options_(options) {
+    : Objective(problem.model(level)),
+      problem_(problem),
+      level_(level),
+      options_(options),
+      finest_(Fineness::of(problem.hierarchy, level)) {
   ProxyObjective::model_changed();
 }
 
@@ -75,8 +80,11 @@ void ProxyObjective::model_changed() {
   // A schedule may change which vertices a pin selects.
   if (options_.effective && options_.seen_by.membrane == Interpolation::midpoint)
     effective_ = std::make_shared<const LevelModel>(model().with_effective_membranes(
-        problem_.finest() - level_, lone_pins(model(), [&] { return problem_.model(problem_.finest()); })));
+        finest_, lone_pins(model(), [&] { return problem_.model(problem_.finest()); })));
   if (is_plain_) return;
+  if (finest_.areas.size() > 0)
+    folded_ =
+        std::make_shared<const LevelModel>((effective_ ? *effective_ : model()).with_local_folds(finest_));
   std::vector<ProxyPart> parts = proxy_parts(problem_, level_, options_);
   const bool differ = parts != parts_;
   if (differ) {

@@ -91,15 +91,19 @@ class ProxyObjective : public Objective {
   void make_parts();
   void make_matrices();
   /// The level's own energies.
-  const LevelModel& own_model() const { return effective_ ? *effective_ : model(); }
+  const LevelModel& own_model() const {
+    return !is_plain_ && folded_ ? *folded_ : effective_ ? *effective_ : model();
+  }
   void add_own_hessians(const Positions& x, Projection projection, BlockMatrix& matrix) const;
 
   const Problem& problem_;
   int level_;
   ProxyOptions options_;
+  Fineness finest_;
   bool is_plain_ = false;
   std::shared_ptr<const LevelModel> effective_;  // the level's model with effective membranes, or null
-  std::vector<ProxyPart> parts_, own_;           // all, and those of the level's own model
+  std::shared_ptr<const LevelModel> folded_;  // the former with the finest level's folds, while they differ
+  std::vector<ProxyPart> parts_, own_;        // all, and those of the level's own model
   std::vector<FinerPart> finer_;
   BlockMatrix own_matrix_, matrix_;  // of own_, if its pattern differs from the sum's; the sum
   std::vector<int> own_slots_;       // index in matrix_ of each block of own_matrix_
