@@ -59,3 +59,31 @@ TEST_CASE("Refiners split every triangle into four alike, and keep straight bord
         CHECK((sorted(fine.vertices) == sorted(grid({0.6, 0.5}, 11, 9, Diagonals::one_way).vertices)));
     }
 }
+
+TEST_CASE("Coarser levels of refiners are meshes of the level's vertices, with linear weights") {
+  int found = 0;
+  for (const RegistryEntry* entry : test_registry().of_kind("refiner"))
+    for (const NamedMesh& m : meshes_to_refine()) {
+      if (m.name == "curved") continue;
+      INFO(entry->name << ", " << m.name);
+      const Level fine = Level::of(0, m.mesh);
+      const std::optional<CoarserMesh> made = make_plugin_from<Refiner>(entry->name)->coarser(fine);
+      if (!made) continue;
+      ++found;
+      const auto n = static_cast<Eigen::Index>(made->vertices.size());
+      CHECK(n < fine.vertex_count());
+      CHECK(check_mesh(made->rest).empty());
+      CHECK(std::ranges::is_sorted(made->vertices));
+      CHECK(made->rest.vertices == fine.rest.vertices(made->vertices, Eigen::all));
+      REQUIRE(made->weights.rows() == fine.vertex_count());
+      REQUIRE(made->weights.cols() == n);
+      CHECK((made->weights * Eigen::VectorXd::Ones(n) - Eigen::VectorXd::Ones(fine.vertex_count())).norm() <=
+            1e-13);
+      CHECK((made->weights * made->rest.vertices - fine.rest.vertices).norm() <= 1e-12);
+      const std::optional<CoarserMesh> again = make_plugin_from<Refiner>(entry->name)->coarser(fine);
+      CHECK(again->vertices == made->vertices);
+      CHECK(again->rest.triangles == made->rest.triangles);
+      CHECK((again->weights - made->weights).norm() == 0);
+    }
+  CHECK(found > 0);
+}

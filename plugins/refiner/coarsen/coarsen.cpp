@@ -1,0 +1,93 @@
+#include <algorithm>
+#include <stdexcept>
+
+#include "core/kernel/plugin/parameters.h"
+#include "core/kernel/plugin/plugin.h"
+#include "core/numerics/hierarchy/midpoint.h"
+#include "core/numerics/mesh/check.h"
+#include "core/numerics/mesh/grain.h"
+#include "plugins/refiner/coarsen/choose_vertices.h"
+#include "plugins/refiner/coarsen/interpolation.h"
+
+namespace drape {
+
+/// Coarser levels under a mesh of flat cloth or of flat pieces (after Zhang et al., Progressive Shell
+/// Quasistatics for Unstructured Meshes, 2023); finer ones by midpoint subdivision.
+class CoarsenRefiner : public Refiner {
+ public:
+  double ratio = 4;
+
+  static void declare(Declaration<CoarsenRefiner>& d) {
+    d.add("ratio", &CoarsenRefiner::ratio, "vertices of a level over those of the next coarser one, about")
+        .between(2, 16);
+  }
+
+  ProlongationMatrix weights(const Level& coarse) const override { return midpoint_weights(coarse); }
+
+  std::optional<CoarserMesh> coarser(const Level& fine) const override {
+    const FlatCloth flat = FlatCloth::of(fine);
+    const CoarsePieces pieces = CoarsePieces::of(flat, chosen_vertices(fine, flat, ratio));
+    CoarserMesh made;
+    std::vector<int> number(fine.vertex_count(), -1);
+    for (int v = 0; v < fine.vertex_count(); ++v)
+      if (pieces.kept[v]) number[v] = static_cast<int>(made.vertices.size()), made.vertices.push_back(v);
+    const auto count = static_cast<int>(made.vertices.size());
+    if (count == fine.vertex_count())
+      throw std::runtime_error(
+          "level " + std::to_string(fine.index) + " of " + std::to_string(count) +
+          " vertices has no vertex that its corners, outlines and seams do not need; ask for "
+          "fewer coarser levels");
+    made.rest = coarse_rest(fine, flat, pieces, made.vertices, number);
+    made.weights = flat_interpolation(flat, pieces, number, count);
+    return made;
+  }
+
+ private:
+  static TriangleMesh coarse_rest(const Level& fine, const FlatCloth& flat, const CoarsePieces& pieces,
+                                  const std::vector<int>& vertices, const std::vector<int>& number) {
+    TriangleMesh rest{fine.rest.vertices(vertices, Eigen::all), pieces.triangles};
+    for (int& corner : rest.triangles.reshaped()) corner = number[flat.images[corner].vertex];
+    rest.sewing = fine.rest.sewing;
+    rest.piece_names = fine.rest.piece_names;
+    if (fine.rest.uv.rows() > 0) {
+      rest.uv.resize(pieces.triangles.rows(), 6);
+      for (Eigen::Index t = 0; t < rest.uv.rows(); ++t)
+        for (int k = 0; k < 3; ++k)
+          rest.uv.block<1, 2>(t, 2 * k) = flat.images[pieces.triangles(t, k)].uv.transpose();
+    }
+    if (fine.rest.piece.empty() && fine.rest.warp.rows() == 0) return rest;
+    std::vector<int> same;  // the fine triangle whose piece and warp each has
+    for (const auto& t : pieces.triangles.rowwise()) same.push_back(fine_triangle_near(fine, flat, t));
+    if (!fine.rest.piece.empty())
+      for (const int t : same) rest.piece.push_back(fine.rest.piece[t]);
+    if (fine.rest.warp.rows() > 0) {
+      rest.warp = fine.rest.warp(same, Eigen::all);
+      if (!rest.sewing) rest.warp = projected_warp(rest.warp, rest);
+    }
+    return rest;
+  }
+
+  /// Of the fine triangles at a coarse triangle's corners, in its piece, the one nearest to its centroid.
+  static int fine_triangle_near(const Level& fine, const FlatCloth& flat, const Eigen::RowVector3i& images) {
+    const auto centroid = [&](const auto& t) -> Eigen::Vector2d {
+      return (flat.images[t[0]].place + flat.images[t[1]].place + flat.images[t[2]].place) / 3;
+    };
+    const Eigen::Vector2d own = centroid(images);
+    int nearest = -1;
+    double smallest = std::numeric_limits<double>::infinity();
+    for (const int i : images)
+      for (const int t : fine.topology.vertex_triangles.row(flat.images[i].vertex)) {
+        const double distance = (centroid(flat.triangles.row(t)) - own).norm();
+        if (flat.piece[t] == flat.images[i].piece && distance < smallest) smallest = distance, nearest = t;
+      }
+    return nearest;
+  }
+};
+
+}  // namespace drape
+
+DRAPE_PLUGIN(registry) {
+  registry.add<drape::Refiner, drape::CoarsenRefiner>(
+      "coarsen",
+      "Coarser levels under a mesh of flat cloth, whose vertices they share; finer ones by midpoints.");
+}
