@@ -158,6 +158,10 @@ bool is_collision_free(const LevelModel& model, const Positions& x, const Positi
   return x == y || ActiveContacts(model.contacts()).max_step(x, y).fraction == 1;
 }
 
+bool is_intersection_free(const LevelModel& model, const Positions& x) {
+  return std::ranges::all_of(model.contacts(), [&](const auto& c) { return c->intersections(x).empty(); });
+}
+
 }  // namespace
 
 LevelResult refine_safely(const Problem& problem, int level, const Positions& x,
@@ -171,6 +175,14 @@ LevelResult refine_safely(const Problem& problem, int level, const Positions& x,
   bool is_feasible = model.contacts().empty() && model.limits().empty();
   if (!is_feasible) {
     refined.x = problem.hierarchy.midpoints[level] * x;
+    if (!problem.hierarchy.splits(level) && !is_intersection_free(model, refined.x)) {
+      refined.x = problem.starts[level + 1];
+      if (!is_intersection_free(model, refined.x)) {  // under a schedule obstacles have moved
+        refined.outcome = Outcome::stalled;
+        refined.message = "the state intersects something on the finer mesh";
+        return refined;
+      }
+    }
     move_dirichlet_vertices(model, refined.x);
     is_feasible = strain_limit_violations(model.limits(), target, 1).empty() &&
                   is_collision_free(model, refined.x, target);
