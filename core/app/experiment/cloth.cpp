@@ -240,6 +240,7 @@ std::vector<double> estimated_vertices(const ExperimentParameters& p) {
     const bool grid = is_grid(p.cloth);
     const Eigen::Vector2i counts = grid ? grid_counts(p.cloth) : Eigen::Vector2i(0, 0);
     const double coarsest = is_of_file(p.cloth) ? vertices_of_file(p.cloth) : vertices_of(p.cloth);
+    for (int l = p.hierarchy.coarsen; l > 0; --l) vertices.push_back(coarsest / std::pow(4.0, l));
     for (int l = 0; l < p.levels; ++l) {
       const double cells = std::pow(2.0, l);  // of the level, along a cell of the coarsest one
       vertices.push_back(grid ? (cells * (counts.x() - 1) + 1) * (cells * (counts.y() - 1) + 1)

@@ -23,7 +23,7 @@ template <class Condition>
 void declare_selection(Declaration<Condition>& d) {
   d.add("region", &VertexSelection::region,
         "selects vertices by their rest positions: the coarsest level's vertex nearest to `point`, all "
-        "within `radius` of `point`, all in a box, the boundary, coarsest-level indices, those of a piece, "
+        "within `radius` of `point`, all in a box, the boundary, indices, those of a piece, "
         "the "
         "seams of a cloth of flat pieces, or the edges of a pattern that have a label")
       .choices({"nearest", "ball", "box", "border", "vertices", "piece", "seam", "label"});
@@ -38,7 +38,9 @@ void declare_selection(Declaration<Condition>& d) {
       .only_with("region", {"box"});
   coordinate(d.add("upper", &VertexSelection::upper, "upper corner of `box`, in the rest shape"))
       .only_with("region", {"box"});
-  natural(d.add("vertices", &VertexSelection::vertices, "indices on the coarsest level, from 0"))
+  natural(d.add("vertices", &VertexSelection::vertices,
+                "indices of the cloth's own mesh, from 0; on levels that `hierarchy` puts below it, those "
+                "that stand for them"))
       .only_with("region", {"vertices"});
   d.add(
        "piece", &VertexSelection::piece,
@@ -258,13 +260,30 @@ void ReferenceParameters::declare(Declaration<ReferenceParameters>& d) {
       .path();
 }
 
+void HierarchyParameters::declare(Declaration<HierarchyParameters>& d) {
+  d.add(
+       "coarsen", &HierarchyParameters::coarsen,
+       "number of levels that are coarser than the cloth's mesh, whose vertices they share; each has about a "
+       "quarter of the next one's")
+      .between(0, 8);
+  d.add("multigrid", &HierarchyParameters::multigrid,
+        "whether meshes below the coarsest level are made for `linear_solver: multigrid`, down to 2,000 "
+        "vertices; "
+        "nothing is solved on them");
+}
+
 void ExperimentParameters::declare(Declaration<ExperimentParameters>& d) {
   d.add("name", &ExperimentParameters::name, "names the results folder and the report").required();
   d.add("description", &ExperimentParameters::description, "one sentence for the report");
-  d.add_section("cloth", &ExperimentParameters::cloth, "the coarsest level");
+  d.add_section("cloth", &ExperimentParameters::cloth,
+                "the coarsest level, but for those that `hierarchy` puts below it");
   d.add("levels", &ExperimentParameters::levels,
-        "number of levels; each splits every triangle of the last into four")
+        "number of levels from the cloth's mesh on, 1 by default if `hierarchy` puts levels below it; each "
+        "splits "
+        "every triangle of the last into four")
       .between(1, 10);
+  d.add_section("hierarchy", &ExperimentParameters::hierarchy,
+                "levels under a fine mesh of the user's own, which is the finest level then");
   d.add_section("material", &ExperimentParameters::material, "material of the cloth");
   d.add_section("start", &ExperimentParameters::start,
                 "where the cloth begins: the rest shape or a file, transformed");

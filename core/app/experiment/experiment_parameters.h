@@ -197,6 +197,13 @@ struct ReferenceParameters {
 /// How often exact predicates count the intersections.
 enum class IntersectionCheck { every_level, every_step };
 
+/// Levels below the cloth's own mesh.
+struct HierarchyParameters {
+  int coarsen = 0;
+  bool multigrid = false;
+  static void declare(Declaration<HierarchyParameters>& d);
+};
+
 /// The refiner of an experiment that names none.
 inline constexpr const char* default_refiner = "loop";
 
@@ -206,6 +213,7 @@ struct ExperimentParameters {
   std::string description;
   ClothParameters cloth;
   int levels = 4;
+  HierarchyParameters hierarchy;
   MaterialParameters material;
   StartParameters start;
   std::vector<PinParameters> pins;
@@ -222,6 +230,9 @@ struct ExperimentParameters {
   ReferenceParameters reference;
   int snapshots = 8;
   IntersectionCheck check_intersections = IntersectionCheck::every_level;
+
+  /// Levels of the cloth, those below its own mesh included.
+  int level_count() const { return hierarchy.coarsen + levels; }
   static void declare(Declaration<ExperimentParameters>& d);
 };
 

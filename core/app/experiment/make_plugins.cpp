@@ -44,9 +44,17 @@ std::string label_of(const ConfigNode& node) {
 
 void make_refiner(Experiment& e, ConfigErrors& errors) {
   ConfigNode& node = e.parameters.refiner;
+  const HierarchyParameters& hierarchy = e.parameters.hierarchy;
+  const bool coarsens = hierarchy.coarsen > 0 || hierarchy.multigrid;
   // Flat pieces are refined at edge midpoints.
   if (node.kind == ConfigNode::Kind::null)
-    node = ConfigNode::of(e.parameters.cloth.is_sewn() ? "midpoint" : default_refiner);
+    node = ConfigNode::of(coarsens                          ? "coarsen"
+                          : e.parameters.cloth.is_sewn() ? "midpoint"
+                                                            : default_refiner);
+  if (hierarchy.coarsen > 0 && !e.source.find("levels")) {
+    e.parameters.levels = 1;
+    set_path(e.resolved, "levels", ConfigNode::of("1"));
+  }
   ConfigNode resolved;
   e.refiner = make_from<Refiner>(*e.registry, node, errors, &resolved);
   set_path(e.resolved, "refiner", resolved);

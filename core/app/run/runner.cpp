@@ -97,7 +97,7 @@ bool run(const Experiment& experiment, const Scene& scene, const RunOptions& opt
          Recorder& recorder, const Checkpoint& begun, bool resumed) {
   std::vector<std::string> changing;
   for (const ScheduleKey& key : experiment.parameters.schedule.keys) changing.push_back(key.parameter);
-  Progress progress(experiment.parameters.newton.force_tolerance, experiment.parameters.levels,
+  Progress progress(experiment.parameters.newton.force_tolerance, experiment.parameters.level_count(),
                     options.verbosity, scene.load_stepping.get(), changing);
   RunObserver observer(experiment, scene, folder, recorder, progress, options, begun);
 

@@ -22,7 +22,7 @@ FileFingerprint fingerprint_of(const fs::path& path) {
 }
 
 /// The value of a key of config.yaml that names a copy in the run's folder.
-ConfigNode copy_named(const char* name) {
+ConfigNode copy_named(const std::string& name) {
   ConfigNode node = ConfigNode::of(name);
   node.names_file = true;
   return node;
@@ -51,8 +51,9 @@ void refuse_damaged_results(const fs::path& folder, const std::string& only = ""
                             (folder / "config.yaml").string() + " --out ANOTHER");
 }
 
-/// A cloth of a file is read from rest/l0.ply, which has no second copy. Throws std::runtime_error where a
-/// rest shape does not follow from it, but for what other programs round otherwise.
+/// A cloth of a file is read from the rest shape of its own level, which has no second copy. Throws
+/// std::runtime_error where a rest shape does not follow from it, but for what other programs round
+/// otherwise.
 void refuse_other_rest(const fs::path& folder, const Scene& scene) {
   for (const Level& level : scene.hierarchy.levels) {
     const std::string name = rest_file(level.index);
@@ -64,8 +65,8 @@ void refuse_other_rest(const fs::path& folder, const Scene& scene) {
       continue;  // missing or cut short: it will be written again
     }
     if (saved.rows() != own.rows() || !((saved - own).norm() <= 1e-9 * own.norm()))
-      refuse_path(folder, name +
-                              " does not follow from rest/l0.ply: one of the two was changed; run the "
+      refuse_path(folder, name + " does not follow from " + rest_file(scene.hierarchy.cloth) +
+                              ": one of the two was changed; run the "
                               "experiment again");
   }
 }
@@ -111,7 +112,7 @@ ConfigNode saved_config(const Experiment& experiment) {
     cloth.grain_along = as_written.grain_along;
     cloth.grain_regions.clear();
     set_path(config, "cloth", schema_of<ClothParameters>().write(&cloth));
-    set_path(config, "cloth.file", copy_named("rest/l0.ply"));
+    set_path(config, "cloth.file", copy_named(rest_file(p.hierarchy.coarsen)));
   }
   if (!p.reference.file.empty()) set_path(config, "reference.file", copy_named("reference.ply"));
   return config;
@@ -230,15 +231,16 @@ SavedState saved_state(const fs::path& folder, const std::string& method, std::o
 
 void refuse_other_cloth(const Experiment& before, const Experiment& changed, int level,
                         ConfigErrors& errors) {
-  for (const char* key : {"cloth", "refiner"})
+  for (const char* key : {"cloth", "hierarchy", "refiner"})
     if (to_yaml(*before.resolved.find(key)) != to_yaml(*changed.resolved.find(key)))
       errors.push_back(
           {changed.location_of(key), "\"" + std::string(key) +
                                          "\" cannot be changed: the saved state is one of the cloth "
                                          "as it was; run the changed experiment from its start"});
-  if (changed.parameters.levels <= level)
+  if (changed.parameters.level_count() <= level)
     errors.push_back(
-        {changed.location_of("levels"), "\"levels\" must be at least " + std::to_string(level + 1) +
+        {changed.location_of("levels"), "\"levels\" must be at least " +
+                                            std::to_string(level + 1 - changed.parameters.hierarchy.coarsen) +
                                             ", for the saved state is one of level " + std::to_string(level) +
                                             "; choose a coarser one with --level"});
 }

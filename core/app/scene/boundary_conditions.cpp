@@ -130,7 +130,7 @@ void check_selection(const ExperimentParameters& parameters, LoadPart part, std:
   const std::string name = name_of(parameters, part, k);
   const bool by_index = p.region == "vertices";
   const auto& pieces = coarsest.rest.piece_names;
-  const auto beyond = [&](int v) { return v < 0 || v >= coarsest.vertex_count(); };
+  const auto beyond = [&](int v) { return v < 0 || v >= coarsest.cloth_vertex_count(); };
   if (p.region == "label" && (!p.label || std::ranges::any_of(p.label_edges, beyond)))
     return errors.push_back({where, name + (p.label ? ": \"label_edges\" name a vertex that is not there"
                                                     : " needs \"label\", that of a pattern's edges")});
@@ -160,9 +160,9 @@ void check_selection(const ExperimentParameters& parameters, LoadPart part, std:
       }
   for (int v : p.vertices)
     if (by_index && beyond(v))
-      errors.push_back({where, name + " names vertex " + std::to_string(v) +
-                                   ", but those of the coarsest level go from 0 to " +
-                                   std::to_string(coarsest.vertex_count() - 1)});
+      errors.push_back({where, name + " names vertex " + std::to_string(v) + ", but those of the " +
+                                   (coarsest.own_vertices.empty() ? "coarsest level" : "cloth's mesh") +
+                                   " go from 0 to " + std::to_string(coarsest.cloth_vertex_count() - 1)});
 }
 
 }  // namespace

@@ -16,6 +16,7 @@
 #include "core/numerics/mesh/same_entries.h"
 #include "core/numerics/mesh/unjoined_borders.h"
 #include "core/numerics/mesh_files/io.h"
+#include "core/numerics/multigrid/multigrid.h"
 
 namespace drape {
 
@@ -45,28 +46,33 @@ class Noise {
   } waves_[8];
 };
 
-Positions read_start(const Experiment& e, const Level& coarsest, ConfigErrors& errors) {
+Positions read_start(const Experiment& e, const Level& cloth, ConfigErrors& errors) {
   const std::optional<TriangleMesh> mesh = start_mesh(e, errors);
-  if (!mesh) return coarsest.rest.vertices;
-  if (mesh->vertices.rows() == coarsest.vertex_count() &&
-      same_entries(mesh->triangles, coarsest.rest.triangles))
+  if (!mesh) return cloth.rest.vertices;
+  if (mesh->vertices.rows() == cloth.vertex_count() && same_entries(mesh->triangles, cloth.rest.triangles))
     return mesh->vertices;
-  errors.push_back(
-      {e.location_of("start"), "\"start\": " + e.parameters.start.file +
-                                   " has other vertices or triangles than the coarsest level; take a "
-                                   "mesh like rest/l0.ply of a run's folder"});
-  return coarsest.rest.vertices;
+  errors.push_back({e.location_of("start"),
+                    "\"start\": " + e.parameters.start.file + " has other vertices or triangles than " +
+                        (cloth.index == 0 ? "the coarsest level" : "the cloth's mesh") +
+                        "; take a mesh like rest/l" + std::to_string(cloth.index) +
+                        ".ply of a run's folder"});
+  return cloth.rest.vertices;
 }
 
 /// The untransformed initial shape of every level: the rest shape, or that of the file, which finer levels
-/// follow as states do. Edge midpoints would strain the cloth where the refiner moves rest positions.
+/// follow as states do, and coarser ones where they have its vertices. Edge midpoints would strain the cloth
+/// where the refiner moves rest positions.
 std::vector<Positions> start_shapes(const Experiment& e, const Hierarchy& hierarchy, ConfigErrors& errors) {
-  const std::string& file = e.parameters.start.file;
   std::vector<Positions> shapes;
+  for (const Level& level : hierarchy.levels) shapes.push_back(level.rest.vertices);
+  if (e.parameters.start.file.empty()) return shapes;
+  const int cloth = hierarchy.cloth;
+  shapes[cloth] = read_start(e, hierarchy.levels[cloth], errors);
   for (const Level& level : hierarchy.levels)
-    shapes.push_back(file.empty()       ? level.rest.vertices
-                     : level.index == 0 ? read_start(e, level, errors)
-                                        : Positions(hierarchy.linear[level.index - 1] * shapes.back()));
+    if (level.index < cloth)
+      shapes[level.index] = shapes[cloth](level.cloth_vertices, Eigen::all);
+    else if (level.index > cloth)
+      shapes[level.index] = hierarchy.linear[level.index - 1] * shapes[level.index - 1];
   return shapes;
 }
 
@@ -162,7 +168,8 @@ std::vector<std::string> remarks_of(const Experiment& e, const Scene& scene) {
   const ClothParameters& cloth = e.parameters.cloth;
   const Level& coarsest = scene.hierarchy.levels[0];
   if (cloth.join > 0)
-    all.push_back(std::to_string(read_mesh(cloth.file).vertices.rows() - coarsest.vertex_count()) +
+    all.push_back(std::to_string(read_mesh(cloth.file).vertices.rows() -
+                                 scene.hierarchy.levels[scene.hierarchy.cloth].vertex_count()) +
                   " vertices of the cloth's file were joined to others (cloth.join)");
   if (const std::string text = sewing_text(coarsest); !text.empty()) all.push_back("cloth: " + text);
   if (scene.dressing)
@@ -188,7 +195,9 @@ std::unique_ptr<Scene> build_scene(const Experiment& e, ConfigErrors& errors, La
 
   std::unique_ptr<Scene> scene;
   try {
-    scene = std::make_unique<Scene>(Hierarchy::of(std::move(*cloth), *e.refiner, p.levels));
+    Hierarchy hierarchy = Hierarchy::of(std::move(*cloth), *e.refiner, p.levels, p.hierarchy.coarsen);
+    if (p.hierarchy.multigrid) hierarchy.coarsen_below(*e.refiner, Multigrid::small_mesh);
+    scene = std::make_unique<Scene>(std::move(hierarchy));
   } catch (...) {
     errors.push_back({e.location_of("cloth"), message_in_flight()});
     return nullptr;

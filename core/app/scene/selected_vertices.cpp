@@ -30,9 +30,16 @@ std::vector<int> vertices_of_piece(const VertexSelection& selection, const Level
 }
 
 /// The vertices on the edges of a label: those of finer levels lie on the coarsest level's edges, in the
-/// placement.
+/// placement. On levels below the cloth's mesh, those that stand for its vertices on these edges.
 std::vector<int> vertices_of_label(const VertexSelection& selection, const Level& level,
                                    const Level& coarsest) {
+  if (!coarsest.own_vertices.empty()) {
+    std::vector<int> vertices;
+    for (const int v : selection.label_edges) vertices.push_back(level.own_vertex(v));
+    std::ranges::sort(vertices);
+    vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
+    return vertices;
+  }
   constexpr double rounding = 1e-9;  // of an edge
   std::vector<char> at_edge(level.topology.on_border.begin(), level.topology.on_border.end());
   for (int e = 0; e < level.topology.edges.rows(); ++e)
@@ -64,12 +71,12 @@ std::vector<int> selected_vertices(const VertexSelection& selection, const Level
         .rowwise()
         .squaredNorm()
         .minCoeff(&nearest);
-    return {static_cast<int>(nearest)};
+    return {level.own_vertex(coarsest.cloth_vertex(static_cast<int>(nearest)))};
   }
   if (selection.region == "vertices") {
-    // Children of coarse vertices keep their index on every level.
+    // Children of the cloth's vertices keep their index on every level.
     for (int v : selection.vertices)
-      if (v >= 0 && v < coarsest.vertex_count()) selected.push_back(v);
+      if (v >= 0 && v < coarsest.cloth_vertex_count()) selected.push_back(level.own_vertex(v));
     std::ranges::sort(selected);
     selected.erase(std::unique(selected.begin(), selected.end()), selected.end());
     return selected;

@@ -124,7 +124,7 @@ class Reader {
     const std::vector<std::string>& methods = own ? variation.methods : p.methods;
     if (own) run.settings["methods"] = methods;
     auto experiment = read_experiment(source, registry_, faults);
-    if (experiment && most_levels_ && experiment->parameters.levels > *most_levels_) {
+    if (experiment && most_levels_ && experiment->parameters.level_count() > *most_levels_) {
       set_path(source, "levels", ConfigNode::of(*most_levels_), source_.where, faults);
       experiment = read_experiment(std::move(source), registry_, faults);
     }
