@@ -149,6 +149,19 @@ TEST_CASE("the other formats have the cloth of the finest level, or of the one t
   CHECK((exported("out.GLB") == exported("out.glb")));
 }
 
+TEST_CASE("with --rest a mesh is the rest shape of the finest level, or of the one that is named") {
+  const Scratch folder;
+  for (const int level : {0, 1}) {
+    folder.write("rest.obj", exported("rest.obj", level == 1 ? "--rest" : "--rest --level 0"));
+    const TriangleMesh mesh = read_mesh(folder / "rest.obj"),
+                       rest = mesh_in("rest/l" + std::to_string(level) + ".ply");
+    CHECK((mesh.vertices == rest.vertices));
+    CHECK((mesh.triangles == rest.triangles));
+  }
+  CHECK(export_refusal("a.glb --rest") == "error: --rest is of meshes; take .obj or .ply\n");
+  CHECK(export_refusal("a.obj --rest --level 2") == "error: --level 2: the run's levels go from 0 to 1\n");
+}
+
 TEST_CASE("a .png is the report's picture of a state, at any width") {
   const CopiedRun folder;
   drape_ends("report out --width 300", folder);

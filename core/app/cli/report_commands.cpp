@@ -16,9 +16,12 @@
 #include "core/app/report/run_export.h"
 #include "core/app/report/run_table.h"
 #include "core/app/sweep/process.h"
+#include "core/kernel/files/file.h"
 #include "core/kernel/files/message_text.h"
 #include "core/kernel/files/string_utils.h"
 #include "core/kernel/plugin/parameters.h"
+#include "core/numerics/mesh_files/io.h"
+#include "core/numerics/mesh_files/io_formats.h"
 
 namespace drape {
 
@@ -52,11 +55,28 @@ void add_picture_width(CLI::App& command, std::optional<int>& width, const std::
           std::to_string(least_picture_width) + " to " + std::to_string(greatest_picture_width) + " pixels"));
 }
 
-int export_states(const std::string& folder, const std::string& file, const ExportOptions& options) {
+int export_states(const std::string& folder, const fs::path& file, const ExportOptions& options) {
   const Folders files = export_run(folder, file, options);
   std::cout << "written: " << printable(files.front().string());
   if (files.size() > 1) std::cout << " to " << printable(files.back().string());
   std::cout << "\n";
+  return exit_done;
+}
+
+/// Writes the rest shape of a level, by default the finest one's.
+int export_rest(const std::string& folder, const fs::path& file, const ExportOptions& options) {
+  const std::string extension = file.extension().string();
+  if (extension != ".obj" && extension != ".ply")
+    throw std::runtime_error("--rest is of meshes; take .obj or .ply");
+  const RunData run = read_run(folder);
+  const int finest = run.finest_level(), level = options.level.value_or(finest);
+  if (level > finest)
+    throw std::runtime_error("--level " + std::to_string(level) + ": the run's levels go from 0 to " +
+                             std::to_string(finest));
+  refuse_target(file, options.overwrite);
+  const TriangleMesh mesh = run.mesh(rest_file(level));
+  write_file(file, extension == ".obj" ? obj_text(mesh) : ply_bytes(mesh), options.existing());
+  std::cout << "written: " << printable(file.string()) << "\n";
   return exit_done;
 }
 
@@ -134,11 +154,13 @@ int print_table(const Folders& folders, const std::vector<std::string>& columns,
 void add_export_command(Commands& commands) {
   struct Options : ExportOptions {
     std::string folder, file;
+    bool rest = false;
   };
   const auto o = std::make_shared<Options>();
   CLI::App& command = commands.add("export", "write states of a run as glTF, OBJ, PLY, VTP or PNG",
-                                   "drape export results/sphere --to sphere.glb --frames",
-                                   [o] { return export_states(o->folder, o->file, *o); });
+                                   "drape export results/sphere --to sphere.glb --frames", [o] {
+                                     return (o->rest ? export_rest : export_states)(o->folder, o->file, *o);
+                                   });
   command.add_option("folder", o->folder, "results folder")->required();
   add_option(command, "-o,--to FILE", o->file,
              "file to write: .glb has every level as a scene, with the obstacles; .obj, .ply and .vtp "
@@ -163,6 +185,7 @@ void add_export_command(Commands& commands) {
   command.add_flag("--xray", o->picture.xray, "with .png: let obstacles show faintly through the cloth");
   command.add_flag("--as-read", o->as_read,
                    "with .obj and .ply: in the unit and axes of the cloth's file, level 0 with its vertices");
+  command.add_flag("--rest", o->rest, "with .obj and .ply: the level's rest shape in place of a state");
   command.add_flag("--overwrite", o->overwrite, "replace existing files");
 }
 
