@@ -53,7 +53,7 @@ void make_refiner(Experiment& e, ConfigErrors& errors) {
                                                             : default_refiner);
   if (hierarchy.coarsen > 0 && !e.source.find("levels")) {
     e.parameters.levels = 1;
-    set_path(e.resolved, "levels", ConfigNode::of("1"));
+    set_path(e.resolved, "levels", ConfigNode::of(e.parameters.levels));
   }
   ConfigNode resolved;
   e.refiner = make_from<Refiner>(*e.registry, node, errors, &resolved);

@@ -192,8 +192,8 @@ void check_nearest(const Experiment& e, const std::string& key, const Selections
 }
 
 /// Panels of a file that nothing joins.
-void check_joined(const Experiment& e, const Level& coarsest, Warnings& warnings) {
-  if (const std::string unwelded = unwelded_fault(e, coarsest); !unwelded.empty())
+void check_joined(const Experiment& e, const Level& cloth, Warnings& warnings) {
+  if (const std::string unwelded = unwelded_fault(e, cloth); !unwelded.empty())
     warnings.add("cloth", unwelded);
   const int lines = e.parameters.cloth.shape == "file" ? line_elements_in(e.parameters.cloth.file) : 0;
   if (lines > 0)
@@ -211,7 +211,7 @@ ConfigErrors plausibility_warnings(const Experiment& e, const Scene& scene, cons
   Warnings warnings(e, all);
   check_size(e.parameters, s, warnings);
   const double coarse_edge = std::ldexp(s.median_edge, s.level);
-  check_joined(e, scene.hierarchy.levels[0], warnings);
+  check_joined(e, scene.hierarchy.levels[scene.hierarchy.cloth], warnings);
   check_material(e.parameters, s, warnings);
   check_membrane(e, warnings);
   for (ConfigError& warning : unread_measures(e, s.median_edge)) all.push_back(std::move(warning));

@@ -37,9 +37,7 @@ struct Level {
   double bound_factor(int t) const { return bound_factors.size() > 0 ? bound_factors[t] : 1; }
   /// The cloth's own vertex that a vertex is, if it is one.
   int cloth_vertex(int v) const { return cloth_vertices.empty() ? v : cloth_vertices[v]; }
-  int cloth_vertex_count() const {
-    return own_vertices.empty() ? vertex_count() : static_cast<int>(own_vertices.size());
-  }
+  int cloth_vertex_count() const { return std::max(vertex_count(), static_cast<int>(own_vertices.size())); }
   /// The vertex that stands for one of the cloth's own.
   int own_vertex(int v) const { return own_vertices.empty() ? v : own_vertices[v]; }
   int triangle_count() const { return static_cast<int>(rest.triangles.rows()); }
