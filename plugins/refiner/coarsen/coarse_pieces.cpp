@@ -86,7 +86,7 @@ class Builder {
     if (nearest >= 0 && smallest < (place(a) - place(b)).norm()) wanted_.insert(nearest);
   }
   bool keep_wanted() {
-    for (const int v : wanted_) result_.kept[v] = 1, ++result_.added;
+    for (const int v : wanted_) result_.kept[v] = 1;
     return !std::exchange(wanted_, {}).empty();
   }
 

@@ -12,7 +12,6 @@ struct CoarsePieces {
   std::vector<char> kept;  ///< n flags of the fine mesh's vertices
   Triangles triangles;     ///< m_c×3 images, counter-clockwise, piece by piece
   std::vector<int> first;  ///< the first triangle of each piece, and their number
-  int added = 0;           ///< vertices kept beyond those chosen, so that the mesh is one
 
   /// Constrained Delaunay triangulations within the outlines whose sides join kept vertices. Where outlines
   /// would cross each other, or triangles of two places share an edge, vertices between are kept too. Throws
