@@ -64,13 +64,15 @@ TEST_CASE("a resumed run appends to files of its own, not to what a link leads t
 TEST_CASE("a lock that is a link, or a file of somebody else, is refused and stays") {
   const Scratch folder(small_experiment());
   kill_run(folder);
-  for (const bool hard : {false, true}) {
-    link_to_victim(folder, "out/checkpoint/lock", "mine", hard);
-    check_error(refused(folder, resume), "out/checkpoint/lock: is not a lock of drape's; move it away");
-    check_error(refused(folder, "run e.yaml --out out --overwrite"),
-                "out/checkpoint/lock: is not a lock of ");
-    CHECK(text_of(folder / "victim") == "mine");
-  }
+  for (const std::string text : {"mine", "process 1 on mine\n"})
+    for (const bool hard : {false, true}) {
+      if (!hard && text != "mine") continue;
+      link_to_victim(folder, "out/checkpoint/lock", text, hard);
+      check_error(refused(folder, resume), "out/checkpoint/lock: is not a lock of drape's; move it away");
+      check_error(refused(folder, "run e.yaml --out out --overwrite"),
+                  "out/checkpoint/lock: is not a lock of ");
+      CHECK(text_of(folder / "victim") == text);
+    }
   fs::remove(folder / "out/checkpoint/lock");
   drape_ends(resume, folder, 1);
 }

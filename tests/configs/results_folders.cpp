@@ -106,6 +106,22 @@ TEST_CASE("a file where a run has a folder, or a folder where it has a file, is 
   }
 }
 
+TEST_CASE("a folder at the name of any file of a run is refused before anything is touched") {
+  const Scratch folder(small_experiment());
+  run_into("out", folder, "--levels 1 --method pcs");
+  for (const std::string name : {"config.yaml", "levels/pcs_l0.ply", "snapshots/newton_l3.bin",
+                                 "checkpoint/state.bin", "checkpoint/next.bin", "pictures/pcs_l0.png"}) {
+    const Scratch copy(small_experiment());
+    fs::copy(folder / "out", copy / "out", fs::copy_options::recursive);
+    fs::remove(copy / ("out/" + name));
+    fs::create_directories(copy / ("out/" + name));
+    copy.write("out/" + name + "/mine", "mine");
+    check_error(refused(copy, "run e.yaml --out out --overwrite --levels 1 --method pcs"),
+                "out/" + name + ": is not what a run has by this name; move it, or name another ");
+    check_error(refused(copy, "run --resume out"), "out/" + name + ": is not what a run has by this ");
+  }
+}
+
 TEST_CASE("a run that was killed before its first write blocks no other run") {
   for (int made = 1; made <= 3; ++made) {  // what it makes, in its order
     const Scratch folder(small_experiment());

@@ -44,6 +44,46 @@ TEST_CASE("a sweep's lock is none that a link leads to, and a run's log is a new
   CHECK(text_of(folder / "victim") == "mine");
 }
 
+TEST_CASE("a sweep replaces no file beside a run that is not its own") {
+  for (const char* ending : {".yaml", ".log"}) {
+    const SmallSweep folder("seeds: [1]\n");
+    folder.sweep();
+    fs::remove_all(folder / "out/runs");
+    fs::create_directories(folder / "out/runs/base");
+    folder.write(run_of_sweep + ending, "mine");
+    CHECK_THAT(refused_by("sweep s.yaml --out out", folder.path),
+               Contains(run_of_sweep + ending + ": is there already, and not from this sweep; move it away"));
+    CHECK(text_of(folder / (run_of_sweep + ending)) == "mine");
+    CHECK_FALSE(fs::exists(folder / (run_of_sweep + ".status.json")));
+  }
+}
+
+TEST_CASE("a sweep that was cut while it wrote the configs goes on, also with another experiment") {
+  const SmallSweep folder;
+  folder.sweep();
+  for (const char* left : {"", ".status.json", ".log"}) fs::remove_all(folder / (run_of_sweep + left));
+  folder.sweep();  // the config alone, as an earlier version left it
+  folder.write(run_of_sweep + ".status.json",
+               R"({"status":"pending","error":"","exit_code":0,"seconds":0,"starts":0,"threads":0})");
+  for (const char* left : {"", ".log"}) fs::remove_all(folder / (run_of_sweep + left));
+  folder.write("e.yaml", replaced(text_of(folder / "e.yaml"), "columns: 6", "columns: 5"));
+  folder.sweep();
+}
+
+TEST_CASE("a sweep does not write into a folder that is a link, of whatever depth") {
+  for (const std::string part : {"out/runs", "out/runs/base", "out/runs/base/seed_1"}) {
+    const SmallSweep folder;
+    folder.sweep();
+    fs::create_directories(folder / "photos/base");
+    folder.write("photos/base/seed_1.yaml", "mine");
+    fs::remove_all(folder / part);
+    fs::create_directory_symlink(folder / "photos", folder / part);
+    CHECK_THAT(refused_by("sweep s.yaml --out out", folder.path),
+               Contains(part + ": is a link, and a sweep writes into folders of its own; remove it"));
+    CHECK(std::distance(fs::directory_iterator(folder / "photos"), fs::directory_iterator()) == 1);
+  }
+}
+
 TEST_CASE("a folder's name becomes no line of a job's script, and no pattern of Slurm's") {
   const SmallSweep folder;
   for (const std::string name : {"a$'\\n'touch", "'a\"b'", "100%a", "'a\\b'", "a$'\\x7f'"})

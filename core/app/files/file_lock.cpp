@@ -20,13 +20,12 @@ namespace {
 
 constexpr std::string_view holder_begins = "process ";
 
-/// Whether the open file is a lock's, not one of somebody else that has its name.
+/// Whether the open file is a lock's, not one of somebody else that has its name, or that has another name.
 bool is_lock(int file) {
   struct stat status {};
   char begin[holder_begins.size()] = {};
-  if (fstat(file, &status) != 0 || !S_ISREG(status.st_mode)) return false;
-  return pread(file, begin, sizeof begin, 0) == 0 ? status.st_nlink == 1
-                                                  : std::string_view(begin, sizeof begin) == holder_begins;
+  if (fstat(file, &status) != 0 || !S_ISREG(status.st_mode) || status.st_nlink != 1) return false;
+  return pread(file, begin, sizeof begin, 0) == 0 || std::string_view(begin, sizeof begin) == holder_begins;
 }
 
 }  // namespace

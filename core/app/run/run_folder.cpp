@@ -32,15 +32,20 @@ bool is_of_a_run(const RunFolder& folder) {
           text_member(parse_json(read_file(results)), "version").starts_with("drape "));
 }
 
-/// The files there with names that a run writes: all, or those that were not written to their end.
-std::vector<fs::path> files_of_run(const RunFolder& folder, bool unfinished_alone = false) {
+enum class Named { file, unfinished, folder };
+
+/// What there has a name of a run's file: the files, those of them that were not written to their end, or
+/// the folders, which no run has made.
+std::vector<fs::path> named_as_of_run(const RunFolder& folder, Named kind) {
   std::vector<fs::path> files;
   const std::regex unfinished(R"((\.\d+)?\.part$)");
   const auto add = [&](const std::string& own) {
     for (const auto& entry : fs::directory_iterator(folder.file(own))) {
       const std::string name = entry.path().filename().string(),
                         whole = std::regex_replace(name, unfinished, "");
-      if (!entry.is_directory() && is_file_of_run(own, whole) && !(unfinished_alone && name == whole))
+      const bool is_folder = fs::is_directory(entry.symlink_status());
+      if (is_folder == (kind == Named::folder) && is_file_of_run(own, is_folder ? name : whole) &&
+          (kind != Named::unfinished || name != whole))
         files.push_back(entry.path());
     }
   };
@@ -64,22 +69,29 @@ fs::path left_there(const RunFolder& folder) {
   return {};
 }
 
+[[noreturn]] void refuse(const fs::path& path, const std::string& why, const std::string& remedy) {
+  refuse_path(path, why + "; " + remedy + ", or name another results folder with --out");
+}
+
+/// A run writes into folders of its own, and replaces files by renaming. The files that a link leads to are
+/// not a run's, whatever their names, and a folder in a file's place is somebody's own.
+void refuse_other_kinds(const RunFolder& folder) {
+  std::vector<fs::path> others = named_as_of_run(folder, Named::folder);
+  for (const auto& [own, pattern] : own_folders)
+    if (const fs::path path = folder.file(own); fs::exists(path) && !fs::is_directory(path))
+      others.push_back(path);
+  if (!others.empty()) refuse(others[0], "is not what a run has by this name", "move it");
+}
+
 /// What is there may only be replaced if it has a run's kinds and can be removed, and if the new run does not
 /// read it.
 void refuse_what_must_stay(const RunFolder& folder, const std::vector<fs::path>& inputs) {
-  const auto refuse = [](const fs::path& path, const std::string& why, const std::string& remedy) {
-    refuse_path(path, why + "; " + remedy + ", or name another results folder with --out");
-  };
-  const std::string no_kind = "is not what a run has by this name";
-  for (const char* own : own_files)
-    if (fs::is_directory(folder.file(own))) refuse(folder.file(own), no_kind, "move it");
-  for (const auto& [own, pattern] : own_folders) {
-    const fs::path path = folder.file(own);
-    if (fs::exists(path) && !fs::is_directory(path)) refuse(path, no_kind, "move it");
-    if (fs::exists(path) && access(path.c_str(), W_OK | X_OK) != 0)  // which removing a file takes
+  refuse_other_kinds(folder);
+  for (const auto& [own, pattern] : own_folders)
+    if (const fs::path path = folder.file(own);
+        fs::exists(path) && access(path.c_str(), W_OK | X_OK) != 0)  // which removing a file takes
       refuse(path, "cannot be written to", "make it writable");
-  }
-  for (const fs::path& file : files_of_run(folder))
+  for (const fs::path& file : named_as_of_run(folder, Named::file))
     for (const fs::path& input : inputs) {
       std::error_code error;
       if (input.is_absolute() && fs::equivalent(input, file, error))  // else a copy that the new run makes
@@ -87,8 +99,6 @@ void refuse_what_must_stay(const RunFolder& folder, const std::vector<fs::path>&
     }
 }
 
-/// A run writes into folders of its own: the files that a link leads to are not a run's, whatever their
-/// names.
 void refuse_linked_folders(const RunFolder& folder) {
   for (const auto& [own, pattern] : own_folders)
     if (const fs::path path = folder.file(own); fs::is_symlink(path))
@@ -144,7 +154,7 @@ void remove_files(const std::vector<fs::path>& files) {
 
 /// Removes the files of an earlier run; those that others have put into its folders stay.
 void clear(const RunFolder& folder) {
-  remove_files(files_of_run(folder));
+  remove_files(named_as_of_run(folder, Named::file));
   for (const auto& [own, pattern] : own_folders) {
     std::error_code error;
     fs::remove(folder.file(own), error);  // if empty
@@ -203,11 +213,12 @@ RunFolder RunFolder::of_run(std::filesystem::path path) {
   RunFolder folder(std::move(path));
   if (!is_of_a_run(folder)) refuse_path(folder.path_, "holds no run; give the results folder of one");
   refuse_linked_folders(folder);
+  refuse_other_kinds(folder);
   folder.lock();
   return folder;
 }
 
-void RunFolder::remove_unfinished() const { remove_files(files_of_run(*this, true)); }
+void RunFolder::remove_unfinished() const { remove_files(named_as_of_run(*this, Named::unfinished)); }
 
 void RunFolder::lock() {
   std::error_code error;

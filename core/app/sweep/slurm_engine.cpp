@@ -117,7 +117,7 @@ void refuse_while_queued(const SweepFolder& folder) {
 SlurmJobs submit(const Sweep& sweep, const SweepFolder& folder, const std::vector<std::size_t>& missing,
                  const SweepOptions& options) {
   const fs::path slurm = fs::absolute(folder.slurm()).lexically_normal(), logs = slurm / "logs";
-  make_folder(logs);
+  for (const fs::path& own : {slurm, logs}) make_folder(own);
   const MemoryEstimate memory(sweep, folder);
   double bytes = 0;
   for (const std::size_t k : missing) bytes = std::max(bytes, 1.2 * memory.bytes(sweep.runs[k]));

@@ -71,11 +71,22 @@ std::vector<RunStatus> SweepFolder::checked_statuses(const Sweep& sweep, int thr
   std::vector<RunStatus> statuses;
   for (const SweepRun& run : sweep.runs) {
     const RunFiles files = this->files(run.folder);
+    for (fs::path part = files.folder; part != path_; part = part.parent_path())
+      if (fs::is_symlink(part))
+        refuse_path(part, "is a link, and a sweep writes into folders of its own; remove it");
     const RunStatus& status = statuses.emplace_back(resolve_status(files, read_status(files)));
-    if (status.starts == 0 && fs::exists(files.folder))
-      refuse_path(
-          files.folder,
-          "is there already, and not from this sweep; move it away, or name another folder with --out");
+    // A status is written before the config, and the log when the run begins. A link is replaced, not
+    // followed.
+    const auto is_foreign = [&](const fs::path& file) {
+      const bool has_begun = status.starts > 0, is_planned = has_begun || fs::exists(files.status());
+      return fs::exists(fs::symlink_status(file)) && !fs::is_symlink(file) &&
+             !(file == files.config() ? is_planned || text_of_file(file) == run.config : has_begun);
+    };
+    for (const fs::path& file : {files.folder, files.config(), files.log()})
+      if (is_foreign(file))
+        refuse_path(
+            file,
+            "is there already, and not from this sweep; move it away, or name another folder with --out");
     if (!status.has_results()) {
       if (!complete_results(files.folder).is_null())
         refuse_path(
@@ -121,7 +132,7 @@ std::vector<std::size_t> SweepFolder::prepare(const Sweep& sweep, int threads, b
     const bool is_other = text_of_file(files.config()) != run.config;
     if (is_other && (status.state == RunState::failed || status.state == RunState::cancelled))
       status.state = RunState::pending;
-    if (status.state != read_status(files).state) write_status(files, status);
+    if (!fs::exists(files.status()) || status.state != read_status(files).state) write_status(files, status);
     if (is_other) write_file(files.config(), run.config);
     const bool stays = status.has_results() || refused_as_expected(run.expect, status) ||
                        (status.state == RunState::failed && !retry_failed);

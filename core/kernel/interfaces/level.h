@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 
 #include "core/kernel/interfaces/element_order.h"
 #include "core/kernel/interfaces/topology.h"
