@@ -3,7 +3,11 @@
 #include <numbers>
 #include <sstream>
 
+#include "core/numerics/mesh_files/io.h"
+#include "core/numerics/patterns/generate.h"
 #include "tests/configs/runs.h"
+
+using namespace drape;
 
 namespace {
 
@@ -119,6 +123,52 @@ TEST_CASE("A schedule of many keys or times is refused by its bounds; one within
       "contact: shapes\nobstacles: [{shape: sphere, radius: 0.1, translate: [0, 0, -1]}]\n";
   CHECK(checked_square(ball + rest_of_experiment + schedule + key("obstacles.0.radius", 40000, "0.1"))
             .exit_code == 0);
+}
+
+TEST_CASE("Pins that follow a fine mesh, and regions that hold many vertices, are found in time") {
+  const auto pins = [](const std::string& list, int count, const std::string& more) {
+    return list + repeated(count, [&](int k) {
+             std::ostringstream line;
+             line << "  - {region: ball, point: [" << k % 70 / 69.0 << ", " << k / 70 % 70 / 69.0 << ", 0], "
+                  << more << "}\n";
+             return line.str();
+           });
+  };
+  const std::string name = "name: large\nlevels: 2\n", cloth = "cloth: {shape: square, side: 1, columns: ";
+  const Scratch folder(name + cloth +
+                       "70, rows: 70}\ncontact: ipc\nobstacles: [{mesh: fine.obj, name: o}]\n" +
+                       pins("pins:\n", 4000, "radius: 1e-4, follow: {obstacle: o}") + rest_of_experiment);
+  TriangleMesh fine = grid({1, 1}, 300, 300, Diagonals::one_way);
+  fine.vertices.col(2).array() -= 0.1;
+  write_mesh(folder / "fine.obj", fine);
+  CHECK(checked(folder).exit_code == 0);
+  for (const std::string list : {"handles:\n", "pins:\n"})
+    CHECK(checked(Scratch(name + cloth + "100, rows: 100}\n" + pins(list, 9900, "radius: 0.01") +
+                          rest_of_experiment))
+              .exit_code == 0);
+  CHECK_THAT(checked_square(pins("pins:\n", 10001, "radius: 0.1") + rest_of_experiment).err,
+             Contains("there are 10001, of at most 10000"));
+  CHECK_THAT(checked_square(pins("handles:\n", 9000, "radius: 1") + rest_of_experiment).err,
+             Contains("pins and handles select vertices 10000000 times and more on all levels together"));
+}
+
+TEST_CASE("Many obstacles are checked in time, or refused") {
+  const auto scene = [](int count, const std::string& contact, const std::string& obstacle) {
+    return "contact: " + contact + "\nobstacles:\n" + repeated(count, [&](int k) {
+             std::ostringstream line;
+             line << "  - {" << obstacle << ", translate: [" << k % 100 / 99.0 << ", " << k / 100 / 99.0
+                  << ", -0.5]}\n";
+             return line.str();
+           });
+  };
+  for (const std::string shape : {"shape: box, size: [0.01, 0.01, 0.01]", "shape: sphere, radius: 0.002"})
+    CHECK(checked_square(scene(10000, "shapes", shape) + rest_of_experiment).exit_code == 0);
+  CHECK(checked_square(
+            scene(5000, "{type: ipc, self_contact: false}", "meshed_shape: box, size: [0.01, 0.01, 0.01]") +
+            rest_of_experiment)
+            .exit_code == 0);
+  CHECK_THAT(checked_square(scene(20000, "shapes", "shape: sphere, radius: 0.002") + rest_of_experiment).err,
+             Contains("\"obstacles\" has 20000 entries, of at most 10000"));
 }
 
 TEST_CASE("Many energies of one kind are checked in time") {

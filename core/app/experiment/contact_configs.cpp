@@ -181,6 +181,12 @@ void make_contacts(Experiment& e, ConfigErrors& errors) {
   for (const ConfigNode& node : written) models.push_back(e.registry->find("contact", node.plugin_name()));
   e.contact_configs.resize(written.size());
   check_models(written, models, errors);
+  constexpr std::size_t most_obstacles = 10'000;
+  if (p.obstacles.size() > most_obstacles)
+    return errors.push_back(
+        {e.location_of("obstacles"), "\"obstacles\" has " + std::to_string(p.obstacles.size()) +
+                                         " entries, of at most " + std::to_string(most_obstacles) +
+                                         "; a mesh can hold many bodies"});
   check_names(p.obstacles, errors);
   check_friction(e, models, errors);
   share_obstacles(*e.registry, p.obstacles, models, e.contact_configs, errors);

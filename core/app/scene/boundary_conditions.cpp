@@ -5,6 +5,7 @@
 #include <stdexcept>
 
 #include "core/app/scene/scene_summary.h"
+#include "core/app/scene/vertex_search.h"
 #include "core/kernel/files/message_text.h"
 #include "core/kernel/files/number_text.h"
 #include "core/kernel/files/string_utils.h"
@@ -62,13 +63,15 @@ class Handles final : public Energy {
 
   std::unique_ptr<BoundEnergy> bind(const Level& level, const Material& material) const override {
     std::vector<PositionPenalty::Term> terms;
+    const VertexSearch search(level, coarsest_, handles_.size()),
+        coarse_search(coarsest_, coarsest_, handles_.size());
     for (std::size_t k = 0; k < handles_.size(); ++k) {
       const HandleParameters& handle = handles_[k];
-      const std::vector<int> own = selected_vertices(handle, level, coarsest_);
+      const std::vector<int> own = search.selected(handle);
       require_vertices(own, "handle " + std::to_string(k), level);
       double own_area = 0, coarse_area = 0;
       for (int v : own) own_area += level.vertex_area[v];
-      for (int v : selected_vertices(handle, coarsest_, coarsest_)) coarse_area += coarsest_.vertex_area[v];
+      for (int v : coarse_search.selected(handle)) coarse_area += coarsest_.vertex_area[v];
       const double stiffness = handle.stiffness.value_or(material.mean_membrane_modulus());
       for (int v : own)
         terms.push_back(
@@ -111,8 +114,9 @@ void add_conflicts(const ExperimentParameters& p, LoadPart part, const Level& le
   std::vector<std::vector<int>> holders(level.vertex_count());
   const int count = static_cast<int>(part == LoadPart::pins ? p.pins.size() : p.handles.size());
   const auto target = [&](int k, int v) { return target_of(selection(p, part, k), v, level, placed); };
+  const VertexSearch search(level, coarsest, count);
   for (int k = 0; k < count; ++k)
-    for (const int v : selected_vertices(selection(p, part, k), level, coarsest)) {
+    for (const int v : search.selected(selection(p, part, k))) {
       const Eigen::Vector3d own = target(k, v);
       if (conflicts.size() < most && !holders[v].empty() && differ(own, target(holders[v][0], v), diagonal))
         for (const int other : holders[v])
@@ -124,7 +128,8 @@ void add_conflicts(const ExperimentParameters& p, LoadPart part, const Level& le
 
 /// Appends the errors of check_selections for pin or handle k.
 void check_selection(const ExperimentParameters& parameters, LoadPart part, std::size_t k,
-                     const Location& where, const std::vector<Level>& levels, ConfigErrors& errors) {
+                     const Location& where, const std::vector<Level>& levels,
+                     const std::vector<VertexSearch>& searches, long& total, ConfigErrors& errors) {
   const VertexSelection& p = selection(parameters, part, k);
   const Level& coarsest = levels[0];
   const std::string name = name_of(parameters, part, k);
@@ -142,7 +147,7 @@ void check_selection(const ExperimentParameters& parameters, LoadPart part, std:
   if (p.region == "seam" && !coarsest.rest.sewing)
     return errors.push_back(
         {where, name + " selects seams, which only a cloth of flat pieces has (\"rest: uv\" in cloth)"});
-  if (by_index ? p.vertices.empty() : selected_vertices(p, coarsest, coarsest).empty())
+  if (by_index ? p.vertices.empty() : searches[0].selected(p).empty())
     errors.push_back(
         {where, name + " selects no vertex of the coarsest level; " +
                     (by_index ? "list some under \"vertices\""
@@ -150,14 +155,17 @@ void check_selection(const ExperimentParameters& parameters, LoadPart part, std:
                                     point_text(coarsest.rest.vertices.colwise().minCoeff()) + " to " +
                                     point_text(coarsest.rest.vertices.colwise().maxCoeff()) + " m")});
   else if (!by_index)
-    for (const Level& level : levels)
-      if (selected_vertices(p, level, coarsest).empty()) {
+    for (const Level& level : levels) {
+      const std::vector<int> selected = searches[level.index].selected(p);
+      total += std::ssize(selected);
+      if (selected.empty()) {
         errors.push_back({where, name + " selects vertices of the coarsest level, but none of level " +
                                      std::to_string(level.index) +
                                      ", whose rest positions the refiner moves; widen its region, or select "
                                      "by \"nearest\" or \"vertices\""});
         break;
       }
+    }
   for (int v : p.vertices)
     if (by_index && beyond(v))
       errors.push_back({where, name + " names vertex " + std::to_string(v) + ", but those of the " +
@@ -181,8 +189,21 @@ Eigen::Vector3d StartParameters::transformed(const Eigen::Vector3d& rest, double
 
 void check_selections(const Experiment& e, const ExperimentParameters& load, const std::vector<Level>& levels,
                       ConfigErrors& errors, const KeyTarget* only) {
+  constexpr std::size_t most = 10'000;  // pins and handles
+  constexpr long most_in_all = 10'000'000;
+  const std::size_t count = load.pins.size() + load.handles.size();
+  std::vector<VertexSearch> searches;
+  for (const Level& level : levels) searches.emplace_back(level, levels[0], only ? 1 : count);
+  long total = 0;
   for_each_condition(e, only, [&](LoadPart part, std::size_t k, const std::vector<ConfigNode>& written) {
-    check_selection(load, part, k, written[k].where, levels, errors);
+    if (k < most && total <= most_in_all)
+      check_selection(load, part, k, written[k].where, levels, searches, total, errors);
+    else if (errors.empty())
+      errors.push_back({written[k].where,
+                        k < most ? "pins and handles select vertices " + std::to_string(most_in_all) +
+                                       " times and more on all levels together; let fewer select the same"
+                                 : "there are " + std::to_string(written.size()) + ", of at most " +
+                                       std::to_string(most) + "; a pin can hold many vertices"});
   });
 }
 
@@ -215,8 +236,9 @@ std::vector<DirichletVertex> dirichlet_vertices(const ExperimentParameters& p, c
                                                 const Level& coarsest, const Positions& placed) {
   const double diagonal = bounding_box_diagonal(level.rest.vertices);
   std::vector<DirichletVertex> by_vertex(level.vertex_count(), {-1, {}, 0});
+  const VertexSearch search(level, coarsest, p.pins.size());
   for (std::size_t k = 0; k < p.pins.size(); ++k) {
-    const std::vector<int> selected = selected_vertices(p.pins[k], level, coarsest);
+    const std::vector<int> selected = search.selected(p.pins[k]);
     require_vertices(selected, "pin " + std::to_string(k), level);
     for (const int v : selected) {
       const Eigen::Vector3d target = target_of(p.pins[k], v, level, placed);

@@ -7,11 +7,6 @@
 
 namespace drape {
 
-/// The selected vertices of a level, ascending. "nearest" selects the vertex of the coarsest level that is
-/// nearest to the point, and on finer levels its child, which has the same index.
-std::vector<int> selected_vertices(const VertexSelection& selection, const Level& level,
-                                   const Level& coarsest);
-
 /// Appends an error for every pin and handle that selects no vertex of a level, or one that does not exist,
 /// under a load with these parameters. With `only`, checks only the pin or handle that this target of a key
 /// names.

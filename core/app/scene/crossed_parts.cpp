@@ -6,9 +6,9 @@
 #include <limits>
 
 #include "core/app/scene/scene.h"
-#include "core/numerics/collision_detection/closest.h"
 #include "core/numerics/collision_detection/components.h"
 #include "core/numerics/collision_detection/intersections.h"
+#include "core/numerics/collision_detection/surface_search.h"
 #include "core/numerics/mesh/disjoint_sets.h"
 #include "core/numerics/mesh/mesh_faults.h"
 
@@ -30,23 +30,6 @@ Vector3d corner(const TriangleMesh& mesh, Eigen::Index t, int k) {
 Vector3d normal_of(const TriangleMesh& mesh, Eigen::Index t) {
   const Vector3d a = corner(mesh, t, 0);
   return (corner(mesh, t, 1) - a).cross(corner(mesh, t, 2) - a).normalized();
-}
-
-/// The nearest point of a mesh.
-struct NearestPoint {
-  Vector3d way;  ///< there from p [m]
-  bool behind;   ///< whether p is behind the triangle
-};
-
-NearestPoint nearest_point(const TriangleMesh& mesh, const Vector3d& p) {
-  NearestPoint nearest{Vector3d::Constant(std::numeric_limits<double>::infinity()), false};
-  for (Eigen::Index t = 0; t < mesh.triangles.rows(); ++t) {
-    const Vector3d a = corner(mesh, t, 0), b = corner(mesh, t, 1), c = corner(mesh, t, 2);
-    const Eigen::Vector4d w = closest_point_triangle(p, a, b, c).c;
-    const Vector3d way = -(w[0] * p + w[1] * a + w[2] * b + w[3] * c);
-    if (way.norm() < nearest.way.norm()) nearest = {way, way.dot(normal_of(mesh, t)) > 0};
-  }
-  return nearest;
 }
 
 /// Whether the triangles of a closed mesh face inwards.
@@ -94,14 +77,18 @@ void CrossedParts::add(const Level& level, const TriangleMesh& obstacle) {
   const Positions at_ones = start_(ones, Eigen::all);
   const std::vector<char> within = are_inside(at_ones, obstacle),
                           inwards = are_inside(at_ones, obstacle, true);
+  const SurfaceSearch surface(obstacle);
+  const auto is_behind = [&](const Vector3d& p) {
+    const NearestPoint near = surface.nearest(p);
+    return near.triangle >= 0 && near.offset.dot(normal_of(obstacle, near.triangle)) < 0;
+  };
   std::vector<char> behind(vertices, 0);
   for (std::size_t i = 0; i < ones.size(); ++i)
-    behind[ones[i]] = closed ? is_room != (within[i] || inwards[i])
-                             : nearest_point(obstacle, at_ones.row(i).transpose()).behind;
+    behind[ones[i]] = closed ? is_room != (within[i] || inwards[i]) : is_behind(at_ones.row(i).transpose());
   for (int v = 0; v < vertices; ++v) {
     behind[v] = behind[sides.find(v)];
     if (!behind[v]) continue;
-    const Vector3d way = nearest_point(obstacle, start_.row(v).transpose()).way;
+    const Vector3d way = -surface.nearest(start_.row(v).transpose()).offset;
     depth_ = std::max(depth_, way.norm());
     cuts(way.normalized());
   }

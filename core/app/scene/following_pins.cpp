@@ -1,13 +1,15 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <optional>
 #include <stdexcept>
 
 #include "core/app/scene/boundary_conditions.h"
+#include "core/app/scene/vertex_search.h"
 #include "core/kernel/files/message_text.h"
 #include "core/kernel/files/string_utils.h"
-#include "core/numerics/collision_detection/closest.h"
+#include "core/numerics/collision_detection/surface_search.h"
 #include "core/numerics/mesh_files/io.h"
 
 namespace drape {
@@ -32,49 +34,39 @@ Eigen::Matrix3d frame_of(const Eigen::Matrix3d& corners) {
 
 std::string name_of(const std::string& obstacle) { return "obstacle \"" + excerpt(obstacle) + "\""; }
 
-/// An obstacle's triangles that may be followed, for searches of the nearest.
-class FollowedSurface {
- public:
-  /// Of all triangles, or of those with one of these vertices.
-  FollowedSurface(const TriangleMesh& mesh, const std::vector<int>& vertices) : mesh_(mesh) {
-    std::vector<char> named(mesh.vertices.rows(), vertices.empty());
-    for (const int v : vertices) named[v] = 1;
-    for (Eigen::Index t = 0; t < mesh.triangles.rows(); ++t) {
-      const auto v = mesh.triangles.row(t);
-      if (!named[v[0]] && !named[v[1]] && !named[v[2]]) continue;
-      const Eigen::Matrix3d corners = corners_of(mesh, t);
-      const Eigen::Vector3d centre = corners.rowwise().mean();
-      spheres_.push_back({t, centre, (corners.colwise() - centre).colwise().norm().maxCoeff()});
-    }
+/// An obstacle's mesh on a level, for searches of the nearest triangle.
+struct FollowedSurface {
+  explicit FollowedSurface(const TriangleMesh& mesh) : mesh(mesh), all(mesh) {
+    around = AdjacencyList::of(static_cast<int>(mesh.vertices.rows()), [&](const auto& add) {
+      for (int t = 0; t < mesh.triangles.rows(); ++t)
+        for (int k = 0; k < 3; ++k) add(mesh.triangles(t, k), t);
+    });
   }
 
-  /// Attaches a vertex with this target to the nearest triangle, the first of equally near ones. Returns its
-  /// distance [m]; +∞ without triangles.
-  double attach(const Eigen::Vector3d& target, FollowingVertex& vertex) const {
-    double least = INFINITY;
-    for (const Sphere& sphere : spheres_) {
-      if ((target - sphere.centre).norm() - sphere.radius > least) continue;
-      const Eigen::Matrix3d corners = corners_of(mesh_, sphere.triangle);
-      const Closest closest = closest_point_triangle(target, corners.col(0), corners.col(1), corners.col(2));
-      const Eigen::Vector3d weights = -closest.c.tail<3>(), offset = target - corners * weights;
-      if (!(offset.norm() < least)) continue;
-      least = offset.norm();
-      vertex.corners = mesh_.triangles.row(sphere.triangle);
-      vertex.first = corners;
-      vertex.weights = weights;
-      vertex.offset = frame_of(corners).transpose() * offset;
-    }
-    return least;
+  /// Attaches a vertex with this target to the nearest triangle of the search. Returns its distance [m].
+  double attach(const SurfaceSearch& search, const Eigen::Vector3d& target, FollowingVertex& vertex) const {
+    const NearestPoint near = search.nearest(target);
+    if (near.triangle < 0) return INFINITY;
+    vertex.corners = mesh.triangles.row(near.triangle);
+    vertex.first = corners_of(mesh, near.triangle);
+    vertex.weights = near.weights;
+    vertex.offset = frame_of(vertex.first).transpose() * near.offset;
+    return near.offset.norm();
   }
 
- private:
-  struct Sphere {
-    Eigen::Index triangle;
-    Eigen::Vector3d centre;
-    double radius;
-  };
-  const TriangleMesh& mesh_;
-  std::vector<Sphere> spheres_;
+  /// Of the triangles with one of these vertices.
+  SurfaceSearch part(const std::vector<int>& vertices) const {
+    std::vector<int> triangles;
+    for (const int v : vertices)
+      for (const int t : around.row(v)) triangles.push_back(t);
+    std::ranges::sort(triangles);
+    triangles.erase(std::unique(triangles.begin(), triangles.end()), triangles.end());
+    return {mesh, std::move(triangles)};
+  }
+
+  const TriangleMesh& mesh;
+  SurfaceSearch all;
+  AdjacencyList around;  // of each vertex its triangles
 };
 
 std::string unknown_obstacle(const Experiment& e, const std::string& obstacle) {
@@ -108,8 +100,9 @@ std::vector<std::string> conflicts(const Experiment& e, const Level& level, cons
                  ", but both select vertex " + std::to_string(vertex) + " of level " +
                  std::to_string(level.index) + "; let their regions share no vertex";
   };
+  const VertexSearch search(level, coarsest, pins.size());
   for (int k = 0; k < std::ssize(pins); ++k)
-    for (const int v : selected_vertices(pins[k], level, coarsest)) {
+    for (const int v : search.selected(pins[k])) {
       const int j = first[v] < 0 ? first[v] = k : first[v];
       if (followed[j] == followed[k] && pins[j].follow.vertices == pins[k].follow.vertices) continue;
       add(k, j, v);
@@ -118,61 +111,87 @@ std::vector<std::string> conflicts(const Experiment& e, const Level& level, cons
   return found;
 }
 
-/// Attaches a pin's vertices on one level to the mesh of the obstacle at this place; returns the first fault,
-/// empty without one.
-std::string attach(const Experiment& e, int pin, const Scene& scene, const LevelModel& model,
-                   const TriangleMesh& mesh, Eigen::Index place, const std::string& conflict,
-                   FollowingVertices& attached) {
-  const FollowParameters& follow = e.parameters.pins[pin].follow;
-  const std::vector<TriangleMesh> finest = obstacles_of(scene.models.back()->contacts());
-  if (!follow.vertices.empty() && mesh.vertices.rows() != finest[place].vertices.rows())
-    return "has cages, which replace it on coarse levels, so \"vertices\" name none of theirs; remove them";
-  const ConfigNode& obstacle = e.resolved.find("obstacles")->items[*followed_by(e, pin)];
-  const ConfigNode *file = obstacle.find("mesh"), *frames = obstacle.find("animation");
-  if (frames && !frames->items.empty()) file = &frames->items[0];
-  if (!follow.vertices.empty() && file && !file->scalar.empty() &&
-      read_surface(file->scalar).vertices.rows() != mesh.vertices.rows())
-    return "loses vertices of its file that are in no triangle, or at the place of others, so \"vertices\" "
-           "would name others; remove the former from the file, and join the latter";
-  for (const int v : follow.vertices)
-    if (v >= mesh.vertices.rows())
-      return "has no vertex " + std::to_string(v) + "; they go from 0 to " +
-             std::to_string(mesh.vertices.rows() - 1);
-  if (!conflict.empty()) return conflict;
-  const FollowedSurface surface(mesh, follow.vertices);
-  const double size = bounding_box_diagonal(model.level().rest.vertices);
-  for (const DirichletVertex& d : model.dirichlet()) {
-    if (d.pin != pin) continue;
-    FollowingVertex vertex{pin, d.vertex, place, follow.obstacle};
-    const double distance = surface.attach(d.target, vertex);
-    if (distance > size)
-      return "is " + three_digits(distance) + " m away from vertex " + std::to_string(d.vertex) +
-             " of level " + std::to_string(model.level().index) +
-             ", farther than the cloth is large; place the obstacle or the start so that it is near";
-    attached.push_back(std::move(vertex));
+/// Attaches pins to the obstacles that they follow.
+class Follower {
+ public:
+  Follower(const Experiment& e, const Scene& scene) : e_(e), scene_(scene), order_(e.obstacle_order()) {
+    for (const Level& level : scene.hierarchy.levels)
+      conflicts_.push_back(conflicts(e, level, scene.hierarchy.levels[0]));
+    for (const auto& model : scene.models) {
+      meshes_.push_back(obstacles_of(model->contacts()));
+      std::vector<std::vector<DirichletVertex>>& own = held_.emplace_back(e.parameters.pins.size());
+      for (const DirichletVertex& d : model->dirichlet()) own[d.pin].push_back(d);
+    }
   }
-  return "";
-}
 
-/// The same on every level.
-std::string attach(const Experiment& e, const Scene& scene, int pin,
-                   const std::vector<std::vector<std::string>>& conflicts,
-                   std::vector<FollowingVertices>& levels) {
-  const std::string& obstacle = e.parameters.pins[pin].follow.obstacle;
-  const std::optional<std::size_t> index = followed_by(e, pin);
-  if (!index) return unknown_obstacle(e, obstacle);
-  const std::vector<std::size_t> order = e.obstacle_order();
-  const Eigen::Index place = std::find(order.begin(), order.end(), *index) - order.begin();
-  for (std::size_t l = 0; l < levels.size(); ++l) {
-    const LevelModel& model = *scene.models[l];
-    const std::vector<TriangleMesh> meshes = obstacles_of(model.contacts());
-    if (meshes.size() != order.size() || meshes[place].triangles.rows() == 0)
-      return "has no surface that a pin can follow: its contact model shows no mesh of it";
-    std::string fault = attach(e, pin, scene, model, meshes[place], place, conflicts[l][pin], levels[l]);
-    if (!fault.empty()) return fault;
+  /// Attaches a pin's vertices on every level; returns the first fault, empty without one.
+  std::string attach(int pin, std::vector<FollowingVertices>& levels) {
+    const std::string& obstacle = e_.parameters.pins[pin].follow.obstacle;
+    const std::optional<std::size_t> index = followed_by(e_, pin);
+    if (!index) return unknown_obstacle(e_, obstacle);
+    const Eigen::Index place = std::ranges::find(order_, *index) - order_.begin();
+    for (std::size_t l = 0; l < levels.size(); ++l) {
+      if (meshes_[l].size() != order_.size() || meshes_[l][place].triangles.rows() == 0)
+        return "has no surface that a pin can follow: its contact model shows no mesh of it";
+      std::string fault = attach(pin, l, place, levels[l]);
+      if (!fault.empty()) return fault;
+    }
+    return "";
   }
-  return "";
-}
+
+ private:
+  std::string attach(int pin, std::size_t l, Eigen::Index place, FollowingVertices& attached) {
+    const FollowParameters& follow = e_.parameters.pins[pin].follow;
+    const TriangleMesh& mesh = meshes_[l][place];
+    if (!follow.vertices.empty() && mesh.vertices.rows() != meshes_.back()[place].vertices.rows())
+      return "has cages, which replace it on coarse levels, so \"vertices\" name none of theirs; remove them";
+    if (!follow.vertices.empty() && vertices_of_file(pin, mesh) != mesh.vertices.rows())
+      return "loses vertices of its file that are in no triangle, or at the place of others, so \"vertices\" "
+             "would name others; remove the former from the file, and join the latter";
+    for (const int v : follow.vertices)
+      if (v >= mesh.vertices.rows())
+        return "has no vertex " + std::to_string(v) + "; they go from 0 to " +
+               std::to_string(mesh.vertices.rows() - 1);
+    if (!conflicts_[l][pin].empty()) return conflicts_[l][pin];
+    const FollowedSurface& surface = surfaces_.try_emplace({l, place}, mesh).first->second;
+    const SurfaceSearch part = surface.part(follow.vertices),
+                        &search = follow.vertices.empty() ? surface.all : part;
+    const LevelModel& model = *scene_.models[l];
+    const double size = bounding_box_diagonal(model.level().rest.vertices);
+    for (const DirichletVertex& d : held_[l][pin]) {
+      FollowingVertex vertex{pin, d.vertex, place, follow.obstacle};
+      const double distance = surface.attach(search, d.target, vertex);
+      if (distance > size)
+        return "is " + three_digits(distance) + " m away from vertex " + std::to_string(d.vertex) +
+               " of level " + std::to_string(model.level().index) +
+               ", farther than the cloth is large; place the obstacle or the start so that it is near";
+      attached.push_back(std::move(vertex));
+    }
+    return "";
+  }
+
+  /// The number of vertices in the file of the obstacle that the pin follows; without one, that of its mesh.
+  Eigen::Index vertices_of_file(int pin, const TriangleMesh& mesh) {
+    const ConfigNode& obstacle = e_.resolved.find("obstacles")->items[*followed_by(e_, pin)];
+    const ConfigNode *file = obstacle.find("mesh"), *frames = obstacle.find("animation");
+    if (frames && !frames->items.empty()) file = &frames->items[0];
+    if (!file || file->scalar.empty()) return mesh.vertices.rows();
+    const auto [known, is_new] = in_files_.try_emplace(file->scalar, 0);
+    if (is_new) known->second = read_surface(file->scalar).vertices.rows();
+    return known->second;
+  }
+
+  const Experiment& e_;
+  const Scene& scene_;
+  const std::vector<std::size_t> order_;
+  // On each level: for each pin another one that wants its vertices elsewhere, the obstacles' meshes, and the
+  // vertices that each pin holds.
+  std::vector<std::vector<std::string>> conflicts_;
+  std::vector<std::vector<TriangleMesh>> meshes_;
+  std::vector<std::vector<std::vector<DirichletVertex>>> held_;
+  std::map<std::pair<std::size_t, Eigen::Index>, FollowedSurface> surfaces_;  // of a level and an obstacle
+  std::map<std::string, Eigen::Index> in_files_;
+};
 
 }  // namespace
 
@@ -182,13 +201,11 @@ std::vector<FollowingVertices> following_vertices(const Experiment& e, const Sce
   const bool any = std::ranges::any_of(e.parameters.pins,
                                        [](const PinParameters& pin) { return !pin.follow.obstacle.empty(); });
   if (!any) return levels;
-  std::vector<std::vector<std::string>> others;  // on each level, for each pin
-  for (const Level& level : scene.hierarchy.levels)
-    others.push_back(conflicts(e, level, scene.hierarchy.levels[0]));
+  Follower follower(e, scene);
   for (std::size_t k = 0; k < e.parameters.pins.size(); ++k) {
     const FollowParameters& follow = e.parameters.pins[k].follow;
     if (follow.obstacle.empty()) continue;
-    const std::string fault = attach(e, scene, static_cast<int>(k), others, levels);
+    const std::string fault = follower.attach(static_cast<int>(k), levels);
     if (fault.empty()) continue;
     errors.push_back(
         {e.source.find("pins")->items[k].where_of("follow"),

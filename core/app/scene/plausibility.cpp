@@ -3,6 +3,7 @@
 
 #include "core/app/scene/boundary_conditions.h"
 #include "core/app/scene/scene_summary.h"
+#include "core/app/scene/vertex_search.h"
 #include "core/numerics/mesh_files/io.h"
 #include "core/numerics/solve/start_fault.h"
 
@@ -177,10 +178,11 @@ void check_start(const Experiment& e, const SceneSummary& s, Warnings& warnings)
 template <class Selections>
 void check_nearest(const Experiment& e, const std::string& key, const Selections& selections,
                    const Level& coarsest, double edge, Warnings& warnings) {
+  const VertexSearch search(coarsest, coarsest, selections.size());
   for (std::size_t k = 0; k < selections.size(); ++k) {
     const VertexSelection& selection = selections[k];
     if (selection.region != "nearest") continue;
-    const int v = selected_vertices(selection, coarsest, coarsest).front();
+    const int v = search.selected(selection).front();
     const Eigen::Vector3d at = coarsest.rest.vertices.row(v);
     const double distance = (at - selection.point).norm();
     if (distance > 2 * edge)

@@ -183,13 +183,19 @@ class TranslationSearch {
 }  // namespace
 
 std::vector<char> are_inside(const Positions& points, const TriangleMesh& mesh, bool facing_inwards) {
+  std::vector<char> inside;
+  const Eigen::RowVector3d lower = mesh.vertices.colwise().minCoeff(),
+                           upper = mesh.vertices.colwise().maxCoeff();
+  for (const auto& p : points.rowwise())
+    inside.push_back((p.array() >= lower.array()).all() && (p.array() <= upper.array()).all());
+  if (std::ranges::count(inside, 1) == 0) return inside;
   // What is open encloses what it surrounds almost wholly, as a scan with holes does: a cloth may lie in a
   // bowl.
   const bool open = !border_half_edges(mesh.triangles, static_cast<int>(mesh.vertices.rows())).empty();
   const double enclosed = open ? 0.9 : 0.5;
-  std::vector<char> inside;
-  for (const auto& p : points.rowwise())
-    inside.push_back((facing_inwards ? -1 : 1) * winding_number(mesh, p.transpose()) > enclosed);
+  for (Eigen::Index i = 0; i < points.rows(); ++i)
+    if (inside[i])
+      inside[i] = (facing_inwards ? -1 : 1) * winding_number(mesh, points.row(i).transpose()) > enclosed;
   return inside;
 }
 

@@ -27,6 +27,16 @@ struct Box {
     return static_cast<bool>((lower[0] <= b.upper[0]) & (b.lower[0] <= upper[0]) & (lower[1] <= b.upper[1]) &
                              (b.lower[1] <= upper[1]) & (lower[2] <= b.upper[2]) & (b.lower[2] <= upper[2]));
   }
+  Eigen::Vector3d centre() const { return 0.5 * (corner(lower) + corner(upper)); }
+  /// Of the ball about the centre that holds the box [m].
+  double radius() const { return 0.5 * (corner(upper) - corner(lower)).norm(); }
+  /// To the nearest points of both boxes [m²]; 0 where they overlap.
+  double squared_distance(const Box& b) const {
+    return (corner(b.lower) - corner(upper))
+        .cwiseMax(corner(lower) - corner(b.upper))
+        .cwiseMax(0)
+        .squaredNorm();
+  }
   /// Half the surface area [m²]; 0 if empty.
   double half_area() const {
     if (is_empty()) return 0;
@@ -47,6 +57,9 @@ struct Box {
     }
     return box;
   }
+
+ private:
+  static Eigen::Vector3d corner(const float* c) { return {c[0], c[1], c[2]}; }
 };
 
 }  // namespace drape

@@ -55,6 +55,11 @@ class BoxTree {
   template <class Found>
   void overlaps(const BoxTree& other, int run, const Found& found) const;
 
+  /// Calls visit(i) for each box i whose distance(box) is at most `reach`, which visit returns anew: a search
+  /// for the nearest shrinks it. A box's distance must not be less than that of one that holds it.
+  template <class Distance, class Visit>
+  void visit_near(double reach, const Distance& distance, const Visit& visit) const;
+
  private:
   template <bool self, class Found>
   void search(const BoxTree& other, int run, const Found& found) const;
@@ -131,6 +136,30 @@ void BoxTree::overlaps(const BoxTree& other, int run, const Found& found) const 
     search<true>(other, run, found);
   else
     search<false>(other, run, found);
+}
+
+template <class Distance, class Visit>
+void BoxTree::visit_near(double reach, const Distance& distance, const Visit& visit) const {
+  struct Node {
+    double distance;
+    int level, index;  // a group's, or at level -1 a box's
+  } stack[8 * 12];
+  int depth = 0;
+  if (size() > 0) stack[depth++] = {-Box::infinity, height() - 1, 0};
+  while (depth > 0) {
+    const Node at = stack[--depth];
+    if (!(at.distance <= reach)) continue;
+    if (at.level < 0) {
+      reach = visit(order_[at.index]);
+      continue;
+    }
+    const int first = depth;
+    for (int k = 0; k < 8; ++k)
+      if (const Box box = levels_[at.level][at.index].box(k); !box.is_empty())
+        stack[depth++] = {distance(box), at.level - 1, 8 * at.index + k};
+    std::sort(stack + first, stack + depth,
+              [](const Node& a, const Node& b) { return a.distance > b.distance; });
+  }
 }
 
 /// Descends from the other's root to groups of the run's level.

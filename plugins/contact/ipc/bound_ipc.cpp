@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "core/numerics/collision_detection/intersections.h"
+#include "core/numerics/collision_detection/surface_search.h"
 #include "core/numerics/contact/contact_kernel.h"
 #include "core/numerics/contact/contact_stack.h"
 #include "core/numerics/contact/surface_contacts.h"
@@ -188,9 +189,10 @@ SmallestGap BoundIpc::smallest_gap(const Positions& x) const {
 
 std::vector<ObstacleGap> BoundIpc::obstacle_gaps(const Positions& x) const {
   const TriangleMesh cloth{x, cloth_.triangles};
+  const SurfaceSearch near_cloth(cloth);
   std::vector<ObstacleGap> gaps;
   for (const Obstacle& body : obstacles_.bodies) {
-    const Eigen::Vector3d connection = shortest_connection(cloth, body.mesh);
+    const Eigen::Vector3d connection = shortest_connection(near_cloth, SurfaceSearch(body.mesh));
     gaps.push_back({body.name, connection.norm(), connection.normalized()});
   }
   return gaps;
@@ -218,10 +220,17 @@ std::vector<Intersection> BoundIpc::intersections(const Positions& x) const {
     for (const TrianglePair& pair : self_intersections(cloth))
       found.push_back({"cloth triangle " + std::to_string(pair.first),
                        "cloth triangle " + std::to_string(pair.second), pair.where});
+  std::vector<std::pair<const Obstacle*, int>> owners;  // of each triangle of all, with its number there
   for (const Obstacle& body : obstacles_.bodies)
-    for (const TrianglePair& pair : drape::intersections(cloth, body.mesh))
-      found.push_back({"cloth triangle " + std::to_string(pair.first),
-                       body.name + " triangle " + std::to_string(pair.second), pair.where});
+    for (int t = 0; t < body.mesh.triangles.rows(); ++t) owners.emplace_back(&body, t);
+  std::vector<TrianglePair> pairs =
+      drape::intersections(cloth, {obstacles_.vertices, obstacles_.surface.triangles});
+  std::ranges::stable_sort(pairs, {}, [&](const TrianglePair& pair) { return owners[pair.second].first; });
+  for (const TrianglePair& pair : pairs) {
+    const auto [body, number] = owners[pair.second];
+    found.push_back({"cloth triangle " + std::to_string(pair.first),
+                     body->name + " triangle " + std::to_string(number), pair.where});
+  }
   return found;
 }
 

@@ -210,11 +210,12 @@ Obstacle Obstacle::of(const ObstacleParameters& p, int number, const ObstacleMes
 Obstacles Obstacles::of(std::vector<Obstacle> bodies) {
   Obstacles all;
   all.first_vertex = {0};
+  for (const Obstacle& body : bodies)
+    all.first_vertex.push_back(all.first_vertex.back() + static_cast<int>(body.mesh.vertices.rows()));
+  all.vertices.resize(all.first_vertex.back(), 3);
   for (const Obstacle& body : bodies) {
-    const int n = all.first_vertex.back(), m = static_cast<int>(body.mesh.vertices.rows());
-    all.vertices.conservativeResize(n + m, 3);
-    all.vertices.bottomRows(m) = body.mesh.vertices;
-    all.first_vertex.push_back(n + m);
+    all.vertices.middleRows(all.first_vertex[&body - bodies.data()], body.mesh.vertices.rows()) =
+        body.mesh.vertices;
     all.body_friction.push_back(body.friction);
     all.surface.append(Surface::of(body.mesh, body.geometry.frames[0]->topology));
   }

@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <limits>
 #include <stdexcept>
 #include <utility>
 
@@ -136,13 +135,10 @@ class BoundShapes final : public BoundContact {
   }
 
   std::vector<ObstacleGap> obstacle_gaps(const Positions& x) const override {
+    const BoxTree triangles = tree_of_triangles(*scene_, x, x);
     std::vector<ObstacleGap> gaps;
     for (const Solid& solid : scene_->solids) {
-      SeparatingPlane nearest{Eigen::Vector3d::UnitZ(), std::numeric_limits<double>::infinity()};
-      for (int t = 0; t < scene_->cloth.triangles.rows(); ++t) {
-        const SeparatingPlane plane = separate(solid, scene_->corners(t, x));
-        if (plane.separation < nearest.separation) nearest = plane;
-      }
+      const SeparatingPlane nearest = nearest_triangle(*scene_, solid, triangles, x);
       gaps.push_back({solid.name, nearest.separation, nearest.normal});
     }
     return gaps;

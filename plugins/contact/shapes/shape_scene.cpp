@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 
 #include "core/kernel/threads/parallel.h"
@@ -33,6 +34,12 @@ Ball ball_of(const int* vertices, int count, const Positions& x0, const Position
   return ball;
 }
 
+/// Below the distance of any ball in the box from the solid [m], since distances grow no faster than lengths.
+double distance_bound(const Solid& solid, const Box& box) {
+  constexpr double rounding = 1e-6;
+  return solid.distance(box.centre()) - (1 + rounding) * box.radius();
+}
+
 /// Searches the candidates of one solid.
 class Finder {
  public:
@@ -54,12 +61,25 @@ class Finder {
     return parallel_collect<int>(static_cast<int>(among.size()), grain, test);
   }
 
+  /// The same of all, found in a tree of their boxes.
+  std::vector<int> triangles_near(const BoxTree& all) const {
+    std::vector<int> near;
+    all.visit_near(
+        scene_.barrier.dhat, [&](const Box& box) { return distance_bound(solid_, box); },
+        [&](int i) {
+          if (is_near(ball_of(&scene_.cloth.triangles(i, 0), 3, x0_, x1_))) near.push_back(i);
+          return scene_.barrier.dhat;
+        });
+    std::ranges::sort(near);
+    return near;
+  }
+
   std::vector<int> vertices_of(const std::vector<int>& triangles) const {
-    return elements_near(triangles, scene_.cloth.triangles, static_cast<int>(x0_.rows()),
+    return elements_near(triangles, scene_.cloth.triangles,
                          [&](int i) { return is_near(ball_of(&i, 1, x0_, x1_)); });
   }
   std::vector<int> edges_of(const std::vector<int>& triangles) const {
-    return elements_near(triangles, scene_.cloth.triangle_edges, static_cast<int>(scene_.cloth.edges.rows()),
+    return elements_near(triangles, scene_.cloth.triangle_edges,
                          [&](int i) { return is_near(ball_of(&scene_.cloth.edges(i, 0), 2, x0_, x1_)); });
   }
 
@@ -134,16 +154,16 @@ class Finder {
     return std::clamp(features_.side / length, 1.0 / features_.sides, 1.0);
   }
 
-  /// The triangles' vertices or edges, of which there are `count`, that are near; ascending, each once.
+  /// The triangles' vertices or edges that are near; ascending, each once.
   template <class IsNear>
   static std::vector<int> elements_near(const std::vector<int>& triangles, const Triangles& corners,
-                                        int count, const IsNear& is_near) {
-    std::vector<char> marks(count);
-    for (const int i : triangles)
-      for (int k = 0; k < 3; ++k) marks[corners(i, k)] = 1;
+                                        const IsNear& is_near) {
     std::vector<int> result;
-    for (int i = 0; i < count; ++i)
-      if (marks[i] && is_near(i)) result.push_back(i);
+    for (const int i : triangles)
+      for (int k = 0; k < 3; ++k) result.push_back(corners(i, k));
+    std::ranges::sort(result);
+    result.erase(std::unique(result.begin(), result.end()), result.end());
+    std::erase_if(result, [&](int i) { return !is_near(i); });
     return result;
   }
 
@@ -181,13 +201,45 @@ ShapeScene ShapeScene::of(const Level& level, const std::vector<Solid>& solids,
   return s;
 }
 
+BoxTree tree_of_triangles(const ShapeScene& scene, const Positions& x0, const Positions& x1) {
+  std::vector<Box> boxes(scene.cloth.triangles.rows());
+  parallel_for(static_cast<int>(boxes.size()), grain, [&](int begin, int end) {
+    for (int i = begin; i < end; ++i) {
+      const Ball ball = ball_of(&scene.cloth.triangles(i, 0), 3, x0, x1);
+      boxes[i] = Box::around(ball.centre, ball.centre, ball.radius);
+    }
+  });
+  BoxTree tree;
+  tree.build(boxes);
+  return tree;
+}
+
 std::vector<SolidPair> find_triangles(const ShapeScene& scene, const Positions& x0, const Positions& x1) {
+  constexpr int few = 8;  // for which a tree does not pay
+  const int solids = static_cast<int>(scene.solids.size());
   std::vector<SolidPair> found;
   std::vector<int> all(scene.cloth.triangles.rows());
   std::iota(all.begin(), all.end(), 0);
-  for (int k = 0; k < static_cast<int>(scene.solids.size()); ++k)
-    for (const int i : Finder(scene, k, x0, x1).triangles_near(all)) found.push_back({i, k});
+  const BoxTree tree = solids > few ? tree_of_triangles(scene, x0, x1) : BoxTree();
+  for (int k = 0; k < solids; ++k) {
+    const Finder finder(scene, k, x0, x1);
+    for (const int i : solids > few ? finder.triangles_near(tree) : finder.triangles_near(all))
+      found.push_back({i, k});
+  }
   return found;
+}
+
+SeparatingPlane nearest_triangle(const ShapeScene& scene, const Solid& solid, const BoxTree& triangles,
+                                 const Positions& x) {
+  SeparatingPlane nearest{Vector3d::UnitZ(), std::numeric_limits<double>::infinity()};
+  triangles.visit_near(
+      nearest.separation, [&](const Box& box) { return distance_bound(solid, box); },
+      [&](int t) {
+        const SeparatingPlane plane = separate(solid, scene.corners(t, x));
+        if (plane.separation < nearest.separation) nearest = plane;
+        return nearest.separation;
+      });
+  return nearest;
 }
 
 CandidatePairs find_candidates(const ShapeScene& scene, const std::vector<SolidPair>& found,

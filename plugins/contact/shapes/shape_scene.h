@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "core/kernel/interfaces/contact_model.h"
+#include "core/numerics/collision_detection/box_tree.h"
 #include "core/numerics/collision_detection/surface.h"
 #include "core/numerics/contact/pair_contacts.h"
 #include "plugins/contact/shapes/features.h"
@@ -37,6 +38,13 @@ struct ShapeScene {
 struct SolidPair {
   int element, solid;
 };
+
+/// The boxes of the balls that bound the triangles in the linear motion from x0 to x1.
+BoxTree tree_of_triangles(const ShapeScene& scene, const Positions& x0, const Positions& x1);
+
+/// The separation of the triangle at x that is nearest to the solid; `triangles` is their tree at x.
+SeparatingPlane nearest_triangle(const ShapeScene& scene, const Solid& solid, const BoxTree& triangles,
+                                 const Positions& x);
 
 /// The triangles that may come within d̂ of a solid during the linear motion from x0 to x1, grouped by solid.
 std::vector<SolidPair> find_triangles(const ShapeScene& scene, const Positions& x0, const Positions& x1);

@@ -1,0 +1,112 @@
+#include "core/app/scene/vertex_search.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "core/numerics/mesh/seams.h"
+
+namespace drape {
+
+namespace {
+
+/// The vertices of a piece, or the ends of its border edges or seams, or of all seams.
+std::vector<int> vertices_of_piece(const VertexSelection& selection, const Level& level) {
+  const TriangleMesh& rest = level.rest;
+  const auto has = [&](int t) {
+    return !selection.piece || (!rest.piece.empty() && rest.piece_names[rest.piece[t]] == *selection.piece);
+  };
+  std::vector<char> chosen(level.vertex_count(), 0);
+  for (int t = 0; t < level.triangle_count(); ++t)
+    for (int k = 0; k < 3 && has(t); ++k) {
+      const int e = level.topology.triangle_edges(t, k);
+      const bool whole = selection.region == "piece", edge = selection.region == "seam"
+                                                                 ? is_seam(rest, level.topology, e)
+                                                                 : level.topology.edge_triangles(e, 1) == -1;
+      if (whole || edge)
+        for (const int corner : {(k + 1) % 3, (k + 2) % 3}) chosen[rest.triangles(t, corner)] = 1;
+    }
+  std::vector<int> vertices;
+  for (int v = 0; v < level.vertex_count(); ++v)
+    if (chosen[v]) vertices.push_back(v);
+  return vertices;
+}
+
+}  // namespace
+
+VertexSearch::VertexSearch(const Level& level, const Level& coarsest, std::size_t count)
+    : level_(level), coarsest_(coarsest) {
+  constexpr std::size_t few = 16;  // for which trees do not pay
+  for (int v = 0; v < level.vertex_count(); ++v)
+    if (level.topology.on_border[v]) border_.push_back(v);
+  if (count <= few) return;
+  for (auto& [tree, of] : {std::pair(&tree_, &level), {&coarse_tree_, &coarsest}}) {
+    std::vector<Box> boxes;
+    for (const auto& p : of->rest.vertices.rowwise()) boxes.push_back(Box::around(p, p, 0));
+    tree->emplace().build(boxes);
+  }
+}
+
+std::vector<int> VertexSearch::candidates(const VertexSelection& selection) const {
+  constexpr double margin = 1 + 1e-6;  // over round-off
+  const bool nearest = selection.region == "nearest", in_ball = selection.region == "ball";
+  std::vector<int> found;
+  if (selection.region == "border") return border_;
+  if (!tree_) {
+    found.resize((nearest ? coarsest_ : level_).vertex_count());
+    std::iota(found.begin(), found.end(), 0);
+    return found;
+  }
+  const Box region = nearest || in_ball
+                         ? Box::around(selection.point, selection.point, 0)
+                         : Box::around(selection.lower.cwiseMin(selection.upper), selection.upper, 1e-9);
+  double reach = nearest ? INFINITY : in_ball ? margin * selection.radius * margin * selection.radius : 0;
+  (nearest ? coarse_tree_ : tree_)
+      ->visit_near(
+          reach, [&](const Box& box) { return box.squared_distance(region); },
+          [&](int v) {
+            found.push_back(v);
+            if (nearest)
+              reach = std::min(
+                  reach,
+                  margin * (coarsest_.rest.vertices.row(v).transpose() - selection.point).squaredNorm());
+            return reach;
+          });
+  std::ranges::sort(found);
+  return found;
+}
+
+std::vector<int> VertexSearch::selected(const VertexSelection& selection) const {
+  std::vector<int> selected;
+  if (selection.region == "vertices") {
+    // Children of coarse vertices keep their index on every level.
+    for (int v : selection.vertices)
+      if (v >= 0 && v < coarsest_.vertex_count()) selected.push_back(v);
+    std::ranges::sort(selected);
+    selected.erase(std::unique(selected.begin(), selected.end()), selected.end());
+    return selected;
+  }
+  if (selection.region == "piece" || selection.region == "seam" ||
+      (selection.piece && selection.region == "border"))
+    return vertices_of_piece(selection, level_);
+  std::vector<int> among = candidates(selection);
+  if (selection.region == "nearest") {
+    Eigen::Index nearest = 0;
+    (coarsest_.rest.vertices(among, Eigen::all).rowwise() - selection.point.transpose())
+        .rowwise()
+        .squaredNorm()
+        .minCoeff(&nearest);
+    return {among[nearest]};
+  }
+  constexpr double rounding = 1e-12;  // round-off must not exclude vertices on a region's boundary
+  std::erase_if(among, [&](int v) {
+    const Eigen::Vector3d p = level_.rest.vertices.row(v);
+    if (selection.region == "ball")
+      return !((p - selection.point).norm() <= selection.radius * (1 + rounding));
+    return selection.region != "border" && !((p.array() >= selection.lower.array() - rounding).all() &&
+                                             (p.array() <= selection.upper.array() + rounding).all());
+  });
+  return among;
+}
+
+}  // namespace drape
