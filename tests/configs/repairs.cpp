@@ -129,6 +129,10 @@ TEST_CASE("a start that a body cuts is moved out of it by the shortest way, and 
   CHECK((up.z() > 0.05 && up.z() < 0.055));
   CHECK(down.head<2>().isZero(0));
   CHECK((down.z() < -0.05 && down.z() > -0.055));
+  // At the middle of the ball neither side is nearer.
+  for (const std::string height : {"0", "-0.01", "0.015"})
+    CHECK_THAT(said_of(over(height), repair),
+               Contains(" m frees it only across an obstacle, to another side"));
   // Under a ceiling there is no way: one to a side would draw the cloth through the ball.
   const std::string said =
       said_of(over("-0.05", ", {shape: half_space, normal: [0, 0, -1], translate: [0, 0, 0.05]}"), repair);

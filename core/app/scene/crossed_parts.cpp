@@ -20,6 +20,8 @@ using Eigen::Vector3d;
 
 /// A motion along a surface may lead into it by this much of its length.
 constexpr double along_surface = 0.1;
+/// A motion out of a closed body by more than this part of its extent may lead past its middle.
+constexpr double past_middle = 0.4;
 /// An edge that is so nearly parallel to a motion sweeps no area: the next edges stand for it.
 constexpr double parallel = 1e-6;
 
@@ -67,6 +69,7 @@ void CrossedParts::add(const Level& level, const TriangleMesh& obstacle) {
     way_out_ += facing * normal_of(obstacle, pair.second);
     cuts(facing * normal_of(obstacle, pair.second));
   }
+  if (closed && std::ranges::count(crosses, 1) > 0) cut_.push_back(obstacle.vertices);
   // What triangles without an intersection connect is on one side.
   DisjointSets sides(vertices);
   for (Eigen::Index t = 0; t < cloth.triangles.rows(); ++t)
@@ -101,10 +104,15 @@ void CrossedParts::add(const Level& level, const TriangleMesh& obstacle) {
   }
 }
 
-bool CrossedParts::lead_across(const Vector3d& translation) const {
+bool CrossedParts::lead_across(const Vector3d& translation, double longest_edge) const {
   const double least = -along_surface * translation.norm();
   if (std::ranges::any_of(outwards_, [&](const Vector3d& out) { return out.dot(translation) < least; }))
     return true;
+  for (const Positions& cut : cut_) {  // which a cloth near its middle cuts into halves
+    const Eigen::VectorXd along = cut * translation.normalized();
+    if (translation.norm() > std::max(longest_edge, past_middle * (along.maxCoeff() - along.minCoeff())))
+      return true;
+  }
   const int vertices = static_cast<int>(start_.rows());
   TriangleMesh swept{Positions(2 * vertices, 3), {}};
   swept.vertices << start_, start_.rowwise() + translation.transpose();

@@ -18,14 +18,15 @@ class CrossedParts {
   /// The obstacles' mean normal where the start intersects them; zero if it does not.
   const Eigen::Vector3d& way_out() const { return way_out_; }
   /// Whether a translation [m] takes an edge of the other parts through an obstacle, or these deeper into one
-  /// that is closed.
-  bool lead_across(const Eigen::Vector3d& translation) const;
+  /// that is closed, or is longer than two fifths of a closed one that is cut and than `longest_edge` [m].
+  bool lead_across(const Eigen::Vector3d& translation, double longest_edge) const;
 
  private:
   void add(const Level& level, const TriangleMesh& obstacle);
 
   Positions start_;
   std::vector<TriangleMesh> obstacles_;
+  std::vector<Positions> cut_;                            // the vertices of closed obstacles that are cut
   std::vector<std::vector<Eigen::Vector2i>> free_edges_;  // of each obstacle: those of the other parts
   std::vector<Eigen::Vector3d> outwards_;                 // unit, where a closed obstacle cuts
   double depth_ = 0;

@@ -59,11 +59,10 @@ class TranslationSearch {
         obstacles_(obstacles_of(scene.model(0)->contacts())),
         crossed_(scene.hierarchy.levels[0], scene.starts[0], obstacles_) {
     const Level& level = scene.hierarchy.levels[0];
-    double longest_edge = 0;
     for (const auto& edge : level.topology.edges.rowwise())
-      longest_edge =
-          std::max(longest_edge, (scene.starts[0].row(edge[0]) - scene.starts[0].row(edge[1])).norm());
-    limit_ = std::min(diagonal_, reach * (crossed_.depth() + longest_edge));
+      longest_edge_ =
+          std::max(longest_edge_, (scene.starts[0].row(edge[0]) - scene.starts[0].row(edge[1])).norm());
+    limit_ = std::min(diagonal_, reach * (crossed_.depth() + longest_edge_));
     start = persistent_ = clearance_at(Vector3d::Zero());
     found = start.intersections.empty();
     best_contacts_ = start.contacts;
@@ -143,7 +142,7 @@ class TranslationSearch {
                   (clearance.contacts == best_contacts_ && trial.norm() >= translation.norm())))
       return false;
     if (enclosed(trial)) return false;
-    if (crossed_.lead_across(trial)) {
+    if (crossed_.lead_across(trial, longest_edge_)) {
       is_across_ = true;
       return false;
     }
@@ -174,9 +173,10 @@ class TranslationSearch {
   const Positions points_;  // at the start, a vertex of each component
   const std::vector<TriangleMesh> obstacles_;
   const CrossedParts crossed_;
-  double limit_ = 0;        // of translations [m]
-  bool is_across_ = false;  // a translation failed by CrossedParts::lead_across only
-  Clearance persistent_;    // with the pairs that intersected initially and after every trial
+  double longest_edge_ = 0;  // of the coarsest level's start [m]
+  double limit_ = 0;         // of translations [m]
+  bool is_across_ = false;   // a translation failed by CrossedParts::lead_across only
+  Clearance persistent_;     // with the pairs that intersected initially and after every trial
   int best_contacts_ = 0;
 };
 
