@@ -171,6 +171,54 @@ TEST_CASE("Many obstacles are checked in time, or refused") {
              Contains("\"obstacles\" has 20000 entries, of at most 10000"));
 }
 
+TEST_CASE("Outlines of very many points or holes are meshed in time, or refused") {
+  const auto polygon = [](int vertices, const std::string& loops) {
+    return Scratch("name: large\nlevels: 1\ncloth: {shape: polygon, vertices: " + std::to_string(vertices) +
+                   ", loops: [" + loops + "]}\n" + rest_of_experiment);
+  };
+  const auto side = [](int count) {
+    return "{points: [" +
+           repeated(count, [&](int k) { return std::to_string(k / double(count)) + ", 0, "; }) +
+           "1, 0, 1, 1, 0, 1]}";
+  };
+  const auto holes = [](int count) {
+    return "{points: [0, 0, 1, 0, 1, 1, 0, 1]}" + repeated(count, [](int k) {
+             const auto at = [](double x) { return std::to_string(x); };
+             const double x = (k % 71 + 0.5) / 72, y = (k / 71 + 0.5) / 72;
+             return ", {points: [" + at(x) + ", " + at(y) + ", " + at(x + 0.003) + ", " + at(y) + ", " +
+                    at(x) + ", " + at(y + 0.003) + "]}";
+           });
+  };
+  CHECK_THAT(checked(polygon(1000, side(100000))).err,
+             Contains("the loops have 100003 points, of at most 10000"));
+  CHECK_THAT(checked(polygon(1000, side(9000))).err, Contains("about 1000 vertices are not possible"));
+  CHECK_THAT(checked(polygon(20000, holes(5000))).err,
+             Contains("the loops have 15004 points, of at most 10000"));
+  CHECK_THAT(checked(polygon(20000, holes(3300))).err, Contains("about 20000 vertices are not possible"));
+}
+
+TEST_CASE("Long parallel strips are searched for gaps in time, apart and as one cloth") {
+  TriangleMesh strips{Positions(80000, 3), Triangles(40000, 3)};
+  for (int k = 0; k < 20000; ++k) {
+    for (int i = 0; i < 4; ++i) strips.vertices.row(4 * k + i) << 10 * (i % 2), 2e-4 * k + 1e-4 * (i / 2), 0;
+    strips.triangles.row(2 * k) << 4 * k, 4 * k + 1, 4 * k + 3;
+    strips.triangles.row(2 * k + 1) << 4 * k, 4 * k + 3, 4 * k + 2;
+  }
+  TriangleMesh joined = strips;  // by a strip across their ends
+  joined.vertices.conservativeResize(120000, 3);
+  joined.triangles.conservativeResize(40000 + 79998, 3);
+  for (int k = 0; k < 40000; ++k) joined.vertices.row(80000 + k) << -0.01, 1e-4 * k, 0;
+  for (int k = 0; k < 39999; ++k) {
+    joined.triangles.row(40000 + 2 * k) << 2 * k, 2 * k + 2, 80000 + k;
+    joined.triangles.row(40000 + 2 * k + 1) << 2 * k + 2, 80001 + k, 80000 + k;
+  }
+  const Scratch folder("name: large\nlevels: 1\ncloth: {shape: file, file: a.obj}\n" + rest_of_experiment);
+  for (const TriangleMesh& mesh : {strips, joined}) {
+    write_mesh(folder / "a.obj", mesh);
+    CHECK(checked(folder).exit_code == 0);
+  }
+}
+
 TEST_CASE("Many energies of one kind are checked in time") {
   const std::string list =
       "energies: [neo_hookean" + repeated(2000, [](int) { return ", constant_load"; }) + "]\n";

@@ -125,12 +125,19 @@ std::optional<Positions> read_reference(const Experiment& experiment, const Hier
 std::string unwelded_fault(const Experiment& e, const Level& level) {
   if (e.parameters.cloth.shape != "file") return "";
   constexpr double same_place = 1e-4;  // of an edge: files round coordinates
-  const Coincidence found = coincident_border(level, same_place * median_edge(level));
-  if (found.count == 0) return "";
-  return std::to_string(found.count) + (found.count == 1 ? " border vertex lies" : " border vertices lie") +
-         " on another one, as " + std::to_string(found.second) + " on " + std::to_string(found.first) +
-         " (counted from 0) at " + point_text(level.rest.vertices.row(found.first)) +
-         ": the cloth is not joined there; if it should be, weld them in the file";
+  constexpr double seam_gap = 5e-4;  // [m]; wider than what programs leave between panels, or rounding makes
+  const auto text = [&](const Coincidence& found, const std::string& lie, const std::string& remedy) {
+    return std::to_string(found.count) + " border " + (found.count == 1 ? "vertex lies" : "vertices lie") +
+           lie + " another one, as " + std::to_string(found.second) + " on " + std::to_string(found.first) +
+           " (counted from 0) at " + point_text(level.rest.vertices.row(found.first)) +
+           ": the cloth is not joined there; if it should be, " + remedy;
+  };
+  if (const auto on = coincident_border(level, same_place * median_edge(level)); on.count > 0)
+    return text(on, " on", "weld them in the file");
+  const Coincidence near = nearly_coincident_border(level, seam_gap);
+  if (near.count == 0) return "";
+  return text(near, " within " + length_text(seam_gap) + " of",
+              "add \"join: " + general_text(seam_gap, 1) + "\" to cloth");
 }
 
 bool touches_itself(const std::vector<Intersection>& pairs) {

@@ -16,14 +16,19 @@ using Outline = std::vector<Vector2d>;
 constexpr double largest_bend = 0.08;
 /// Areas below this part of the diameter's square are round-off.
 constexpr double area_rounding = 1e-13;
-/// Ears are searched in a time that grows with the square of the corners, as are crossings.
-constexpr std::size_t most_corners = 10'000;
+/// Corners off a line by less than this part of the diameter lie on it.
+constexpr double line_rounding = 1e-6;
+/// The time to search ears and crossings grows with the square of the corners, or faster.
+constexpr std::size_t most_of_ears = 400, most_compared = 10'000;
+/// A fan of more would have a vertex that no mesh may have.
+constexpr std::size_t most_of_fan = 5000;
 
 /// The polygon in its mean plane, anticlockwise, at the scale of its diameter.
 struct Flattened {
   Outline outline;
   double bend = 0;       // the largest distance from the plane
   bool has_area = true;  // otherwise it has no plane
+  bool on_line = false;  // without area: all corners are on a line
 
   explicit Flattened(const std::vector<Vector3d>& corners) {
     Vector3d centre = Vector3d::Zero(), normal = Vector3d::Zero();
@@ -33,7 +38,14 @@ struct Flattened {
     for (std::size_t k = 0; k < corners.size(); ++k)  // Newell's sum
       normal += (corners[k] - centre).cross(corners[(k + 1) % corners.size()] - centre);
     has_area = normal.norm() > area_rounding * diameter * diameter;
-    if (!has_area) return;
+    if (!has_area) {
+      const Vector3d far =
+          *std::ranges::max_element(corners, {}, [&](const Vector3d& p) { return (p - centre).norm(); });
+      on_line = std::ranges::all_of(corners, [&](const Vector3d& p) {
+        return (p - centre).cross(far - centre).norm() <= line_rounding * diameter * diameter;
+      });
+      return;
+    }
     normal.normalize();
     const Vector3d x = normal.unitOrthogonal(), y = normal.cross(x);
     for (const Vector3d& p : corners) {
@@ -154,6 +166,8 @@ CutPolygon cut_polygon(const std::vector<Vector3d>& corners) {
   for (int k = 2; k < static_cast<int>(corners.size()); ++k) fan.triangles.push_back({0, k - 1, k});
   if (corners.size() == 3) return fan;
   const Flattened flat(corners);
+  if (!flat.has_area && !flat.on_line)
+    return refused("crosses itself, so that its two sides have the same area; cut it into faces that do not");
   if (!flat.has_area) return fan;
   if (flat.bend > largest_bend)
     return refused("is not planar: its corners lie off their mean plane by " +
@@ -163,15 +177,17 @@ CutPolygon cut_polygon(const std::vector<Vector3d>& corners) {
   if (kept.size() < 3) return fan;  // has no area but by round-off
   Outline outline;
   for (const int k : kept) outline.push_back(flat.outline[k]);
-  const bool is_simple_fan = is_fan(outline);
-  if (is_simple_fan && kept.size() == corners.size()) return fan;
-  if (!is_simple_fan && outline.size() > most_corners)
-    return refused("is concave and has " + std::to_string(outline.size()) + " corners, of at most " +
-                   std::to_string(most_corners) + "; cut it into triangles");
-  if (const auto [i, j] = is_simple_fan ? std::array{-1, -1} : meeting_sides(outline); i >= 0)
-    return refused("crosses or touches itself: its sides " + std::to_string(kept[i]) + " and " +
-                   std::to_string(kept[j]) + " (counted from 0) meet; cut it into faces that do not");
-  CutPolygon cut{with_all_corners(ears(outline), kept, static_cast<int>(corners.size())), {}};
+  const bool is_simple_fan = is_fan(outline),
+             is_large = outline.size() > (is_simple_fan ? most_of_fan : most_of_ears);
+  if (is_simple_fan && !is_large && kept.size() == corners.size()) return fan;
+  auto meeting = is_simple_fan || is_large ? std::array{-1, -1} : meeting_sides(outline);
+  const auto triangles = is_large || meeting[0] >= 0 ? delaunay_cut(outline) : ears(outline);
+  if (triangles.empty() && is_large && outline.size() <= most_compared) meeting = meeting_sides(outline);
+  if (triangles.empty() && meeting[0] >= 0)
+    return refused("crosses or touches itself: its sides " + std::to_string(kept[meeting[0]]) + " and " +
+                   std::to_string(kept[meeting[1]]) +
+                   " (counted from 0) meet; cut it into faces that do not");
+  CutPolygon cut{with_all_corners(triangles, kept, static_cast<int>(corners.size())), {}};
   if (cut.triangles.size() != corners.size() - 2)
     return refused("cannot be cut: some of its corners lie on one line to round-off; cut it into triangles");
   return cut;

@@ -46,25 +46,58 @@ class JunctionSearch {
         if (edges_at_[v].empty()) vertices_.push_back(v);
         edges_at_[v].push_back(i);
       }
-    (x_.colwise().maxCoeff() - x_.colwise().minCoeff()).maxCoeff(&axis_);
-    std::ranges::sort(vertices_, {}, [&](int v) { return std::pair(x_(v, axis_), v); });
+    split(0, 0, static_cast<int>(vertices_.size()));
   }
 
   std::vector<TJunction> all() {
     std::vector<TJunction> found;
-    for (const BorderEdge& e : edges_) {
-      const double margin = on_line * (x_.row(e.to) - x_.row(e.from)).norm();
-      const auto [low, high] = std::minmax(x_(e.from, axis_), x_(e.to, axis_));
-      for (auto v =
-               std::ranges::lower_bound(vertices_, low - margin, {}, [&](int i) { return x_(i, axis_); });
-           v != vertices_.end() && x_(*v, axis_) <= high + margin; ++v)
-        if (is_inside(*v, e) && has_neighbour_across(*v, e)) found.push_back({*v, {e.from, e.to}});
-    }
+    for (const BorderEdge& e : edges_)
+      visit(0, 0, static_cast<int>(vertices_.size()), e, [&](int v) {
+        if (is_inside(v, e) && has_neighbour_across(v, e)) found.push_back({v, {e.from, e.to}});
+      });
     std::ranges::sort(found, {}, [](const TJunction& j) { return std::pair(j.vertex, j.edge); });
     return found;
   }
 
  private:
+  /// A ball around the vertices of a node, whose children have its halves along the longest axis of its box.
+  struct Ball {
+    RowVector3d centre;
+    double radius;
+  };
+  static constexpr int leaf = 8;  // vertices
+
+  void split(std::size_t node, int begin, int end) {
+    if (begin == end) return;
+    const std::vector<int> own(vertices_.begin() + begin, vertices_.begin() + end);
+    const Positions x = x_(own, Eigen::all);
+    const RowVector3d low = x.colwise().minCoeff(), size = x.colwise().maxCoeff() - low;
+    if (balls_.size() <= node) balls_.resize(node + 1);
+    balls_[node] = {low + size / 2, size.norm() / 2};
+    if (end - begin <= leaf) return;
+    Eigen::Index axis = 0;
+    size.maxCoeff(&axis);
+    const int middle = (begin + end) / 2;
+    std::nth_element(vertices_.begin() + begin, vertices_.begin() + middle, vertices_.begin() + end,
+                     [&](int a, int b) { return std::pair(x_(a, axis), a) < std::pair(x_(b, axis), b); });
+    split(2 * node + 1, begin, middle);
+    split(2 * node + 2, middle, end);
+  }
+
+  /// Visits the vertices of a node that may lie on the edge.
+  template <class Visit>
+  void visit(std::size_t node, int begin, int end, const BorderEdge& e, const Visit& visit_vertex) const {
+    const RowVector3d along = x_.row(e.to) - x_.row(e.from), to = balls_[node].centre - x_.row(e.from);
+    const double at = std::clamp(to.dot(along) / along.squaredNorm(), 0.0, 1.0);
+    if (!((to - at * along).norm() <= balls_[node].radius + 2 * on_line * along.norm())) return;
+    if (end - begin <= leaf) {
+      std::for_each(vertices_.begin() + begin, vertices_.begin() + end, visit_vertex);
+      return;
+    }
+    visit(2 * node + 1, begin, (begin + end) / 2, e, visit_vertex);
+    visit(2 * node + 2, (begin + end) / 2, end, e, visit_vertex);
+  }
+
   RowVector3d off_line(const BorderEdge& e, int v) const {
     const RowVector3d along = (x_.row(e.to) - x_.row(e.from)).normalized(), to = x_.row(v) - x_.row(e.from);
     return to - to.dot(along) * along;
@@ -92,9 +125,9 @@ class JunctionSearch {
   const Positions& x_;
   DisjointSets parts_;
   std::vector<BorderEdge> edges_;
-  std::vector<int> vertices_;               // of the border, along axis_
+  std::vector<int> vertices_;               // of the border
+  std::vector<Ball> balls_;                 // of the nodes of their tree
   std::vector<std::vector<int>> edges_at_;  // of each vertex
-  Eigen::Index axis_ = 0;                   // the longest of the mesh's box
 };
 
 }  // namespace
@@ -136,9 +169,14 @@ std::vector<TJunction> t_junctions(const TriangleMesh& mesh) {
   return JunctionSearch(mesh, border).all();
 }
 
-Coincidence coincident_border(const Level& level, double tolerance) {
+namespace {
+
+/// Border vertices within their own reach of another one, and within `tolerance` [m].
+template <class Reach>
+Coincidence border_within(const Level& level, double tolerance, const Reach& reach) {
   // Each border vertex is compared with those in the 27 cells around it, of a grid as fine as the tolerance.
   using Cell = std::array<double, 3>;
+  constexpr int most_compared = 64;  // with those of a cell that has very many
   const Positions& x = level.rest.vertices;
   std::multimap<Cell, int> seen;
   Coincidence found;
@@ -151,14 +189,33 @@ Coincidence coincident_border(const Level& level, double tolerance) {
       const int offset[] = {n % 3 - 1, n / 3 % 3 - 1, n / 9 - 1};
       const Cell near{cell[0] + offset[0], cell[1] + offset[1], cell[2] + offset[2]};
       const auto [begin, end] = seen.equal_range(near);
-      for (auto it = begin; it != end && on < 0; ++it)
-        if ((x.row(v) - x.row(it->second)).norm() < tolerance) on = it->second;
+      int compared = 0;
+      for (auto it = begin; it != end && on < 0 && compared < most_compared; ++it, ++compared)
+        if (const double d = (x.row(v) - x.row(it->second)).norm();
+            d < tolerance && d < std::min(reach(v), reach(it->second)))
+          on = it->second;
     }
     seen.emplace(cell, v);
     if (on < 0) continue;
     if (found.count++ == 0) found = {on, v, 1};
   }
   return found;
+}
+
+}  // namespace
+
+Coincidence coincident_border(const Level& level, double tolerance) {
+  return border_within(level, tolerance, [&](int) { return tolerance; });
+}
+
+Coincidence nearly_coincident_border(const Level& level, double tolerance) {
+  constexpr double part = 0.1;
+  std::vector<double> reach(level.vertex_count(), tolerance);
+  for (const auto& e : level.topology.edges.rowwise())
+    for (const int v : {e[0], e[1]})
+      reach[v] =
+          std::min(reach[v], part * (level.rest.vertices.row(e[0]) - level.rest.vertices.row(e[1])).norm());
+  return border_within(level, tolerance, [&](int v) { return reach[v]; });
 }
 
 }  // namespace drape

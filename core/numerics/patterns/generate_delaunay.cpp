@@ -34,6 +34,10 @@ std::string loop_name(std::size_t i) {
 
 Kernel::Segment_2 side(const Ring& ring, std::size_t i) { return {ring[i], ring[(i + 1) % ring.size()]}; }
 
+bool boxes_overlap(const Ring& a, const Ring& b) {
+  return CGAL::do_overlap(CGAL::bbox_2(a.begin(), a.end()), CGAL::bbox_2(b.begin(), b.end()));
+}
+
 bool cross(const Ring& a, const Ring& b) {
   for (std::size_t i = 0; i < a.size(); ++i)
     for (std::size_t j = 0; j < b.size(); ++j)
@@ -51,7 +55,13 @@ bool contains(const Ring& ring, const Point2& p) {
 
 /// Validates the loops: simple polygons, holes inside the first and outside one another.
 std::vector<Ring> checked_rings(const std::vector<Polygon>& loops) {
+  constexpr std::size_t most_points = 10'000;  // sides of two loops are compared one by one
   if (loops.empty()) throw std::runtime_error("polygon: there is no loop");
+  std::size_t points = 0;
+  for (const Polygon& loop : loops) points += loop.size();
+  if (points > most_points)
+    throw std::runtime_error("polygon: the loops have " + std::to_string(points) + " points, of at most " +
+                             std::to_string(most_points) + "; leave out those that shape nothing");
   std::vector<Ring> rings;
   for (std::size_t i = 0; i < loops.size(); ++i) {
     const auto refuse = [&](const std::string& why) { throw std::runtime_error(loop_name(i) + ' ' + why); };
@@ -65,6 +75,7 @@ std::vector<Ring> checked_rings(const std::vector<Polygon>& loops) {
       refuse("ends with its first point again; leave the last one out");
     if (!is_simple(ring) || area(ring) == 0) refuse("crosses or touches itself");
     for (std::size_t j = 0; j < i; ++j) {
+      if (j > 0 && !boxes_overlap(ring, rings[j])) continue;
       if (cross(ring, rings[j])) refuse("crosses or touches loop " + std::to_string(j));
       if (j == 0 && !contains(rings[0], ring[0])) refuse("lies outside loop 0");
       if (j > 0 && (contains(rings[j], ring[0]) || contains(ring, rings[j][0])))
@@ -98,9 +109,8 @@ void insert_loops(const std::vector<Polygon>& loops, double spacing, Triangulati
   }
 }
 
-/// Inserts one random point at least `spacing` from the boundary, if there is one.
-void insert_first_inner(const std::vector<Ring>& rings, double spacing, unsigned seed,
-                        Triangulation& triangulation) {
+/// A random point at least `spacing` from the boundary, if one is found.
+std::optional<Point2> first_inner(const std::vector<Ring>& rings, double spacing, unsigned seed) {
   Random random(seed);
   const auto box = CGAL::bbox_2(rings[0].begin(), rings[0].end());
   for (int attempt = 0; attempt < 1000; ++attempt) {
@@ -111,23 +121,27 @@ void insert_first_inner(const std::vector<Ring>& rings, double spacing, unsigned
         if (CGAL::squared_distance(p, side(ring, i)) <= spacing * spacing) return false;
       return true;
     });
-    if (!far || !encloses(rings, p)) continue;
-    triangulation.insert(p);
-    return;
+    if (far && encloses(rings, p)) return p;
   }
+  return {};
 }
 
-/// A point well inside a ring whose sides are constraints: the centroid of the largest triangle in it.
-Point2 point_inside(const Ring& ring, const Triangulation& triangulation) {
-  Point2 inside;
-  double largest = 0;
-  for (auto f : triangulation.finite_face_handles()) {
-    const auto triangle = triangulation.triangle(f);
-    const Point2 c = CGAL::centroid(triangle);
-    const double area = std::abs(triangle.area());
-    if (area <= largest || !contains(ring, c)) continue;
-    inside = c;
-    largest = area;
+/// A point well inside each hole: the centroid of the largest triangle that its sides allow. CGAL finds what
+/// is outside the outer border itself.
+std::vector<Point2> points_in_holes(const std::vector<Ring>& rings) {
+  std::vector<Point2> inside;
+  for (auto ring = rings.begin() + 1; ring != rings.end(); ++ring) {
+    Triangulation triangulation;
+    triangulation.insert_constraint(ring->begin(), ring->end(), true);
+    double largest = 0;
+    for (auto f : triangulation.finite_face_handles()) {
+      const auto triangle = triangulation.triangle(f);
+      const double area = std::abs(triangle.area());
+      if (area <= largest || !contains(*ring, CGAL::centroid(triangle))) continue;
+      if (largest == 0) inside.emplace_back();
+      inside.back() = CGAL::centroid(triangle);
+      largest = area;
+    }
   }
   return inside;
 }
@@ -156,14 +170,12 @@ TriangleMesh inside(Triangulation& triangulation) {
 }
 
 /// Empty if the corners and angles require more than so many vertices.
-std::optional<TriangleMesh> refined(const std::vector<Polygon>& loops, const std::vector<Ring>& rings,
-                                    double spacing, double longest_edge, unsigned seed, double most) {
+std::optional<TriangleMesh> refined(const std::vector<Polygon>& loops, const std::optional<Point2>& inner,
+                                    const std::vector<Point2>& hole_points, double spacing,
+                                    double longest_edge, double most) {
   Triangulation triangulation;
   insert_loops(loops, spacing, triangulation);
-  insert_first_inner(rings, spacing, seed, triangulation);
-  std::vector<Point2> hole_points;  // CGAL finds what is outside the outer border itself
-  for (auto ring = rings.begin() + 1; ring != rings.end(); ++ring)
-    hole_points.push_back(point_inside(*ring, triangulation));
+  if (inner) triangulation.insert(*inner);
   // sin² of the smallest angle, 20.7°: refinement terminates for certain.
   constexpr double shape_bound = 0.125;
   CGAL::Delaunay_mesher_2<Triangulation, Criteria> mesher(triangulation, Criteria(shape_bound, longest_edge));
@@ -266,17 +278,22 @@ TriangleMesh delaunay_polygon(const std::vector<Polygon>& loops, int vertices_ab
                              " vertices are not possible; the nearest number is " + nearest +
                              " (corners and angles ask for that many)");
   };
-  const double most = 1e4 + 20.0 * vertices_about;  // well above the overshoot of a first attempt
+  const double most = 1e4 + 5.0 * vertices_about;  // well above the overshoot of a first attempt
   const double spacing = even_spacing(inner_area, border, vertices_about);
+  const std::optional<Point2> inner = first_inner(rings, spacing, seed);
+  const std::vector<Point2> hole_points = points_in_holes(rings);
   double longest_edge = 1.4 * spacing;
   TriangleMesh best;
   const auto miss = [&](const TriangleMesh& mesh) {
     return std::abs(static_cast<double>(mesh.vertices.rows()) / vertices_about - 1);
   };
+  constexpr double far_off = 0.5;
   for (int attempt = 0; attempt < 12; ++attempt) {
-    std::optional<TriangleMesh> mesh = refined(loops, rings, spacing, longest_edge, seed, most);
+    std::optional<TriangleMesh> mesh = refined(loops, inner, hole_points, spacing, longest_edge, most);
     if (!mesh) refuse("above " + std::to_string(std::llround(most)));
     longest_edge *= std::sqrt(static_cast<double>(mesh->vertices.rows()) / vertices_about);
+    // The loops alone ask for so many.
+    if (attempt > 0 && miss(*mesh) > far_off && mesh->vertices.rows() == best.vertices.rows()) break;
     if (attempt == 0 || miss(*mesh) < miss(best)) best = std::move(*mesh);
     if (miss(best) < 0.02) break;
   }

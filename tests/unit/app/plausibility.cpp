@@ -227,8 +227,17 @@ TEST_CASE("Border vertices at one place are named, as long as they are not welde
   both.vertices.bottomRows(16).col(1).array() += 5e-6;  // near for the file's edges, far for a fine level's
   for (const char* levels : {"levels: 1", "levels: 4"})
     CHECK_THAT(warnings(both, levels), Contains("the cloth is not joined there"));
+  for (const double gap : {1e-5, 1e-4, 4.9e-4}) {
+    CAPTURE(gap);
+    CHECK_THAT(warnings(both_of(sheet, sheet, {0.2 + gap, 0, 0})),
+               Contains("2: 4 border vertices lie within 0.5 mm of another one, as ") &&
+                   Contains("the cloth is not joined there; if it should be, add \"join: 0.0005\" to cloth"));
+  }
   both.vertices.bottomRows(16).col(0).array() += 1e-3;
   CHECK(warnings(both) == "");
+  // A border of edges that are as short has no such seam.
+  const TriangleMesh fine = grid({0.2, 0.0004}, 400, 2, Diagonals::one_way);
+  CHECK_THAT(warnings(fine), !Contains("is not joined there"));
 }
 
 TEST_CASE("check warns of an experiment and finds it valid all the same") {

@@ -1,6 +1,7 @@
 #include "core/numerics/mesh/cut_polygon.h"
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <functional>
@@ -116,6 +117,48 @@ TEST_CASE("polygons that cross or touch themselves, or are not planar, are refus
   // Bent as the quads of a curved surface are, and without an area, which check_mesh says.
   CHECK(cut_polygon({{0, 0, 0}, {1, 0, 0.1}, {1, 1, 0}, {0, 1, 0.1}}).fault == "");
   CHECK(cut_polygon({{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {3, 0, 0}}).fault == "");
+}
+
+TEST_CASE("a face with a hole that two of its sides lead to, as CAD programs write it, is cut") {
+  for (const int turns : {0, 3, 7}) {
+    CornerList keyhole = {{0, 0, 0}, {3, 0, 0}, {3, 3, 0}, {0, 3, 0}, {0, 0, 0},
+                          {1, 1, 0}, {1, 2, 0}, {2, 2, 0}, {2, 1, 0}, {1, 1, 0}};
+    std::rotate(keyhole.begin(), keyhole.begin() + turns, keyhole.end());
+    const CutPolygon cut = cut_polygon(keyhole);
+    CHECK(cut.fault == "");
+    double area = 0;
+    int empty = 0;
+    for (const auto& t : cut.triangles) {
+      const CornerPoint normal = (keyhole[t[1]] - keyhole[t[0]]).cross(keyhole[t[2]] - keyhole[t[0]]) / 2;
+      CHECK(normal.z() > -1e-12);
+      empty += normal.z() < 1e-12;
+      area += normal.z();
+    }
+    CHECK(area == Approx(8));
+    CHECK(cut.triangles.size() - empty == 8);
+  }
+}
+
+TEST_CASE("a face of very many corners is cut without a vertex of very many triangles") {
+  for (const bool concave : {false, true}) {
+    const int n = concave ? 2000 : 20000;
+    CornerList outline;
+    for (int k = 0; k < n; ++k) {
+      const double angle = 2 * M_PI * k / n, radius = concave && k % 2 ? 0.99 : 1;
+      outline.emplace_back(radius * std::cos(angle), radius * std::sin(angle), 0);
+    }
+    check_cut(outline);
+    std::vector<int> triangles_at(n);
+    for (const auto& t : cut_polygon(outline).triangles)
+      for (const int k : t) ++triangles_at[k];
+    CHECK(*std::ranges::max_element(triangles_at) < 2000);
+  }
+}
+
+TEST_CASE("a bow tie of two equal sides is said to cross itself") {
+  for (const CornerList& tie : {CornerList{{0, 0, 0}, {1, 1, 0}, {1, 0, 0}, {0, 1, 0}},
+                                CornerList{{0, 0, 5}, {2, 2, 5}, {2, 0, 5}, {1, 0, 5}, {0, 2, 5}, {0, 1, 5}}})
+    CHECK_THAT(cut_polygon(tie).fault, Contains("crosses "));
 }
 
 TEST_CASE("corners at one place, as at the poles of a sphere of quads, get triangles without area") {

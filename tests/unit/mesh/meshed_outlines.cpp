@@ -130,6 +130,26 @@ TEST_CASE("discs and polygons have an edge length too") {
   }
 }
 
+TEST_CASE("a panel of one face with a hole in it is meshed around the hole, one with very many corners too") {
+  const Scratch folder;
+  const auto file = folder / "face.obj";
+  folder.write("face.obj",
+               "v 0 0 0\nv .3 0 0\nv .3 .3 0\nv 0 .3 0\nv .1 .1 0\nv .1 .2 0\nv .2 .2 0\nv .2 .1 0\n"
+               "f 1 2 3 4 1 5 6 7 8 5\n");
+  CHECK(area_of(cloth_of(cloth_in(file))) == Approx(0.08));
+  const TriangleMesh around = cloth_of(cloth_in(file, ", edge_length: 0.02"));
+  CHECK(area_of(around) == Approx(0.08));
+  CHECK((around.vertices.rowwise() - Eigen::RowVector3d(0.15, 0.15, 0)).rowwise().norm().minCoeff() > 0.0499);
+  std::string circle, face = "f";
+  for (int k = 0; k < 20000; ++k) {
+    const double angle = 2 * std::numbers::pi * k / 20000;
+    circle += "v " + std::to_string(std::cos(angle)) + " " + std::to_string(std::sin(angle)) + " 0\n";
+    face += " " + std::to_string(k + 1);
+  }
+  folder.write("face.obj", circle + face + "\n");
+  CHECK(area_of(cloth_of(cloth_in(file, ", edge_length: 0.1"))) == Approx(std::numbers::pi).epsilon(1e-2));
+}
+
 TEST_CASE("what cannot be meshed within its outline is refused, and too many vertices before they are made") {
   const Scratch folder;
   folder.write("panel.obj", panel);
