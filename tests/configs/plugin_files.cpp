@@ -164,6 +164,24 @@ TEST_CASE("A library is kept where only this user can write, and loaded from now
   CHECK_THAT(drape_with(command, folder.path, homeless).err, !Contains("compiling"));
 }
 
+TEST_CASE("A relative folder for the cache is not used: it would be another one wherever the command runs") {
+  const PluginFolder folder;
+  const std::string temporary = (folder / "tmp").string();
+  fs::create_directory(temporary);
+  for (const std::string relative : {"HOME=. XDG_CACHE_HOME=cache", "HOME=./home XDG_CACHE_HOME="})
+    CHECK_THAT(drape_with(listed + "rubber.cpp", folder.path, relative + " TMPDIR=" + temporary).out,
+               Contains("  rubber "));
+  for (const char* name : {"cache", "home", ".cache", "drape"}) CHECK_FALSE(fs::exists(folder / name));
+  CHECK_FALSE(fs::is_empty(temporary));
+}
+
+TEST_CASE("A plugin that ends the program while it is loaded is an error") {
+  const PluginFolder folder;
+  folder.write("ends.cpp", "#include <cstdlib>\n" + energy_file + "const int code = (std::exit(0), 0);\n");
+  CHECK_THAT(folder.refused("check drape.yaml --plugin ends.cpp"),
+             Contains("ends.so: its static initialiser ends the program"));
+}
+
 TEST_CASE("A colon in the name of a plugin's source does no harm, and in the cache's it is refused") {
   const PluginFolder folder;
   fs::create_directory(folder / "a:b");

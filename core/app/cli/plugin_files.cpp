@@ -39,10 +39,11 @@ fs::path temporary_folder() {
 }
 
 fs::path cache_folder() {
-  const std::string own = variable("XDG_CACHE_HOME"), home = variable("HOME");
-  if (!own.empty()) return fs::path(own) / "drape";
-  return home.empty() ? temporary_folder() / ("drape-cache-" + std::to_string(geteuid()))
-                      : fs::path(home) / ".cache" / "drape";
+  // Relative ones would name a folder of whatever folder the command runs in.
+  const fs::path own = variable("XDG_CACHE_HOME"), home = variable("HOME");
+  if (own.is_absolute()) return own / "drape";
+  return home.is_absolute() ? home / ".cache" / "drape"
+                            : temporary_folder() / ("drape-cache-" + std::to_string(geteuid()));
 }
 
 /// Makes a folder in the cache, both for this user alone. Throws std::runtime_error, which names the
