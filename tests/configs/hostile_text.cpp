@@ -89,17 +89,27 @@ TEST_CASE("an empty argument is refused, wherever it stands") {
   CHECK(std::distance(fs::directory_iterator(folder.path), {}) == 1);
 }
 
+TEST_CASE("a table of fabrics without a row is said to be empty") {
+  const Scratch folder;
+  for (const auto& [text, fault] : {std::pair("", "e.csv is empty; a table of fabrics names its columns"),
+                                    {" \n\n", "e.csv is empty"},
+                                    {"name,mass\n", "e.csv has no row below its header"}}) {
+    folder.write("e.csv", text);
+    CHECK_THAT(refused_by("fabric --file e.csv", folder.path), Contains(fault));
+  }
+}
+
 TEST_CASE("a text that a spreadsheet would compute is marked as a text in CSV, and a number stays one") {
   using namespace drape;
   RunTable table;
   table.columns = {"run", "=sum"};
-  for (const Json& value :
-       Json::array({"=1+1", "+A1", "-A1", "@sum", "\t=1", "\r=1", "a=1", "-1.5", "", "=\"a\",b"}))
+  for (const Json& value : Json::array({"=1+1", "+A1", "-A1", "@sum", "\t=1", "\r=1", "a=1", "-1.5", "",
+                                        "=\"a\",b", "＝1", "＋1", "－1", "＠a"}))
     table.rows.push_back({{"run", value}, {"=sum", -1.5}});
   CHECK(table_text(table, {}, TableFormat::csv) ==
         "run,'=sum\n'=1+1,-1.5\n'+A1,-1.5\n'-A1,-1.5\n'@sum,-1.5\n'\t=1,-1.5\n\"'\r=1\",-1.5\na=1,-1.5\n-1.5,"
         "-1.5\n"
-        ",-1.5\n\"'=\"\"a\"\",b\",-1.5\n");
+        ",-1.5\n\"'=\"\"a\"\",b\",-1.5\n'＝1,-1.5\n'＋1,-1.5\n'－1,-1.5\n'＠a,-1.5\n");
   CHECK_THAT(table_text(table, {}, TableFormat::markdown), Contains("| =1+1 |"));
   const Scratch folder(small_experiment());
   for (const std::string name : {"-2", "-A1"})

@@ -108,6 +108,11 @@ struct Table {
       else
         rows.push_back(std::move(cells));
     }
+    if (rows.empty())
+      throw std::runtime_error(
+          file + (header.empty() ? " is empty" : " has no row below its header") +
+          "; a table of fabrics names its columns in the first line, and has a fabric in "
+          "each further one");
     for (std::string& head : header)
       for (char& c : head) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
   }

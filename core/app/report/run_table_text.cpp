@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <array>
 #include <boost/algorithm/string/replace.hpp>
 #include <cmath>
 #include <stdexcept>
@@ -112,7 +113,8 @@ std::string methods_text(const RunTable& table) {
 }
 
 std::string uncomputed(std::string text) {
-  const bool is_computed = std::string_view("=+-@\t\r").find(text[0]) != std::string_view::npos;
+  const std::array marks = {"=", "+", "-", "@", "\t", "\r", "\uff1d", "\uff0b", "\uff0d", "\uff20"};
+  const bool is_computed = std::ranges::any_of(marks, [&](auto mark) { return text.starts_with(mark); });
   if (is_computed && !parse_number(text)) text.insert(0, "'");
   return text;
 }

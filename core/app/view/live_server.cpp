@@ -166,6 +166,11 @@ LiveServer::LiveServer(int port, const LiveAnswers& answers, double patience)
   server.set_pre_routing_handler([this](const Request& request, Response& response) {
     // Before the body is read: only the page may send one.
     const bool ours = impl_->is_ours(request);
+    // The library would read as many bytes as it is told of, to throw them away.
+    if (std::strtoull(request.get_header_value("Content-Length").c_str(), nullptr, 10) > largest_body) {
+      refuse(response, 413, "No request of the page is so long.");
+      return httplib::Server::HandlerResponse::Handled;
+    }
     if (ours && request.path.starts_with(impl_->base)) {
       impl_->queue->keep(request.remote_port);
       return httplib::Server::HandlerResponse::Unhandled;

@@ -44,11 +44,12 @@ struct ObjCorner {
   int vertex = 0, uv = -1;
 };
 
-/// Reads "v", "v/vt", "v//vn" or "v/vt/vn".
-ObjCorner obj_corner(const TextReader& reader, std::string_view word, int vertex_count, int uv_count) {
+/// Reads "v", "v/vt", "v//vn" or "v/vt/vn", of the surface of an obstacle v alone.
+ObjCorner obj_corner(const TextReader& reader, std::string_view word, int vertex_count, int uv_count,
+                     MeshUse use) {
   const std::size_t slash = std::min(word.find('/'), word.size());
   ObjCorner corner{obj_index(reader, word.substr(0, slash), vertex_count, "vertex", "vertices")};
-  if (slash == word.size()) return corner;
+  if (slash == word.size() || use == MeshUse::surface) return corner;
   const std::string_view further = word.substr(slash + 1);
   const std::size_t second = std::min(further.find('/'), further.size());
   if (second + 1 < further.size()) reader.integer(further.substr(second + 1));
@@ -56,13 +57,13 @@ ObjCorner obj_corner(const TextReader& reader, std::string_view word, int vertex
   return corner;
 }
 
-/// The u and v of a vt line, finite in a cloth; v is 0 if it has u alone.
-std::array<double, 2> obj_uv(const TextReader& reader, MeshUse use) {
+/// The u and v of a vt line; v is 0 if it has u alone.
+std::array<double, 2> obj_uv(const TextReader& reader) {
   const auto& words = reader.words();
   if (words.size() < 2) reader.fail("texture coordinates need one to three numbers");
   std::array<double, 2> uv{};
   for (std::size_t k = 0; k < std::min<std::size_t>(words.size() - 1, 2); ++k)
-    uv[k] = use == MeshUse::cloth ? reader.coordinate(words[k + 1]) : reader.number(words[k + 1]);
+    uv[k] = reader.coordinate(words[k + 1]);
   check_further_numbers(reader, 3, 1);
   return uv;
 }
@@ -107,17 +108,17 @@ TriangleMesh read_obj(const std::filesystem::path& path, std::string_view bytes,
     } else if (words[0] == "v") {
       read_vertex(reader, 1, 4, builder);  // a weight, a colour
     } else if (words[0] == "vt") {
-      uv.push_back(obj_uv(reader, use));
+      if (use == MeshUse::cloth) uv.push_back(obj_uv(reader));
     } else if (words[0] == "f") {
       face.clear();
       face_uv.clear();
       for (std::size_t k = 1; k < words.size(); ++k) {
         const ObjCorner corner =
-            obj_corner(reader, words[k], builder.vertex_count(), static_cast<int>(uv.size()));
+            obj_corner(reader, words[k], builder.vertex_count(), static_cast<int>(uv.size()), use);
         face.push_back(corner.vertex);
-        if (corner.uv >= 0 && use == MeshUse::cloth)
-          face_uv.insert(face_uv.end(), uv[corner.uv].begin(), uv[corner.uv].end());
+        if (corner.uv >= 0) face_uv.insert(face_uv.end(), uv[corner.uv].begin(), uv[corner.uv].end());
       }
+      if (face.empty() && use == MeshUse::surface) continue;
       if (face.size() < builder.fewest_corners()) reader.fail("a face needs at least three vertices");
       if (!face_uv.empty() && face_uv.size() < 2 * face.size())
         reader.fail("a face has a vt at every corner or at none");

@@ -119,6 +119,8 @@ TEST_CASE("ipc: an obstacle has no use for texture coordinates, nor for faces of
     return meshes.repair;
   };
   CHECK(repair("a.obj", obj + "f 1/1 2/2 3/1\nf 1/1 3/1 4/1\n", true) == "");
+  CHECK(repair("c.obj", obj + "vt\nvt left\nvt 1 2 3 4\nf 1/9 2/-9 3/x/y\nf\nf 1/ 3/0 4/1/1/1\n", true) ==
+        "");
   CHECK(repair("a.ply", replaced(ply, "face 4", "face 2") + uv + "3 0 1 2 6 0 nan 0 0 0 0\n3 0 2 3 0\n",
                true) == "");
   for (const auto& [name, text] : {std::pair("b.obj", obj + "f 1/1 2/1\nf 1 2 3\nf 4\nf 1 3 4\n"),

@@ -95,6 +95,13 @@ TEST_CASE("a request that does not arrive in time is given up") {
   CHECK(watch.seconds() > 0.5);
 }
 
+TEST_CASE("a body that is announced as very long is not waited for") {
+  const Served served(for_ever);
+  for (const std::string target : {served.address.path + "stop", served.address.path, std::string("/")})
+    CHECK(served.status("POST", target, "Content-Length: 1000000000000\r\n") >= 400);
+  CHECK(served.stops == 0);
+}
+
 TEST_CASE("lengths that are none, bodies of any size and long lines are refused") {
   const Served served(0.2);
   const auto post = [&](const std::string& more, const std::string& body = "") {
