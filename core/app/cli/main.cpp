@@ -6,6 +6,7 @@
 #include <csignal>
 #include <cstdlib>
 #include <iostream>
+#include <memory>
 #include <nlohmann/json.hpp>
 
 #include "core/app/cli/commands.h"
@@ -78,6 +79,13 @@ int main(int argc, char** argv) {
   // Exceeding a file size limit is reported as an error instead of ending the process.
   std::signal(SIGXFSZ, SIG_IGN);
   open_standard_streams();
+  static bool at_work = true;  // until main returns: who ends the program before is a plugin
+  std::atexit([] {
+    if (!at_work) return;
+    std::cerr << "error: a plugin ended the program\n";
+    std::_Exit(exit_aborted);
+  });
+  const std::shared_ptr<void> returned(nullptr, [](void*) { at_work = false; });
   const auto end = [](const std::string& message, int exit_code) {
     std::cerr << "error: " << printable(message) << "\n";
     return exit_code;

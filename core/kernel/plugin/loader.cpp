@@ -4,7 +4,6 @@
 #include <link.h>
 
 #include <algorithm>
-#include <cstdio>
 #include <cstdlib>
 #include <cstring>
 #include <fstream>
@@ -65,32 +64,14 @@ auto call(const std::string& path, const char* what, const Call& function) {
   }
 }
 
-/// What is being loaded; null otherwise. A static initialiser may end the program, with a code that says that
-/// all is well.
-const char* loading = nullptr;
-
-void refuse_exit() {
-  if (!loading) return;
-  std::fprintf(stderr, "error: %s: its static initialiser ends the program\n", loading);
-  std::_Exit(2);
-}
-
 void load(Registry& registry, const fs::path& library) {
-  static const int registered = std::atexit(refuse_exit);
-  static_cast<void>(registered);
   const std::string path = library.string();
   if (const std::string unfit = fault_of(library); !unfit.empty())
     refuse_path(library, "cannot be loaded: " + unfit);
   // The pointer hides from the compiler that dlopen is declared to throw nothing: static initialisers may. A
   // name without a slash would be looked for in the system's folders.
   void* (*volatile const open)(const char*, int) = dlopen;
-  const auto load = [&] {
-    const struct Named {
-      explicit Named(const std::string& path) { loading = path.c_str(); }
-      ~Named() { loading = nullptr; }
-    } named(path);
-    return open(fs::absolute(library).c_str(), RTLD_NOW | RTLD_LOCAL);
-  };
+  const auto load = [&] { return open(fs::absolute(library).c_str(), RTLD_NOW | RTLD_LOCAL); };
   void* handle = call(path, "static initialiser", load);
   if (!handle) refuse_path(library, std::string("cannot be loaded: ") + dlerror());
   const auto entry_point =
