@@ -97,7 +97,7 @@ TEST_CASE("a request that does not arrive in time is given up") {
 
 TEST_CASE("a body that is announced as very long is not waited for") {
   const Served served(for_ever);
-  for (const std::string target : {served.address.path + "stop", served.address.path, std::string("/")})
+  for (const std::string& target : {served.address.path + "stop", served.address.path, std::string("/")})
     CHECK(served.status("POST", target, "Content-Length: 1000000000000\r\n") >= 400);
   CHECK(served.stops == 0);
 }
