@@ -13,7 +13,7 @@ BUILD := $(if $(filter release ci,$(PRESET)),build,build-$(PRESET))
 SOURCES = $(shell find core plugins examples tests benchmarks -name '*.cpp' -o -name '*.h')
 
 .PHONY: all setup setup-to-develop configure build build-tests benchmarks python deb wheel notebooks demo test fuzz extremes data results figures \
-        pictures api format fix-format lint clean
+        pictures api site format fix-format lint clean
 all: build
 
 # Installs what third_party/packages-to-run.txt and packages-to-test.txt list; setup-to-develop also packages-to-develop.txt and
@@ -123,6 +123,13 @@ api:
 	@third_party/setup develop
 	@doxygen docs/Doxyfile
 	@echo "build/api/html/index.html"
+
+# The Markdown files as a searchable site, whose links are checked: build/site/html/README.html.
+site:
+	@third_party/setup develop
+	@mkdir -p build/site/pages && ln -sfn $(addprefix $(CURDIR)/,$(filter-out build% results,$(wildcard *))) build/site/pages
+	@mkdocs build --strict --quiet
+	@echo "build/site/html/README.html"
 
 # Checks the layout of the sources.
 format:
