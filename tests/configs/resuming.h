@@ -15,7 +15,9 @@ inline void write_sheets(const Scratch& folder) {
 /// Without what a clock or the machine says.
 inline nlohmann::json timeless(nlohmann::json json) {
   if (json.is_object())
-    for (const char* key : {"seconds", "seconds_by_phase", "peak_memory_bytes"}) json.erase(key);
+    for (const char* key : {"seconds", "cpu_seconds", "seconds_by_phase", "load_before", "load_after",
+                            "ended", "peak_memory_bytes"})
+      json.erase(key);
   if (json.is_structured())
     for (auto& item : json.items()) item.value() = timeless(item.value());
   return json;

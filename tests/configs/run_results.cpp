@@ -127,6 +127,8 @@ TEST_CASE("results.json has every key, finite figures and every pair of levels; 
         CHECK(level.at(energy).is_number());
       for (const char* of_contact : {"intersections", "smallest_gap"})  // which no contact model looked for
         CHECK(level.at(of_contact).is_null());
+      CHECK(level.at("cpu_seconds") > 0);
+      for (const char* load : {"load_before", "load_after"}) CHECK(level.at(load) >= 0);
       double phases = 0;
       for (const auto& [phase, value] : level.at("seconds_by_phase").items()) phases += value.get<double>();
       CHECK(phases > 0);
@@ -244,6 +246,7 @@ TEST_CASE("a run takes as many threads as there are cores that it may use") {
   const nlohmann::json machine = results_in(folder / "out")["machine"];
   CHECK(machine["threads"] == 1);
   CHECK(machine["cores"] == 1);
+  CHECK(machine["processors"] >= 1);
 }
 
 TEST_CASE("a metric that throws leaves a note, and the run continues") {

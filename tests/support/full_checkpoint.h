@@ -48,6 +48,7 @@ inline drape::Checkpoint full_checkpoint() {
   c.recorder.results = "{}", c.recorder.iterations_bytes = 12345;
   c.recorder.states = {{"pcs", 1, state(9), {}, {{{{1, 2, 3}, 4, 5}}, true, 7}}};
   c.recorder.snapshots = {2, 5, {{{1, 2, 3}, state(9)}}};
+  c.recorder.cpu = 1.5, c.recorder.load = 0.25;
   c.recorder.last_load = {2, {0.5, 0.75}};
   return c;
 }

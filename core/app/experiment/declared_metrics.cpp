@@ -77,7 +77,8 @@ void check_declarations(const std::vector<DeclaredMetric>& metrics, const Locati
   // the first has under its names.
   static const auto of_level = split(
       "level vertices triangles status message steps iterations from_initial_state factorisations flops "
-      "analyses seconds seconds_by_phase energy energy_parts energy_on_finest energy_released "
+      "analyses seconds cpu_seconds load_before load_after seconds_by_phase energy energy_parts "
+      "energy_on_finest energy_released "
       "energy_parts_released decrement force_residual intersections smallest_gap contact_stiffness mesh "
       "mesh_checksum snapshots not_measured",
       ' ');

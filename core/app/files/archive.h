@@ -87,16 +87,16 @@ void with_members(T& value, const Body& body) {
   if constexpr (n == 8) { auto& [a, b, c, d, e, f, g, h] = value; body(a, b, c, d, e, f, g, h); }
   if constexpr (n == 9) { auto& [a, b, c, d, e, f, g, h, i] = value; body(a, b, c, d, e, f, g, h, i); }
   if constexpr (n == 10) { auto& [a, b, c, d, e, f, g, h, i, j] = value; body(a, b, c, d, e, f, g, h, i, j); }
-  if constexpr (n == 13) {
-    auto& [a, b, c, d, e, f, g, h, i, j, k, l, m] = value;
-    body(a, b, c, d, e, f, g, h, i, j, k, l, m);
+  if constexpr (n == 15) {
+    auto& [a, b, c, d, e, f, g, h, i, j, k, l, m, o, p] = value;
+    body(a, b, c, d, e, f, g, h, i, j, k, l, m, o, p);
   }
   if constexpr (n == 19) {
     auto& [a, b, c, d, e, f, g, h, i, j, k, l, m, o, p, q, r, s, t] = value;
     body(a, b, c, d, e, f, g, h, i, j, k, l, m, o, p, q, r, s, t);
   }
   // clang-format on
-  static_assert(n <= 10 || n == 13 || n == 19, "add a line for so many members");
+  static_assert(n <= 10 || n == 15 || n == 19, "add a line for so many members");
 }
 
 /// A number, an enumeration with an overload of `bool is_value(T)`, or a struct by its members.

@@ -1,8 +1,11 @@
 #include "core/app/files/machine.h"
 
 #include <sys/resource.h>
+#include <unistd.h>
 
 #include <algorithm>
+#include <cstdlib>
+#include <ctime>
 #include <fstream>
 
 namespace drape {
@@ -53,6 +56,19 @@ ContainerMemory ContainerMemory::of(const std::filesystem::path& group) {
       value_in(group / "memory.stat", "inactive_file");  // the kernel drops them on demand
   if (!files.empty()) used -= std::min(used, std::stod(files));
   return {limit, std::max(0.0, limit - used)};
+}
+
+double load_average() {
+  double load = 0;
+  return getloadavg(&load, 1) == 1 ? load : 0;
+}
+
+int processor_count() { return static_cast<int>(sysconf(_SC_NPROCESSORS_ONLN)); }
+
+double WorkClock::cpu_time() {
+  timespec time{};
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &time);
+  return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
 }
 
 void reset_peak_memory() { std::ofstream("/proc/self/clear_refs") << 5; }

@@ -4,6 +4,8 @@
 #include <filesystem>
 #include <string>
 
+#include "core/kernel/threads/stopwatch.h"
+
 namespace drape {
 
 std::string cpu_name();  ///< from the kernel, or "unknown"
@@ -20,6 +22,22 @@ struct ContainerMemory {
   /// As the files of a control group, version 2, say in this folder.
   static ContainerMemory of(const std::filesystem::path& group = "/sys/fs/cgroup");
 };
+/// The system's mean number of running tasks over the last minute; 0 if unknown.
+double load_average();
+int processor_count();  ///< of the machine, also where this process may use only some
+
+/// Wall and processor time since construction [s], the latter of all threads of the process.
+class WorkClock {
+ public:
+  double seconds() const { return wall_.seconds(); }
+  double cpu_seconds() const { return cpu_time() - cpu_; }
+
+ private:
+  static double cpu_time();
+  Stopwatch wall_;
+  double cpu_ = cpu_time();
+};
+
 /// Resets the process's peak resident memory, if the kernel supports it.
 void reset_peak_memory();
 /// Peak resident memory since the last reset [bytes]; 0 if unknown.

@@ -54,7 +54,11 @@ std::vector<std::pair<const char*, std::string>> cells_of(const IterationRow& ro
 Json program_and_machine() {
   return {{"version", std::string("drape ") + version()},
           {"commit", commit()},
-          {"machine", {{"cpu", cpu_name()}, {"cores", core_count()}, {"threads", thread_count()}}}};
+          {"machine",
+           {{"cpu", cpu_name()},
+            {"processors", processor_count()},
+            {"cores", core_count()},
+            {"threads", thread_count()}}}};
 }
 
 }  // namespace
@@ -115,6 +119,7 @@ Recorder::Recorder(const RunFolder& folder, const Experiment& experiment, const 
 
 Recorder::State Recorder::state() const {
   State s = s_;
+  s.cpu += clock_.cpu_seconds();
   s.results = json_text(results_);
   s.iterations_bytes = size_of_file(folder_.file("iterations.csv"));
   s.log_bytes = size_of_file(folder_.file("log.jsonl"));
@@ -159,7 +164,9 @@ void Recorder::level_started(int level) {
   s_.snapshots = {};
   s_.last = Cost();
   s_.overhead_before = s_.overhead;
-  s_.increments = 0;
+  s_.increments = s_.cpu = 0;
+  s_.load = load_average();
+  clock_ = WorkClock();
   log("level_started", {{"method", s_.method}, {"level", level}});
 }
 
@@ -179,7 +186,7 @@ std::optional<int> Recorder::intersections(int level, const Positions& x) {
 }
 
 void Recorder::iteration(const IterationRow& r, const Positions& x) {
-  const Stopwatch watch;
+  const WorkClock watch;
   IterationRow row = r;
   row.seconds -= s_.overhead;
   s_.last = {std::max(row.seconds - s_.spent.seconds, 0.0), s_.last.iterations + 1, r.flops};
@@ -192,7 +199,7 @@ void Recorder::iteration(const IterationRow& r, const Positions& x) {
   for (const auto& [name, cell] : cells_of(row, crossing)) iterations_ << ',' << cell;
   iterations_ << std::endl;
   require_written(iterations_, "iterations.csv");
-  exclude(watch.seconds());
+  exclude(watch);
 }
 
 Json Recorder::state_entry(const LevelResult& r, const Cost& cost) {
@@ -233,7 +240,7 @@ Json Recorder::state_entry(const LevelResult& r, const Cost& cost) {
 }
 
 void Recorder::increment_finished(const IncrementRow& r, const Positions& x) {
-  const Stopwatch watch;
+  const WorkClock watch;
   const LevelModel& model = *scene_.model(r.level);
   const double seconds = std::max(s_.last.seconds - s_.increments, 0.0);  // without what recording took
   s_.increments += seconds;
@@ -253,11 +260,12 @@ void Recorder::increment_finished(const IncrementRow& r, const Positions& x) {
   if (scene_.dressing && phase != dressing_phase(experiment_.parameters.dress, r.increment + 1) &&
       experiment_.parameters.snapshots > 0)
     s_.snapshots.keep(s_.last, x);
-  exclude(watch.seconds());
+  exclude(watch);
 }
 
 void Recorder::level_finished(const LevelResult& r) {
-  const Stopwatch watch;
+  const WorkClock watch;
+  const double cpu = std::max(s_.cpu + clock_.cpu_seconds(), 0.0);
   const LevelModel model = scene_.model(r.level)->with_stiffness(r.contact_stiffness);
   RecordedState state{s_.method, r.level, r.x, model.contact_pressure(r.x)};
   const std::uint32_t mesh_checksum = write_state(state);
@@ -266,7 +274,10 @@ void Recorder::level_finished(const LevelResult& r) {
   const double own = r.seconds - (s_.overhead - s_.overhead_before);
   const Cost cost = {std::max(own, s_.last.seconds), r.iterations, r.flops};
   entry["levels"].push_back(state_entry(r, cost));
-  entry["levels"].back()["mesh_checksum"] = mesh_checksum;
+  entry["levels"].back().update({{"cpu_seconds", cpu},
+                                 {"load_before", s_.load},
+                                 {"load_after", load_average()},
+                                 {"mesh_checksum", mesh_checksum}});
   if (scene_.dressing)
     entry["levels"].back()["pieces"] =
         garment_pieces(scene_.hierarchy.levels[r.level], garment_fields_of(state), state.contact_pressure);
@@ -283,11 +294,12 @@ void Recorder::level_finished(const LevelResult& r) {
                          {"status", to_string(r.outcome)},
                          {"message", r.message},
                          {"seconds", cost.seconds}});
-  exclude(watch.seconds());
+  exclude(watch);
 }
 
 void Recorder::run_finished(bool complete) {
   results_["complete"] = complete;
+  results_["ended"] = wall_clock();
   save();
   log("run_finished", {{"complete", complete}});
   // The checkpoint, from which they could be written again, is removed next.

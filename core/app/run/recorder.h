@@ -6,6 +6,7 @@
 #include <string>
 
 #include "core/app/files/json_file.h"
+#include "core/app/files/machine.h"
 #include "core/app/run/errors.h"
 #include "core/app/run/run_folder.h"
 #include "core/app/scene/scene.h"
@@ -42,6 +43,8 @@ class Recorder : public Observer {
     double overhead = 0;                ///< time of the method that recording took [s]
     double overhead_before = 0;         ///< the same before this level
     double increments = 0;              ///< time of this level's increments so far [s]
+    double cpu = 0;   ///< processor time of this level before `clock_`, less that of recording since [s]
+    double load = 0;  ///< load_average when the level began
     std::uint64_t iterations_bytes = 0, log_bytes = 0;  ///< sizes of its files
     /// The furthest that a level has come to, that of the obstacles' files; without values at the start.
     LoadSteppingState last_load;
@@ -60,8 +63,11 @@ class Recorder : public Observer {
   void warm_started_from(const std::string& where);
 
   void method_started(const std::string& method);
-  /// Does not count the time as the method's [s].
-  void exclude(double seconds) { s_.overhead += seconds; }
+  /// Does not count what the clock has measured as the method's time.
+  void exclude(const WorkClock& work) {
+    s_.overhead += work.seconds();
+    s_.cpu -= work.cpu_seconds();
+  }
   /// Evaluates the metrics on all finished levels and pairs of them, and writes results.json. A failed method
   /// keeps the results of its earlier levels.
   void method_finished(const std::vector<LevelResult>& results, const std::optional<MethodFailure>& failure);
@@ -141,6 +147,7 @@ class Recorder : public Observer {
   std::map<std::string, std::string> not_measured_;
   std::vector<std::string> written_, restored_;  // names of files that were missing or different
   State s_;                                      // without results
+  WorkClock clock_;                              // since this level began, or the run was resumed
   std::optional<LevelResult> solved_reference_;
 };
 

@@ -73,9 +73,9 @@ class RunObserver : public Observer {
     for (Observer* viewer : viewers_) viewer->increment_finished(row, x);
   }
   void level_finished(const LevelResult& reported) override {
-    const Stopwatch watch;
+    const WorkClock watch;
     const LevelResult result = audited(scene_, reported, force_tolerance_);
-    recorder_.exclude(watch.seconds());
+    recorder_.exclude(watch);
     if (const auto& before = now_.state.finished; !before.empty() && result.level <= before.back().level)
       throw std::runtime_error("the method reported level " + std::to_string(result.level) + " after level " +
                                std::to_string(before.back().level) +
@@ -86,7 +86,6 @@ class RunObserver : public Observer {
       now_.state.level = result.level + 1;
       now_.state.under_way.reset();
       save();
-      recorder_.exclude(cost_);
     }
     for (Observer* viewer : viewers_) viewer->level_finished(result);
   }
@@ -98,7 +97,6 @@ class RunObserver : public Observer {
     now_.state.level = state.so_far.level;
     now_.state.under_way = state;
     save();
-    recorder_.exclude(cost_);
   }
   bool stop_requested() override {
     return (options_.stop && options_.stop()) || std::ranges::any_of(viewers_, &Observer::stop_requested);
@@ -107,11 +105,12 @@ class RunObserver : public Observer {
 
  private:
   void save() {
-    const Stopwatch watch;
+    const WorkClock watch;
     now_.state.seconds = method_clock_.seconds();
     now_.recorder = recorder_.state();
     save_checkpoint(folder_, now_);
     cost_ = watch.seconds();
+    recorder_.exclude(watch);
     since_ = Stopwatch();
   }
 
