@@ -36,7 +36,7 @@ export class Scene {
     this.solid.uniforms.back.value.set(.45, .47, .5);
     // What lies on an obstacle is drawn in front of it, without speckles.
     Object.assign(this.solid, {polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1});
-    this.lines = new THREE.LineBasicMaterial({color: 0x7a2e2e});
+    this.lines = new THREE.LineBasicMaterial({color: 0xb3261e, visible: false});
     this.lookAt([0, 0, 0], 1);
     new ResizeObserver(() => this.layOut()).observe(canvas.parentElement);
     canvas.addEventListener('webglcontextrestored', () => this.draw());
@@ -86,6 +86,14 @@ export class Scene {
       material.transparent = on;
       material.depthWrite = !on;
     }
+    this.draw();
+  }
+
+  /// Whether obstacles stand back by some per cent of the scene: a smooth surface lies within its mesh, which rests on them.
+  setBack(on) { this.solid.polygonOffsetUnits = on ? 3000 : 1; }
+  /// Shows arrows along warp.
+  setWarp(on) {
+    this.lines.visible = on;
     this.draw();
   }
 

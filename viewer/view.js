@@ -1,7 +1,21 @@
 /// The 3D view and its controls: which states are shown, in which colours, in which panels.
 import {embedded, gradient, paint, positions, scalars, triangles} from './blocks.js';
 import {Scene} from './scene.js';
+import {smoothed} from './smooth.js';
 import {choice, count, fold, h, save, say, tick} from './text.js';
+
+/// The smooth surface of a coarse state, kept with its positions; nothing for a mesh that is fine already.
+function surface({index, x, tints}, colours) {
+  const rounds = Math.min(2, Math.floor(Math.log(3 * 60000 / x.length) / Math.log(4)));
+  if (rounds < 1) return null;
+  x.surfaces ??= {};
+  if (!x.surfaces[colours]) {
+    const made = smoothed({x, index: index.array, tints}, rounds);
+    x.surfaces[colours] = {...made, index: new THREE.BufferAttribute(made.index, 1)};
+    made.x.rounding = x.rounding;
+  }
+  return x.surfaces[colours];
+}
 
 /// So many digits, or a whole number where these do not suffice: no exponent.
 const digits = (value, n) => value < 10 ** n - .5 ? value.toPrecision(n) : count(value);
@@ -32,7 +46,9 @@ export class View {
       h('p', {class: 'controls'}, this.fields, this.ticks,
         tick('beside its end', beside, on => { this.beside = on; this.listPanels(); this.show(this.stop); }, 'viewer-beside'),
         tick('obstacles', true, on => { this.obstacles = on; this.show(this.stop); }, 'viewer-obstacles'),
+        tick('smooth surface', false, on => { this.smooth = on; this.scene.setBack(on); this.show(this.stop); }, 'viewer-smooth'),
         tick('x-ray', false, on => this.scene.setXray(on), 'viewer-xray'),
+        view.levels.some(level => level.warp) ? tick('warp (red arrows)', false, on => this.scene.setWarp(on), 'viewer-warp') : '',
         button('viewer-reset', 'Reset', () => this.scene.resetView()), button('viewer-png', 'PNG', () => this.savePicture())),
       this.legend,
       fold('Keys and precision', h('p', {class: 'note', id: 'viewer-keys'}, 'All panels share a camera. Drag to turn, with Shift or two fingers to pan; the wheel zooms ' +
@@ -89,13 +105,17 @@ export class View {
       this.fields.replaceChildren(choice('Colour', {'': 'cloth', ...Object.fromEntries(this.data.fields.map(f => [f.name, f.label]))}, this.fieldName,
         name => { this.fieldName = name; this.listFields(); this.show(this.stop); }, 'viewer-field'));
     }
-    const field = this.field(), text = v => String(Number(v.toPrecision(3))).replace('-', '−');
+    // Strain and pressure in units that people know.
+    const field = this.field(), [shown, unit] = !field ? [] : field.name === 'stretch' ? [v => 100 * (v - 1), '% strain'] : field.unit === 'Pa' ? [v => v / 1e3, 'kPa'] : [v => v, field.unit];
+    const text = v => String(Number(shown(v).toPrecision(3))).replace('-', '−');
     this.legend.hidden = !field;
     if (!field) return;
     const bar = h('i');
     bar.style.background = gradient(field.map);
-    this.legend.replaceChildren(text(field.low), bar, text(field.high) + (field.unit === '1' ? '' : ' ' + field.unit), h('span', {}, field.note));
+    this.legend.replaceChildren(text(field.low), bar, text(field.high) + (unit === '1' ? '' : ' ' + unit), h('span', {}, field.note));
   }
+
+  levelName(level) { return level + (this.data.levels.length > 1 ? ` of ${this.data.levels.length - 1}` : ''); }
 
   listMethods() {
     const names = this.data.methods.map(method => method.name);
@@ -113,7 +133,7 @@ export class View {
 
   listPanels() {
     this.shown = this.data.methods.filter(m => !this.hidden.has(m.name) && !(this.live && !m.levels.length)).flatMap(m =>
-      this.beside && m.levels.length + (m.levels[0]?.states.length || 0) > 2 ? [{name: m.name}, {name: m.name, end: true}] : [{name: m.name}]);
+      this.beside && m.levels.length > 1 ? [{name: m.name}, {name: m.name, end: true}] : [{name: m.name}]);
     this.labels.replaceChildren(...this.shown.map(() => h('div')));
     this.scene.setViews(this.shown.length);
     this.panels = [];
@@ -149,7 +169,7 @@ export class View {
     const [obstacles, index, x, tints] = await Promise.all([this.obstaclesOf(found.state), this.index(entry),
       this.block('x', found.state.x, bytes => positions(bytes, entry.vertices)),
       block ? this.block('scalars', block, scalars).then(values => paint(values, field)) : null]);
-    return {method, end, found, shape: {index, x, tints, warp: entry.warp}, obstacles};
+    return {method, end, found, shape: {...this.smooth && surface({index, x, tints}, block ?? '') || {index, x, tints}, warp: entry.warp}, obstacles};
   }
 
   /// Shows a stop once its data are loaded; a later call supersedes it.
@@ -161,7 +181,7 @@ export class View {
     this.level.value = stop.level;
     this.scrubber.max = this.stops.length - 1;
     this.scrubber.value = this.stop;
-    say(this.levelText, `${stop.level}, ${count(this.data.levels[stop.level].vertices)} vertices`);
+    say(this.levelText, `${this.levelName(stop.level)}, ${count(this.data.levels[stop.level].vertices)} vertices`);
     let panels;
     try {
       panels = await Promise.all(this.shown.map(panel => this.panel(panel, stop, this.field())));
@@ -207,10 +227,11 @@ export class View {
 
   label(box, {method, end, found}) {
     const {iteration = null, seconds = null, total = null} = found ? found.state : {}, running = found && found.level.status === 'running';
-    const text = !found ? 'not reached yet' : [`level ${found.level.level}` + (running ? ', running' : ''),
+    const text = !found ? 'not reached yet' : [`level ${this.levelName(found.level.level)}` + (running ? ', running' : ''),
       ...(total !== null ? [`after ${digits(total, 2)} s`] : [iteration === null ? null : `${iteration} iterations`, seconds === null ? null : `${digits(seconds, 3)} s`])]
       .filter(part => part).join(', ');
-    box.replaceChildren(h('b', {}, method.name + (end ? ', last state' : '')), h('span', {}, text));
+    const name = end ? 'end' : found && method.levels.length > 1 && found.level === method.levels[0] && found.state === found.level.states.at(-1) ? 'preview' : '';
+    box.replaceChildren(h('b', {}, method.name + (name && ', ' + name)), h('span', {}, text));
   }
 
   play(on) {

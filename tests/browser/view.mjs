@@ -40,7 +40,7 @@ test('the level slider changes the mesh, the colours and the legend follow the c
   await page.locator('#viewer-beside').uncheck();
   await page.locator('#viewer-level').fill('0');
   await until('level 0', async () => (await state()).panels.every(p => p.level === 0 && p.vertices === 81));
-  assert.match(await textOf(page, '#viewer-level-text'), /^0, 81 vertices/);
+  assert.match(await textOf(page, '#viewer-level-text'), /^0 of 1, 81 vertices/);
   const fields = await page.locator('#viewer-field option').evaluateAll(all => all.map(o => o.value)), seen = new Set();
   assert.deepEqual(fields, ['', 'mean_curvature', 'stretch', 'gap', 'contact_pressure', 'H_difference', 'principal_curvature']);
   for (const field of fields.slice(1)) {
@@ -54,6 +54,10 @@ test('the level slider changes the mesh, the colours and the legend follow the c
   await choose('');
   await until('no tint', async () => (await state()).panels.every(p => p.tints === null));
   assert.ok(!(await page.locator('#viewer-legend').isVisible()));
+  await page.locator('#viewer-smooth').check();
+  await until('a smooth surface', async () => (await state()).panels.every(p => p.vertices === 33 * 33));
+  await page.locator('#viewer-smooth').uncheck();
+  await until('the mesh', async () => (await state()).panels.every(p => p.vertices === 81));
   await page.locator('#viewer-obstacles').uncheck();
   await page.locator('#viewer-xray').check();
   assert.ok(await drawnShare(page, '#viewer-canvas') > .02);

@@ -4,8 +4,10 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
+#include <set>
 #include <stdexcept>
 
 #include "core/kernel/files/file.h"
@@ -17,14 +19,17 @@ namespace drape {
 
 namespace {
 
-/// Where arrows along warp are, on some 150 triangles: the corners' indices, then a and b [1/m] of warp's
-/// image a e₁ + b e₂ by the triangle's edges.
+/// Where arrows along warp are, evenly over the rest shape: the corners' indices of triangles, then a and b
+/// [1/m] of warp's image a e₁ + b e₂ by the triangle's edges.
 Json warp_arrows(const Level& level) {
-  constexpr int most = 150;
+  const double cell = bounding_box_diagonal(level.rest.vertices) / 16;
+  std::set<std::array<double, 3>> taken;  // cells of a grid that have an arrow
   const std::vector<MaterialTriangle> triangles = material_triangles(level);
   Json arrows = Json::array();
-  for (int t = 0; t < level.triangle_count(); t += (level.triangle_count() - 1) / most + 1) {
+  for (int t = 0; t < level.triangle_count(); ++t) {
     const auto v = level.rest.triangles.row(t);
+    const Eigen::RowVector3d place = level.rest.vertices(v, Eigen::all).colwise().mean() / cell;
+    if (!taken.insert({std::floor(place[0]), std::floor(place[1]), std::floor(place[2])}).second) continue;
     arrows.push_back({v[0], v[1], v[2], triangles[t][0], triangles[t][1]});
   }
   return arrows;
