@@ -12,8 +12,8 @@ export function methodLook(styles, method) {
   const style = styles[method] ?? 3, alike = Object.keys(styles).filter(name => styles[name] === style);
   return {colour: `var(--solver-${style})`, mark: marks[style], dash: dashes[Math.max(alike.indexOf(method), 0) % dashes.length]};
 }
-/// The look of the k-th of several things that are no methods.
-export const otherLook = k => ({colour: `var(--other-${k % 8})`, mark: marks[(k >> 3) % 4], dash: dashes[(k >> 3) % 4]});
+/// The same for the k-th of `count` variations: paler, with other dashes.
+export const variantLook = (styles, method, k, count) => count < 2 ? methodLook(styles, method) : {...methodLook(styles, method), dash: dashes[k % dashes.length], opacity: 1 - .65 * k / count};
 
 function markPath(mark, x, y, r) {
   if (mark === 'square') return `M${x - r} ${y - r}h${2 * r}v${2 * r}h${-2 * r}z`;
@@ -122,7 +122,7 @@ export class Chart {
     const longest = 6.6 * Math.max(0, ...(x.categories ?? []).map(c => String(c ?? '–').length));  // [px]
     const tilted = longest > (right - left) / (x.categories?.length ?? 1) ? Math.min(.7 * longest, 110) : 0;  // height of names that do not fit beside each other
     const H = Math.max(this.height, legend.height + tilted + 240), bottom = H - 46 - tilted - legend.height;
-    const sx = scale(points.map(p => p.x), x.log, x.categories, Math.max(2, Math.floor((right - left) / 80)));
+    const sx = scale(points.map(p => p.x), x.log, x.categories, Math.max(2, Math.floor((right - left) / (x.log ? 45 : 80))));
     const px = v => left + sx.place(v) * (right - left), py = v => bottom - sy.place(v) * (bottom - top), r2 = v => Math.round(100 * v) / 100;
     const svg = s('svg', {xmlns: space, width: W, height: H, viewBox: `0 0 ${W} ${H}`, role: 'group', 'font-family': 'system-ui, "DejaVu Sans", sans-serif',
       'font-size': 12, 'aria-label': `${y.title} against ${x.title}: ${series.map(line => line.label).join(', ')}`});
@@ -140,25 +140,27 @@ export class Chart {
     text([(left + right) / 2, bottom + 33 + tilted], x.title);
     text([0, 0], y.title, 'middle', {transform: `translate(13 ${(top + bottom) / 2}) rotate(-90)`});
     svg.append(grid);
-    shown.forEach((line, k) => svg.append(this.line(line, k, p => [r2(px(p.x)), r2(py(p.y))], v => r2(py(v)))));
+    // Marks of a category stand beside each other, and no line joins categories.
+    const slot = x.categories ? Math.min(16, .7 * (right - left) / x.categories.length / shown.length) : 0, at = (p, k) => [px(p.x) + slot * (k - (shown.length - 1) / 2), py(p.y)];
+    shown.forEach((line, k) => svg.append(this.line({...line, joined: !x.categories}, k, p => at(p, k).map(r2), v => r2(py(v)))));
     svg.append(legend.group(bottom + 55 + tilted));
     const hint = s('g', {class: 'hint', 'pointer-events': 'none'});
     svg.append(hint);
-    svg.addEventListener('pointermove', event => this.hint(hint, event, shown, p => [px(p.x), py(p.y)], W));
+    svg.addEventListener('pointermove', event => this.hint(hint, event, shown, at, W));
     svg.addEventListener('pointerleave', () => hint.replaceChildren());
     const focused = this.box.contains(document.activeElement) ? document.activeElement.textContent : null;  // a line's name in the legend
     this.box.replaceChildren(svg);
     if (focused !== null) [...svg.querySelectorAll('.legend > g')].find(item => item.textContent === focused)?.focus({preventScroll: true});
   }
 
-  line({label, colour, mark, dash = '', width = 2, opacity = 1, points, band}, k, at, py) {
+  line({label, colour, mark, dash = '', width = 2, opacity = 1, points, band, joined}, k, at, py) {
     const group = s('g', {class: `series series-${k}`, fill: 'none', stroke: colour, 'stroke-width': width, opacity});
     const path = list => list.map(p => at(p).join(' ')).join('L');
     group.append(s('title', {}, label));
     if (band && points.length > 1)
       group.append(s('path', {class: 'band', d: `M${points.map(p => `${at(p)[0]} ${py(p.high)}`).join('L')}L${
         [...points].reverse().map(p => `${at(p)[0]} ${py(p.low)}`).join('L')}z`, fill: colour, 'fill-opacity': .15, stroke: 'none'}));
-    if (points.length > 1) group.append(s('path', {class: 'line', d: 'M' + path(points), 'stroke-dasharray': dash}));
+    if (joined && points.length > 1) group.append(s('path', {class: 'line', d: 'M' + path(points), 'stroke-dasharray': dash}));
     for (const p of points) {
       if (!band && known(p.low) && p.low < p.high) group.append(s('path', {class: 'range', d: `M${at(p)[0]} ${py(p.low)}V${py(p.high)}`, 'stroke-width': 1.2}));
       if (mark) group.append(s('path', {class: 'mark', d: markPath(mark, ...at(p), p.end === undefined ? 3 : p.end ? 4.5 : 2), fill: colour, stroke: 'none'}));
@@ -198,9 +200,9 @@ export class Chart {
   hint(group, event, shown, at, W) {
     const box = group.ownerSVGElement.getBoundingClientRect(), x = event.clientX - box.left, y = event.clientY - box.top;
     let best = null, least = 40;
-    for (const line of shown)
+    for (const [k, line] of shown.entries())
       for (const p of line.points) {
-        const [a, b] = at(p), distance = Math.hypot(a - x, b - y);
+        const [a, b] = at(p, k), distance = Math.hypot(a - x, b - y);
         if (distance < least) [best, least] = [{line, p, a, b}, distance];
       }
     group.replaceChildren();

@@ -3,14 +3,13 @@ import {formula} from './text.js';
 
 const titles = {
   run: 'run', seed: 'seed', method: 'method', level: 'level', status: 'status', vertices: 'vertices', triangles: 'triangles', steps: 'steps',
-  iterations: 'Newton iterations', shortened_steps: 'shortened steps', seconds: 'time [s]', preview_seconds: 'preview after [s]', flops: 'flops',
+  iterations: 'Newton iterations', shortened_steps: 'shortened steps', seconds: 'time [s]', cpu_seconds: 'CPU time [s]', machine: 'machine', preview_seconds: 'preview after [s]', flops: 'flops',
   energy_released: 'energy released [J]', smallest_gap: 'smallest gap [m]', intersections: 'intersections', force_residual: 'force residual',
   decrement: 'decrement [m/s]', peak_memory_bytes: 'peak memory [B]', message: 'message', pass: 'passes',
   piece: 'piece', phase: 'phase', stretch_warp: 'stretch along warp [%]', largest_stretch_warp: 'largest along warp [%]', stretch_weft: 'stretch along weft [%]',
   largest_stretch_weft: 'largest along weft [%]', ease: 'ease [mm]', pressure: 'pressure [kPa]', pressure_mmhg: 'pressure [mmHg]', largest_pressure: 'largest pressure [kPa]',
   stability: 'stability', lowest_eigenvalue: 'lowest eigenvalue of M⁻¹H [1/s²]', curvature_ratio: 'curvature ratio',
 };
-const lower = ['iterations', 'seconds', 'preview_seconds', 'flops'];
 export const costs = {seconds: 'time [s]', iterations: 'Newton iterations', flops: 'flops of factorisations'};
 export const targets = {reference: 'the reference', own: 'the method’s own end'};
 
@@ -18,13 +17,13 @@ export const targets = {reference: 'the reference', own: 'the method’s own end
 export const metricColumns = (metrics, scope) => Object.values(metrics || {}).filter(metric => metric.scope === scope).flatMap(metric => metric.columns);
 const withUnit = ({name, label, unit}) => (label || name) + (unit && unit !== '1' ? ` [${unit}]` : '');
 
-/// {title, text, better} of a column by its name. `text` is the title without marks, for plots and lists.
+/// {title, text, ofReference} of a column by its name. `text` is the title without marks, for plots and lists; `ofReference`: it is a
+/// distance from the reference.
 export function describe(name, {measures = [], metrics = {}} = {}) {
   const metric = ['state', 'pair'].flatMap(scope => metricColumns(metrics, scope)).find(column => column.name === name);
   const measure = measures.find(m => name === 'preview_' + m.name || name === 'error_' + m.name || name === m.name && m.name === 'energy_gap');
   const text = titles[name] || (measure ? (name.startsWith('preview_') ? 'preview error: ' : 'error: ') + measure.label : metric ? withUnit(metric) : name);
-  const better = lower.includes(name) || measure ? 'lower' : name === 'energy_released' ? 'higher' : metric && metric.better !== 'neither' ? metric.better : undefined;
-  return {text, better, title: titles[name] || (!measure && !metric) ? text : formula(text)};
+  return {text, ofReference: !!measure && !name.startsWith('preview_'), title: titles[name] || (!measure && !metric) ? text : formula(text)};
 }
 
 /// Columns for a table; `few` are those that are shown at first.

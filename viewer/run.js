@@ -2,7 +2,7 @@
 import {Chart, distancePlot, methodLook} from './charts.js';
 import {columnsOf, metricColumns, ranking} from './columns.js';
 import {dataTable} from './tables.js';
-import {about, choice, converged, count, counted, explained, fold, formula, h, known, number, rowsOf, seconds, unique} from './text.js';
+import {about, busyWarning, choice, converged, day, count, counted, explained, fold, formula, h, known, number, rowsOf, seconds, unique} from './text.js';
 import {View} from './view.js';
 
 const statusText = status => (status || 'unknown status').replace(/_/g, ' ');
@@ -13,7 +13,7 @@ function sentence(run, row) {
   const finished = !['running', 'aborted', 'cancelled', 'failed'].includes(method.status);
   const rest = !last ? null : !converged(status) ? `not at rest: ${statusText(status)}, force residual ${number(last.force_residual)}`
     : status !== 'converged' || !tolerance ? 'at rest to rounding'
-    : tolerance < 1 ? `at rest to ${Number(tolerance.toPrecision(3))}` : `ended at force residual ${number(last.force_residual)}`;  // 1: no balance is asked for
+    : tolerance < 1 ? `at rest: unbalanced force below ${Number((100 * tolerance).toPrecision(3))} % of the load` : `ended at force residual ${number(last.force_residual)}`;  // 1: no balance is asked for
   const stability = last?.stability && converged(status) ? last.stability.verdict : null;
   const way = !last ? method.status || 'no level is complete' : finished || status === method.status ? null : method.status === 'running' ? 'still running' : `then ${method.status}`;
   const crossing = known(row.intersections) ? counted(row.intersections, 'intersection') : null;
@@ -35,7 +35,7 @@ function troubles(run) {
 /// The state on top, and what one wants to know of it.
 function hero(run) {
   const picture = run.pictures[0] ? h('img', {class: 'fallback', src: 'data:image/png;base64,' + run.pictures[0].png, alt: run.pictures[0].alt}) : null;
-  const facts = h('div', {class: 'facts'}, h('ul', {class: 'sentences'}, run.rows.map(row => sentence(run, row))),
+  const facts = h('div', {class: 'facts'}, h('ul', {class: 'sentences'}, run.rows.map(row => sentence(run, row))), busyWarning(run.rows),
     run.results.complete ? null : h('p', {class: 'poor', id: 'incomplete'}, run.results.aborted ? `The run was aborted (${run.results.aborted}).` : 'The run is not complete.',
       ' These are the figures it had written.'), troubles(run));
   if (!run.view) return h('section', {class: 'hero flat', id: 'in-3d'}, h('div', {class: 'viewer'}, picture || h('p', {class: 'absent'}, 'The run has no state to show yet.')), facts);
@@ -90,11 +90,11 @@ function distances(run) {
 }
 
 function methodTable(run) {
-  const measure = ranking(run.measures), few = ['method', 'status', 'preview_seconds', 'seconds', 'preview_' + measure, 'error_' + measure, 'energy_released', 'intersections'];
-  const rows = run.rows.map(row => ({...row, comparable: converged(row.status), peak_memory_bytes: run.results.methods[row.method].peak_memory_bytes}));
+  const measure = ranking(run.measures), few = ['method', 'status', 'preview_seconds', 'seconds', 'cpu_seconds', 'iterations', 'preview_' + measure, 'error_' + measure, 'energy_released'];
+  const rows = run.rows.map(row => ({...row, peak_memory_bytes: run.results.methods[row.method].peak_memory_bytes}));
   return h('section', {id: 'summary'}, h('h2', {}, 'Methods'), explained('A row per method: the cost and quality of its end, and of its preview, the state of its coarsest level. Time ' +
     'counts the levels that the end builds on: of a direct method only the finest. Energy released: how far the finest level’s energy, without contact and strain limits, has fallen ' +
-    'since the scene’s start. The best of the methods that converged is bold. ', Object.values(run.results.metrics || {}).filter(m => m.scope === 'state' && m.text).map(m => m.text + ' ').join('')),
+    'since the scene’s start. One start cannot tell which method is better: a sweep over starts can. ', Object.values(run.results.metrics || {}).filter(m => m.scope === 'state' && m.text).map(m => m.text + ' ').join('')),
   dataTable('methods', 'of methods', columnsOf([...run.table.columns.filter(name => !['sweep', 'run', 'seed', 'pass'].includes(name)), 'peak_memory_bytes'], few, run.of), rows),
   fold('Every level', levelTable(run)), consistency(run));
 }
@@ -108,17 +108,15 @@ function levelTable(run) {
   const skipped = ['energy', 'energy_parts', 'energy_on_finest', 'mesh', 'mesh_checksum', 'snapshots', 'not_measured'];
   const rows = run.order.flatMap(method => (run.results.methods[method].levels || []).map(level => ({method, ...flat(level, skipped)})));
   const few = ['method', 'level', 'status', 'vertices', 'iterations', 'seconds', 'energy_released', 'force_residual'];
-  return dataTable('levels', 'of levels', columnsOf(unique(rows.flatMap(Object.keys)), few, run.of).map(column => ({...column, better: undefined})), rows);
+  return dataTable('levels', 'of levels', columnsOf(unique(rows.flatMap(Object.keys)), few, run.of), rows);
 }
 
 /// How close coarse levels are to finer ones, with the scene's start in place of the coarse level as a rival.
 function consistency(run) {
   const columns = metricColumns(run.results.metrics, 'pair').filter(column => column.shown !== 'stored');
-  const ended = (method, l) => converged(run.results.methods[method].levels?.find(each => each.level === l)?.status ?? '');
-  const pairs = run.order.flatMap(method => (run.results.methods[method].consistency || []).map(pair => ({method, levels: `${pair.coarse} → ${pair.fine}`,
-    comparable: ended(method, pair.coarse) && ended(method, pair.fine), ...flat(pair, ['of_start']), of_start: flat(pair.of_start ?? {}, [])})));
+  const pairs = run.order.flatMap(method => (run.results.methods[method].consistency || []).map(pair => ({method, levels: `${pair.coarse} → ${pair.fine}`, ...flat(pair, ['of_start']), of_start: flat(pair.of_start ?? {}, [])})));
   if (!pairs.length || !columns.length) return null;
-  const starts = unique(pairs.map(pair => pair.levels)).map(levels => ({levels, method: 'flat start', yardstick: true, ...Object.fromEntries(columns.map(({name, better}) => {
+  const starts = unique(pairs.map(pair => pair.levels)).map(levels => ({levels, method: 'flat start', ...Object.fromEntries(columns.map(({name, better}) => {
     const values = pairs.filter(pair => pair.levels === levels).map(pair => pair.of_start?.[name]).filter(known);
     return [name, values.length ? Math[better === 'higher' ? 'max' : 'min'](...values) : null];
   }))}));
@@ -126,7 +124,7 @@ function consistency(run) {
   const texts = Object.values(run.results.metrics).filter(m => m.scope === 'pair' && m.text && m.columns.some(c => c.shown !== 'stored')).map(m => formula(m.text + ' '));
   return fold('How close coarse levels are to finer ones', h('p', {}, 'The method’s own interpolation prolongs the coarse state to the fine mesh, where it is compared with the fine one. ', ...texts.flat(),
     'The flat start is the scene’s start in place of the coarse state: where it is best, the measure does not compare the methods.'),
-  dataTable('consistency', 'of pairs of levels', columnsOf(shown, shown, run.of), [...pairs, ...starts].sort((a, b) => a.levels.localeCompare(b.levels)), row => row.levels));
+  dataTable('consistency', 'of pairs of levels', columnsOf(shown, shown, run.of), [...pairs, ...starts].sort((a, b) => a.levels.localeCompare(b.levels))));
 }
 
 /// Residuals, steps and energies on the way, and the increments of a schedule.
@@ -196,5 +194,5 @@ export function runPage(data) {
   run.order = run.rows.map(row => row.method);
   return [h('header', {}, h('h1', {}, results.experiment || 'Unnamed experiment'), results.description ? h('p', {class: 'lead'}, results.description) : null),
     run.order.length ? hero(run) : h('p', {class: 'absent'}, 'The run holds no method’s results yet.'),
-    ...(run.order.length ? [previews(run), distances(run), methodTable(run), convergence(run)] : []), h('footer', {}, about(results))];
+    ...(run.order.length ? [previews(run), distances(run), methodTable(run), convergence(run)] : []), h('footer', {}, about(results), results.ended ? ` · ${day(results.ended)}` : '')];
 }

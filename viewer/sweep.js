@@ -1,8 +1,8 @@
 /// The page of a sweep, or of several runs.
-import {Chart, distancePlot, methodLook, otherLook} from './charts.js';
+import {Chart, distancePlot, variantLook} from './charts.js';
 import {columnsOf, describe, ranking} from './columns.js';
 import {dataTable, matcher} from './tables.js';
-import {about, choice, converged, count, counted, explained, fold, grouped, h, known, rowsOf, spread, tick, unique, words} from './text.js';
+import {about, busyWarning, choice, converged, count, counted, day, explained, fold, grouped, h, known, rowsOf, spread, tick, unique, words, written} from './text.js';
 
 /// Median and extremes over repeats of a curve of error over cost, a step function, at costs in geometric progression from that
 /// at which all have a state to the largest.
@@ -17,55 +17,54 @@ function medianCurve(repeats, points = 40) {
   });
 }
 
-const keyText = (key, value) => `${key.split('.').at(-1)} ${value ?? '–'}`;
-
+/// The thumbnails of a method: a cell has all starts of a variation.
 function matrix(all) {
   const chosen = {across: all.keys.reduce((a, b) => all.values(b).length > all.values(a).length && all.values(b).length <= 8 ? b : a), method: all.methods[0]};
   const frame = h('div', {id: 'matrix'}), others = () => all.keys.filter(key => key !== chosen.across);
-  const tile = (run, row) => {
-    const picture = run.pictures.find(each => each.method === chosen.method), good = row && converged(row.status);
-    const text = all.keys.map(key => keyText(key, run.settings[key])).join(', ') + (known(run.seed) ? `, seed ${run.seed}` : '');
-    const content = [picture ? h('img', {src: 'data:image/png;base64,' + picture.png, alt: text}) : h('span', {class: 'blank'}, run.status.replace(/_/g, ' ')),
-      h('span', {class: 'value' + (good ? '' : ' poor')}, row ? `${good ? '' : '✕ '}${words(row[all.quantity])}` : '–')];
-    return h(run.report ? 'a' : 'span', {class: 'tile', href: run.report || null, title: `${text}: ${row ? row.status : run.status}`}, content);
+  const tile = runs => {
+    const of = run => run.pictures.find(each => each.method === chosen.method), run = runs.find(of) ?? runs[0], picture = of(run);
+    const row = all.shownSummary.find(each => each.variation === run.variation && each.method === chosen.method), value = row?.[all.quantity];
+    const good = runs.filter(each => each.rows.some(own => own.method === chosen.method && converged(own.status))).length;
+    const text = all.keys.map(key => all.keyText(key, run.settings[key])).join(', ');
+    const all_of = `${good} of ${counted(runs.length, 'start')} converged`;
+    const range = value ? `, ${words(value.low)} … ${words(value.high)} over ${counted(value.count, 'start')}` : '';
+    return h(run.report ? 'a' : 'span', {class: 'tile', href: run.report || null, title: `${text}: ${all_of}${range}`},
+      picture ? h('img', {src: 'data:image/png;base64,' + picture.png, alt: text}) : h('span', {class: 'blank'}, run.status.replace(/_/g, ' ')),
+      h('span', {class: 'value' + (good === runs.length ? '' : ' poor')}, `${good === runs.length ? '' : `✕ ${good} of ${runs.length}: `}${words(value?.median)}`));
   };
   const draw = () => {
-    const columns = all.values(chosen.across).flatMap(value => all.seeds.map(seed => ({value, seed}))).filter(({value, seed}) =>
-      all.shown.some(run => run.settings[chosen.across] === value && (run.seed ?? null) === seed));
+    const columns = all.values(chosen.across).filter(value => all.shown.some(run => run.settings[chosen.across] === value));
     const lines = [...new Map(all.shown.map(run => [JSON.stringify(others().map(key => run.settings[key])), run])).values()];
-    const line = first => [others().length ? h('p', {class: 'line'}, others().map(key => keyText(key, first.settings[key])).join(', ')) : null,
-      ...columns.map(({value, seed}) => {
-        const runs = all.shown.filter(run => run.settings[chosen.across] === value && (run.seed ?? null) === seed && others().every(key => run.settings[key] === first.settings[key]));
-        return h('div', {class: 'cell'}, runs.map(run => tile(run, run.rows.find(row => row.method === chosen.method))));
-      })];
-    const grid = h('div', {class: 'matrix'}, columns.map(({value, seed}) => h('p', {class: 'head'}, keyText(chosen.across, value), all.seeds.length > 1 ? h('span', {}, ` · ${seed ?? '–'}`) : '')), lines.map(line).flat());
+    const line = first => [others().length ? h('p', {class: 'line'}, others().map(key => all.keyText(key, first.settings[key])).join(', ')) : null,
+      ...columns.map(value => h('div', {class: 'cell'}, [...grouped(all.shown.filter(run => run.settings[chosen.across] === value &&
+        others().every(key => run.settings[key] === first.settings[key])), run => run.variation).values()].map(tile)))];
+    const grid = h('div', {class: 'matrix'}, columns.map(value => h('p', {class: 'head'}, all.keyText(chosen.across, value))), lines.map(line).flat());
     grid.style.gridTemplateColumns = `repeat(${columns.length}, minmax(0, 1fr))`;
-    grid.style.maxWidth = Math.max(360, columns.length * Math.min(260, Math.max(70, (560 / lines.length - 40) * 9 / 7))) + 'px';  // 24 runs fit a screen
+    grid.style.maxWidth = Math.max(360, columns.length * Math.min(260, Math.max(70, (560 / lines.length - 40) * 9 / 7))) + 'px';  // it fits a screen
     frame.replaceChildren(grid);
   };
   all.redraw.push(draw);
   const pick = (label, name, options) => Object.keys(options).length > 1 ? choice(label, options, chosen[name], value => { chosen[name] = value; draw(); }, 'matrix-' + name) : '';
-  return h('section', {id: 'runs'}, h('p', {class: 'controls'}, all.chooser,
-    pick('across', 'across', Object.fromEntries(all.keys.map(key => [key, key]))), pick('method', 'method', Object.fromEntries(all.methods.map(name => [name, name])))), frame);
+  return h('section', {id: 'runs'}, h('p', {class: 'controls'}, all.chooser, pick('across', 'across', all.keyNames),
+    pick('method', 'method', Object.fromEntries(all.methods.map(name => [name, name])))), frame);
 }
 
-/// A value against a varied key: medians, with ranges over seeds.
+/// A value against a varied key: medians, with ranges over starts. Only numbers are joined by lines.
 function against(all) {
-  const chosen = {key: all.keys.reduce((a, b) => all.values(b).length > all.values(a).length ? b : a), log: false};
+  const chosen = {key: all.keys.reduce((a, b) => all.values(b).length > all.values(a).length ? b : a)};
   const chart = new Chart('parameter', 'Medians over the starts that converged, with the range as a line.');
   const draw = () => {
     const values = all.values(chosen.key), numeric = values.every(known), rest = all.keys.filter(key => key !== chosen.key);
-    const lines = grouped(all.shownRows, row => [row.method, ...rest.map(key => keyText(key, row[key]))].join(', '));
-    const plain = unique([...lines.values()].map(rows => rows[0].method)).length === lines.size, wide = numeric && Math.min(...values) > 0 && Math.max(...values) > 20 * Math.min(...values);
-    chart.draw({x: {title: chosen.key, name: chosen.key, log: wide, categories: numeric ? null : values}, y: {title: describe(all.quantity, all.of).text, name: all.quantity},
-      absent: 'No run has this value.', series: [...lines].map(([label, rows], k) => ({label, ...(plain ? methodLook(all.styles, rows[0].method) : otherLook(k)),
-        points: values.flatMap(x => {
-          const s = spread(rows.filter(row => row[chosen.key] === x && converged(row.status)).map(row => row[all.quantity]));
-          return s ? [{x, y: s.median, low: s.low, high: s.high, runs: s.count}] : [];
-        })}))});
+    const variant = row => rest.map(key => all.keyText(key, row[key] ?? row.variation)).join(', '), variants = unique(all.shownSummary.map(variant));
+    const lines = grouped(all.shownSummary, row => [row.method, variant(row)].filter(part => part).join(', '));
+    const wide = numeric && Math.min(...values) > 0 && Math.max(...values) > 20 * Math.min(...values);
+    chart.draw({x: {title: all.keyTitle(chosen.key), name: chosen.key, log: wide, categories: numeric ? null : values}, y: {title: describe(all.quantity, all.of).text, name: all.quantity},
+      absent: 'No run has this value.', series: [...lines].map(([label, rows]) => ({label, ...variantLook(all.styles, rows[0].method, variants.indexOf(variant(rows[0])), variants.length),
+        points: rows.filter(row => row[all.quantity]).map(row => ({x: (chosen.key === 'run' ? row.variation : row[chosen.key]) ?? null, row: row[all.quantity]}))
+          .map(({x, row: {median, low, high, count: runs}}) => ({x, y: median, low, high, runs}))}))});
   };
   all.redraw.push(draw);
-  return h('section', {id: 'against'}, h('h2', {}, 'A value against a parameter'), h('p', {class: 'controls'}, choice('against', Object.fromEntries(all.keys.map(key => [key, key])), chosen.key,
+  return h('section', {id: 'against'}, h('h2', {}, 'A value against a parameter'), h('p', {class: 'controls'}, choice('against', all.keyNames, chosen.key,
     value => { chosen.key = value; draw(); }, 'parameter-key')), chart.element);
 }
 
@@ -75,8 +74,8 @@ function errors(all) {
   const line = (variation, method, cost, y) => medianCurve(recorded.filter(run => run.variation === variation && run.shown.some(row => row.method === method)).map(run =>
     run.errors.filter(row => row.method === method && row.level >= (run.first_levels[method] ?? 0)).map(row => ({x: row[cost], y: row[y]}))));
   const plot = distancePlot('errors', 'Medians over the starts, with a band from the lowest to the highest. Lower and further left is better.', 420,
-    {measures: all.measures, rows: recorded.flatMap(run => run.errors)}, (cost, y) => variations.flatMap((variation, v) => all.methods.map((method, m) => ({
-      ...(variations.length > 1 ? {label: `${variation}, ${method}`, ...otherLook(v * all.methods.length + m)} : {label: method, ...methodLook(all.styles, method)}),
+    {measures: all.measures, rows: recorded.flatMap(run => run.errors)}, (cost, y) => variations.flatMap((variation, v) => all.methods.map(method => ({
+      label: variations.length > 1 ? `${variation}, ${method}` : method, ...variantLook(all.styles, method, v, variations.length),
       mark: null, band: true, points: line(variation, method, cost, y)}))));
   all.redraw.push(plot.draw);
   return fold('Distance against time', ...plot.elements);
@@ -85,26 +84,27 @@ function errors(all) {
 function table(all) {
   const measure = ranking(all.measures), keys = all.keys.filter(key => key !== 'run'), state = {medians: all.seeds.length > 1, table: {}};
   const names = all.columns.filter(name => name !== 'pass' && (name !== 'sweep' || keys.includes(name))), frame = h('div');
-  const few = ['run', ...keys, 'seed', 'method', 'status', 'converged', 'preview_seconds', 'seconds', 'preview_' + measure, 'error_' + measure, 'energy_released', 'intersections'];
+  const few = ['run', ...keys, 'seed', 'method', 'status', 'converged', 'machine', 'preview_seconds', 'seconds', 'cpu_seconds', 'iterations',
+    'preview_' + measure, 'error_' + measure, 'energy_released', 'intersections'];
   if (keys.length) few.shift();  // the keys tell the runs apart
-  const medians = () => [...grouped(all.shownRows, row => JSON.stringify([row.variation, row.method])).values()].map(rows => {
-    const good = rows.filter(row => converged(row.status)), common = name => keys.includes(name) || ['run', 'method'].includes(name);
-    return {physics: rows[0].physics, comparable: good.length > 0, converged: `${good.length} of ${rows.length}`, ...Object.fromEntries(names.filter(name => name !== 'seed' && name !== 'status').map(name =>
-      [name, common(name) ? rows[0][name] : rows.some(row => typeof row[name] === 'number') ? spread(good.map(row => row[name])) : null]))};
-  });
   const draw = () => {
-    const rows = state.medians ? medians() : all.shownRows.map(row => ({...row, comparable: converged(row.status)}));
     const columns = columnsOf(state.medians ? [...names.slice(0, names.indexOf('method') + 1), 'converged', ...names.slice(names.indexOf('method') + 1)] : names, few, all.of);
-    columns.filter(column => keys.includes(column.name)).forEach(column => Object.assign(column, {title: column.name.split('.').at(-1), text: column.name.split('.').at(-1), show: cell => String(cell ?? '–')}));
-    frame.replaceChildren(dataTable('table', 'of runs', columns, rows, row => row.physics, state.table));
+    columns.filter(column => keys.includes(column.name)).forEach(column => Object.assign(column,
+      {title: all.keyTitle(column.name), text: all.keyTitle(column.name), show: cell => written(cell)}));
+    frame.replaceChildren(dataTable('table', 'of runs', columns, state.medians ? all.shownSummary.map(row => ({...row, run: row.variation})) : all.shownRows, state.table));
   };
   all.redraw.push(draw);
-  const own = unique(all.runs.filter(run => run.rows.length).map(run => run.reference).filter(name => name)).map(name =>
-    `${name} in ${all.runs.filter(run => run.reference === name).length} of ${all.runs.filter(run => run.rows.some(row => row.method === name)).length}`);
-  return h('section', {id: 'summary'}, h('h2', {}, 'All runs'), explained('A row per method and variation: the median over the starts that converged, with the range; or a row per method and run. ' +
-    'Time counts the levels that the end builds on. The best value is bold among rows of the same physics: times and energies of different physics do not compare. Its keys in the ' +
-    `experiment are ${all.model_keys.join(', ')}; the start’s noise is not part of it.`, own.length ? ` Ends that were the reference themselves are not compared with it: ${own.join(', ')}.` : ''),
-  all.seeds.length > 1 ? h('p', {class: 'controls'}, tick('medians over starts', true, on => { Object.assign(state, {medians: on, table: {}}); draw(); }, 'medians')) : null, frame);
+  return h('section', {id: 'summary'}, h('h2', {}, 'All runs'), all.seeds.length > 1 ? h('p', {class: 'note', id: 'bold'}, all.table.bold) : null, references(all),
+    explained('A row per method and variation: the median over all starts that converged, with the range; n where it is not all of them; or a row per method and run. ' +
+    'Time counts the levels that the end builds on. Times and energies of different physics do not compare. Its keys in the ' +
+    `experiment are ${all.model_keys.join(', ')}; the start’s noise is not part of it.`),
+    all.seeds.length > 1 ? h('p', {class: 'controls'}, tick('medians over starts', true, on => { Object.assign(state, {medians: on, table: {}}); draw(); }, 'medians')) : null, frame);
+}
+
+function references(all) {
+  const own = unique(all.runs.map(run => run.reference).filter(name => name)).map(name =>
+    `${name} in ${all.runs.filter(run => run.reference === name).length} of ${counted(all.runs.length, 'run')}`);
+  return own.length ? h('p', {class: 'note', id: 'references'}, `The reference of errors is the end of ${own.join(', ')}.`) : null;
 }
 
 function failures(all) {
@@ -118,13 +118,18 @@ export function sweepPage(data) {
   const {columns, rows} = data.table, varied = columns.slice(2, columns.indexOf('seed'));
   let at = 0;
   const runs = data.runs.map(run => {
-    const own = rows.slice(at, at += run.count).map(row => ({...row, run: run.variation, variation: run.variation, physics: run.physics}));
+    const own = rows.slice(at, at += run.count).map(row => ({...row, run: run.variation}));
     return {...run, errors: rowsOf(run.errors), rows: own.filter(row => row.method), settings: {...own[0], run: run.variation}};
   });
   const values = key => unique(runs.map(run => run.settings[key] ?? null)).sort((a, b) => typeof a === 'number' && typeof b === 'number' ? a - b : 0);
   const keys = ['sweep', ...varied].filter(key => values(key).length > 1), all = {...data, runs, columns, values, rows: runs.flatMap(run => run.rows), redraw: [],
     methods: unique(runs.flatMap(run => run.rows.map(row => row.method))), seeds: unique(runs.map(run => run.seed ?? null)), of: data};
   all.keys = keys.length ? keys : ['run'];
+  // "bending modulus [Pa]", and of a value "bending modulus 8e7 Pa"; the whole path where two keys end alike.
+  const last = key => key.split('.').at(-1), plain = key => (keys.filter(each => last(each) === last(key)).length > 1 ? key : last(key)).replace(/[_.]/g, ' '), units = data.table.units ?? {};
+  all.keyTitle = key => plain(key) + (units[key] ? ` [${units[key]}]` : '');
+  all.keyText = (key, value) => typeof value === 'string' && ['run', 'sweep', 'experiment'].includes(key) ? value : `${plain(key)} ${written(value, units[key])}`;
+  all.keyNames = Object.fromEntries(all.keys.map(key => [key, all.keyTitle(key)]));
   const numeric = columns.filter(name => !varied.includes(name) && name !== 'seed' && all.rows.some(row => typeof row[name] === 'number'));
   all.quantity = numeric.includes('seconds') ? 'seconds' : numeric[0];
   all.chooser = choice('value', Object.fromEntries(numeric.map(name => [name, describe(name, all.of).text])), all.quantity, value => {
@@ -136,16 +141,18 @@ export function sweepPage(data) {
     runs.forEach(run => { run.shown = run.rows.filter(fits); });
     all.shown = runs.filter(run => run.shown.length || !run.rows.length && fits({status: run.status, ...run.settings}));
     all.shownRows = runs.flatMap(run => run.shown);
+    const kinds = new Set(all.shownRows.map(row => row.variation + '\n' + row.method));
+    all.shownSummary = data.table.summary.filter(row => kinds.has(row.variation + '\n' + row.method));
     matching.textContent = all.shown.length < runs.length ? `${all.shown.length} of ${counted(runs.length, 'run')}` : '';
     all.redraw.forEach(draw => draw());
   };
-  const statuses = unique(runs.map(run => run.status)), machines = unique(runs.map(about).filter(text => text));
+  const statuses = unique(runs.map(run => run.status)), machines = unique(runs.map(about).filter(text => text)), ended = runs.map(run => run.ended).filter(known);
   const summary = (data.complete ? '' : 'Not all runs are done; these are the figures so far. ') + `${counted(runs.length, 'run')} of ${counted(unique(runs.map(run => run.variation)).length, 'variation')}: ` +
     statuses.map(status => `${count(runs.filter(run => run.status === status).length)} ${status.replace(/_/g, ' ') || 'unknown'}`).join(', ') + '.';
   const parts = all.rows.length ? [matrix(all), against(all), table(all), errors(all)] : [h('p', {class: 'absent'}, 'No run has written results yet.')];
   filter('');
-  return [h('header', {}, h('h1', {}, data.name || 'Several runs'), h('p', {class: 'lead', id: 'counts'}, summary)),
+  return [h('header', {}, h('h1', {}, data.name || 'Several runs'), data.description ? h('p', {class: 'lead'}, data.description) : null, h('p', {class: 'lead', id: 'counts'}, summary), busyWarning(all.rows)),
     h('p', {class: 'controls filter'}, h('label', {}, 'Filter ', h('input', {type: 'search', id: 'filter', size: 22, placeholder: 'words, or as in seconds<2', input: event => filter(event.target.value)})), matching),
     ...parts, failures(all),
-    h('footer', {}, machines.map(text => h('p', {}, text)), machines.length > 1 ? h('p', {class: 'poor'}, 'More than one machine or setting: their times do not compare.') : null)];
+    h('footer', {}, machines.map(text => h('p', {}, text)), ended.length ? h('p', {}, unique([Math.min(...ended), Math.max(...ended)].map(day)).join(' to ')) : null, machines.length > 1 ? h('p', {class: 'poor'}, 'More than one machine or setting: their times do not compare.') : null)];
 }

@@ -1,15 +1,17 @@
 /// Tables that sort, with few columns at first, and filters.
-import {badge, fold, grouped, h, number, saving, tick, words} from './text.js';
+import {badge, fold, h, saving, tick, words} from './text.js';
 
 /// The value of a cell: a number, a word, or a spread over repeats.
 const value = cell => cell !== null && typeof cell === 'object' ? cell.median : cell;
 
-function content(column, cell) {
+function content(column, row) {
+  const cell = row[column.name], own = column.ofReference && row.reference;  // in how many starts the row was the reference itself
   if (column.show) return column.show(cell);
   if (column.name === 'status' && cell) return badge(cell);
-  if (cell !== null && typeof cell === 'object')
-    return [number(cell.median), number(cell.low) !== number(cell.high) ? h('span', {class: 'range'}, `${number(cell.low)} … ${number(cell.high)}`) : ''];
-  return words(cell);
+  if (cell === null || typeof cell !== 'object') return own ? 'reference' : words(cell);
+  const notes = [words(cell.low) !== words(cell.high) ? `${words(cell.low)} … ${words(cell.high)}` : '', cell.count < row.starts ? `n = ${cell.count}` : '',
+    own ? `reference in ${own}` : ''].filter(note => note).join(', ');
+  return [words(cell.median), notes ? h('span', {class: 'range'}, notes) : ''];
 }
 
 /// Whether a row satisfies every word of a filter: "seconds<2" and the like of a column, by its name or the last part of it; other
@@ -37,24 +39,10 @@ const plain = (row, columns) => Object.fromEntries(columns.flatMap(({name}) => {
     ? [[name, cell.median], [name + '_lowest', cell.low], [name + '_highest', cell.high]] : [[name, cell ?? null]];
 }));
 
-/// A column is {name, title (text or nodes), few: whether it is among the first ones, better: 'lower' or 'higher', show};
-/// `rivals` gives the key of the rows among which the best value is bold; a row that only equals one with `yardstick`, such as
-/// the flat start, is not. The name is the column's in files; `state` keeps order and columns for another table of these columns.
-export function dataTable(name, what, columns, rows, rivals = () => '', state = {}) {
+/// A column is {name, title (text or nodes), few: whether it is among the first ones, show}; a row's `best` names the columns in
+/// which it is bold. The name is the column's in files; `state` keeps order and columns for another table of these columns.
+export function dataTable(name, what, columns, rows, state = {}) {
   const filled = columns.filter(column => rows.some(row => row[column.name] !== null && row[column.name] !== undefined && row[column.name] !== ''));
-  const best = new Map();
-  for (const column of filled) {
-    if (!column.better) continue;
-    for (const group of grouped(rows, rivals).values()) {
-      const known = group.filter(row => typeof value(row[column.name]) === 'number' && row.comparable !== false);
-      const text = row => words(value(row[column.name]));
-      if (new Set(known.map(text)).size < 2) continue;  // equal as shown
-      // Where lower is better, what is nearer to zero is: a difference of energies may be negative.
-      const rank = row => column.better === 'higher' ? -value(row[column.name]) : Math.abs(value(row[column.name])), first = known.reduce((a, b) => rank(b) < rank(a) ? b : a);
-      const tied = known.filter(row => text(row) === text(first)), yardsticks = tied.filter(row => row.yardstick);
-      (yardsticks.length ? yardsticks : tied).forEach(row => best.set(row, (best.get(row) || new Set()).add(column.name)));
-    }
-  }
   const chosen = state.chosen ??= new Set(filled.filter(column => column.few).map(column => column.name));
   const table = h('table'), frame = h('div', {class: 'scroll', tabindex: 0, role: 'region', 'aria-label': 'table: ' + what}, table);
   const shownRows = () => {
@@ -74,7 +62,7 @@ export function dataTable(name, what, columns, rows, rivals = () => '', state = 
       table.querySelector(`[data-column="${CSS.escape(column.name)}"] button`).focus();
     }}, column.title ?? column.name))))),
     h('tbody', {}, shownRows().map(row => h('tr', {}, shown.map((column, k) => h(k ? 'td' : 'th', {scope: k ? null : 'row', class: number(column) ? '' : 'text',
-      'data-name': column.text ?? column.name}, best.get(row)?.has(column.name) ? h('strong', {}, content(column, row[column.name])) : content(column, row[column.name])))))));
+      'data-name': column.text ?? column.name}, row.best?.includes(column.name) ? h('strong', {}, content(column, row)) : content(column, row)))))));
   };
   draw();
   const ticks = filled.map(column => tick(column.text ?? column.name, chosen.has(column.name), on => {

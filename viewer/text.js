@@ -57,9 +57,21 @@ export function spread(values) {
   return n ? {median: (v[(n - 1) >> 1] + v[n >> 1]) / 2, low: v[0], high: v[n - 1], count: n} : null;
 }
 
+/// A number with as many digits as it was written with, and its unit: "8e7 Pa".
+export const written = (value, unit) => (typeof value !== 'number' ? String(value ?? '–') : value === 0 || Math.abs(value) >= 1e-3 && Math.abs(value) < 1e5 ? String(value)
+  : value.toExponential().replace('+', '')) + (unit ? ' ' + unit : '');
+
+/// A warning where the system had other work while methods were timed.
+export function busyWarning(rows) {
+  const busy = rows.filter(row => row.machine === 'busy').length;
+  return busy ? h('p', {class: 'poor', id: 'busy'}, `The machine was busy during ${busy} of ${counted(rows.length, 'timing')}: compare iterations and CPU time, not wall time.`) : null;
+}
+
+/// "2026-03-01" of seconds since 1970.
+export const day = seconds => new Date(1000 * seconds).toISOString().slice(0, 10);
 /// The program and the machine of a run, as results.json has them.
 export const about = ({version, commit, machine}) =>
-  [version, commit, machine?.cpu, machine?.cores && counted(machine.cores, 'core'), machine?.threads && counted(machine.threads, 'thread')].filter(part => part).join(' · ');
+  [version, commit?.slice(0, 10), machine?.cpu, machine?.cores && counted(machine.cores, 'core'), machine?.threads && counted(machine.threads, 'thread')].filter(part => part).join(' · ');
 
 /// The rows of a file of the run as objects.
 export const rowsOf = ({names, rows}) => rows.map(row => Object.fromEntries(names.map((name, k) => [name, row[k]])));

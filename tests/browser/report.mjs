@@ -108,7 +108,7 @@ test('a method that did not finish is described by its last state', async () => 
     delete newton.levels[1].status;
   });
   const said = await page.locator('.sentences li').allTextContents();
-  const soFar = 'level 0 so far, after [0-9.]+ s, 81 vertices, 0 intersections, at rest to 0.01, stable, then';
+  const soFar = 'level 0 so far, after [0-9.]+ s, 81 vertices, 0 intersections, at rest: unbalanced force below 1 % of the load, stable, then';
   assert.match(said[0], new RegExp(`^pcs: ${soFar} aborted\\.$`));
   assert.match(said[1], new RegExp(`^cascadic: preview after [0-9.]+ s, ${soFar} failed\\.$`));
   assert.match(said[2], /^newton: .* 289 vertices, 0 intersections, not at rest: unknown status, force residual /);
@@ -118,7 +118,7 @@ test('a method has its own tolerance, and one that asks for no balance is not ca
   await runContact('own', '--no-report', '--method', 'all', '--set', 'snapshots=0',
     '--set', 'methods.newton.newton.force_tolerance=5e-2', '--set', 'methods.cascadic.newton.force_tolerance=1e9');
   const said = await textOf((await openReport('own')).page, '.sentences');
-  assert.match(said, /newton: .* at rest to 0\.05, stable\./);
+  assert.match(said, /newton: .* at rest: unbalanced force below 5 % of the load, stable\./);
   assert.match(said, /cascadic: [^:]* ended at force residual [0-9.e-]+\./);
 });
 

@@ -25,17 +25,45 @@ async function open(name, options = {}) {
   return {page, work};
 }
 
-test('24 runs fit one screen of thumbnails, and nothing scrolls sideways', async () => {
+test('24 runs fit one screen of thumbnails, a cell has all starts, and nothing scrolls sideways', async () => {
   assert.ok(fs.statSync(path.join(folder, 'sweep/report.html')).size < 8e6);
   for (const screen of screens) {
     const {page, work} = await open('sweep/report.html', screen);
-    assert.equal(await page.locator('.tile img').count(), 24);
+    assert.equal(await page.locator('.tile img').count(), 8);
+    assert.match(await page.locator('.tile').first().getAttribute('title'), /: 3 of 3 starts converged, [-0-9.e]+ … [-0-9.e]+ over 3 starts$/);
     assert.ok(await work() < 2, `${await work()} s`);
     assert.ok(await onFirstScreen(page, '#matrix'), `at ${screen.viewport.width}`);
     assert.ok(await drawnShare(page, '#matrix') > .1);
     assert.equal(await textOf(page, '#counts'), '24 runs of 8 variations: 24 converged.');
     await checkWhole(page, 2);
   }
+});
+
+test('a thumbnail opens the run in 3D', async () => {
+  const {page} = await open('sweep/report.html');
+  await page.locator('.tile[title*="levels 2"]').first().click();  // one level has no preview
+  await until('its 3D view', () => page.evaluate(() => window.drapeViewer?.state().panels.length === 2));
+  assert.match(await textOf(page, '#viewer-labels'), /pcs, preview.*pcs, end/s);
+});
+
+test('a page alone says what is better beyond starts, what the reference was and whether the machine was busy', async () => {
+  for (const seed of [1, 2, 3]) {
+    const file = path.join(folder, `sweep/runs/refiner=loop,levels=2,step_growth=3/seed_${seed}/results.json`), results = JSON.parse(fs.readFileSync(file));
+    for (const [name, seconds] of [['pcs', 1e-5 * seed], ['newton', seed]])
+      for (const level of results.methods[name].levels) Object.assign(level, {seconds, cpu_seconds: seconds / 2, load_before: 99, load_after: 99});
+    fs.writeFileSync(file, JSON.stringify(results));
+  }
+  await run(folder, 'report', 'sweep', '-o', 'busy.html');
+  const {page} = await open('busy.html');
+  assert.match(await textOf(page, '#busy'), /^The machine was busy during [0-9]+ of 48 timings/);
+  assert.match(await textOf(page, '#bold'), /^Bold: /);
+  assert.match(await textOf(page, '#references'), /newton in 24 of 24 runs/);
+  await page.locator('#filter').fill('refiner=loop levels=2 step_growth=3');
+  const cell = method => page.locator(`#table tr:has(td:text-is("${method}"))`);
+  assert.equal(await cell('newton').locator('[data-name^="error"]').textContent(), 'reference');
+  const fast = await cell('pcs').locator('[data-name="time [s]"]').textContent();
+  assert.match(fast, /^4\.00e-52\.00e-5 … 6\.00e-5$/);
+  assert.equal(await page.locator('#table [data-name="time [s]"] strong').count(), 1);
 });
 
 test('a value is shown against a parameter: medians, with ranges over starts', async () => {
@@ -48,7 +76,7 @@ test('a value is shown against a parameter: medians, with ranges over starts', a
   const runs = path.join(folder, 'sweep/runs/refiner=loop,levels=1,step_growth=1.5');
   const iterations = [1, 2, 3].map(seed => jsonIn(runs, `seed_${seed}/results.json`).methods.pcs.levels[0].iterations)
     .sort((a, b) => a - b);
-  const row = rows.find(each => each.series === 'pcs, refiner loop, step_growth 1.5' && each.levels === 1);
+  const row = rows.find(each => each.series === 'pcs, refiner loop, step growth 1.5' && each.levels === 1);
   assert.deepEqual([row.low, row.iterations, row.high, row.runs], [...iterations, 3]);
   assert.match(await page.locator('.tile .value').first().textContent(), new RegExp(`^(${iterations.join('|')})$`));
 });
@@ -103,19 +131,22 @@ test('the table sorts and filters, by medians or by run, and compares within one
   assert.equal(new Set(lines.map(line => line.replace(/"[^"]*"/g, '').split(',').length)).size, 1);
   await page.locator('#medians').uncheck();
   assert.equal(await rows.count(), 48);
-  const shows = async (filter, tiles, count) => {
+  const shows = async (filter, runs, tiles, count) => {
     await page.locator('#filter').fill(filter);
     assert.deepEqual([await page.locator('.tile').count(), await rows.count()], [tiles, count]);
-    assert.equal(await textOf(page, '#matching'), `${tiles} of 24 runs`);
+    assert.equal(await textOf(page, '#matching'), `${runs} of 24 runs`);
   };
-  await shows('levels>=2 seed!=3 method=pcs', 8, 8);
+  await shows('levels>=2 seed!=3 method=pcs', 8, 4, 8);
   assert.match(await page.locator('#parameter svg').getAttribute('aria-label'),
-    /: pcs, levels 2, step_growth 1.5, pcs, levels 2, step_growth 3$/);
-  assert.equal(new Set(await parameter.evaluateAll(all => all.map(line => line.getAttribute('stroke')))).size, 2);
-  await shows('^lo+p$ step_growth=3 levels=1', 3, 6);
-  await shows('preview_seconds<100 levels=1', 0, 0);  // which have no preview
-  await shows('(unfinished', 0, 0);
-  await shows('midpoint newton', 12, 12);
+    /: pcs, levels 2, step growth 1.5, pcs, levels 2, step growth 3$/);
+  // A colour is a solver's; variations are paler. No line joins what is no number.
+  for (const [attribute, kinds] of [['stroke', 1], ['opacity', 2]])
+    assert.equal(new Set(await parameter.evaluateAll((all, name) => all.map(line => line.getAttribute(name)), attribute)).size, kinds);
+  assert.equal(await parameter.locator('.line').count(), 0);
+  await shows('^lo+p$ step_growth=3 levels=1', 3, 1, 6);
+  await shows('preview_seconds<100 levels=1', 0, 0, 0);  // which have no preview
+  await shows('(unfinished', 0, 0, 0);
+  await shows('midpoint newton', 12, 4, 12);
   const seconds = async () => (await page.locator('#table td[data-name="time [s]"]').allTextContents()).map(Number);
   await page.locator('#table [data-column="seconds"] button').click();
   const sorted = await seconds();

@@ -28,7 +28,7 @@ test('the first screen has the cloth and the time of the preview, wide and narro
     for (const part of ['#viewer-canvas', '.preview-time'])
       assert.ok(await onFirstScreen(page, part), `${part} at ${screen.viewport.width}`);
     assert.match(await page.locator('.sentences li').first().textContent(),
-      /^pcs: preview after [0-9.]+ s, end after [0-9.]+ s, 289 vertices, 0 intersections, at rest to 0.01, stable\.$/);
+      /^pcs: preview after [0-9.]+ s, end after [0-9.]+ s, 289 vertices, 0 intersections, at rest: unbalanced force below 1 % of the load, stable\.$/);
     assert.ok(await drawnShare(page, '#viewer-canvas') > .05);
     await checkWhole(page, 1);
   }

@@ -79,6 +79,21 @@ const ConfigNode* value_at(const ConfigNode& experiment, const std::string& path
   return node;
 }
 
+std::string unit_of(const std::string& path) {
+  std::vector<std::string> words = split(path, '.');
+  if (words.size() > 3 && words[0] == "methods" && words[2] == "newton")
+    words.erase(words.begin(), words.begin() + 2);
+  const Schema* section = &experiment_schema();
+  for (std::size_t k = 0; section && k < words.size(); ++k) {
+    const Parameter* p = parameter_named(*section, words[k]);
+    if (!p) return "";
+    if (k + 1 == words.size()) return p->unit == "1" ? "" : p->unit;
+    if (p->type.is_list() && !p->type.of_scalars()) ++k;  // an item's index or name
+    section = p->section.get();
+  }
+  return "";
+}
+
 bool set_parameter(ConfigNode& experiment, const std::string& path, ConfigNode value, const Location& where,
                    ConfigErrors& errors) {
   const std::string key = path.substr(0, path.find('.'));

@@ -15,6 +15,9 @@ std::vector<std::string> words_of_path(const ConfigNode& experiment, const std::
 /// The value at a parameter's path in a resolved experiment; null if there is none.
 const ConfigNode* value_at(const ConfigNode& experiment, const std::string& path);
 
+/// The unit of the number at a parameter's path; empty if it has none, or belongs to a plugin.
+std::string unit_of(const std::string& path);
+
 /// As set_path, for the parameters of an experiment: the type of a plugin may stand in the path whether it is
 /// in a list or alone, the default refiner need not be written, and what is missing is named.
 bool set_parameter(ConfigNode& experiment, const std::string& path, ConfigNode value, const Location& where,

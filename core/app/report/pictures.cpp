@@ -55,7 +55,7 @@ std::string file_part(std::string name) {
 
 PictureScene::PictureScene(const RunData& run, std::vector<std::string>& notes, const PictureFrame& frame,
                            std::function<bool()> cancelled)
-    : width_(frame.width), cancelled_(std::move(cancelled)) {
+    : width_(frame.width), edges_(frame.edges), cancelled_(std::move(cancelled)) {
   std::vector<const Positions*> all = frame.further;
   for (const MethodRecord& method : run.methods)
     for (const LevelRecord& level : method.levels)
@@ -81,7 +81,7 @@ const TriangleMesh* PictureScene::state(const LevelRecord& level) const {
 
 Image PictureScene::draw(const TriangleMesh& cloth, bool xray) const {
   Drawing drawing{.mesh = cloth,
-                  .edges = cloth.vertices.rows() <= most_vertices_with_edges,
+                  .edges = edges_ && cloth.vertices.rows() <= most_vertices_with_edges,
                   .xray = xray,
                   .floor = floor_};
   for (const TriangleMesh& obstacle : obstacles_) drawing.obstacles.push_back(&obstacle);
@@ -136,8 +136,7 @@ PictureSet draw_pictures(const RunData& run, const std::function<bool()>& cancel
       keep(name, std::move(outlined));
     }
   } catch (const RenderingCancelled&) {
-    set.notes.push_back("The run was stopped before all pictures were drawn; drape report " +
-                        run.folder.string() + " draws them.");
+    set.notes.push_back("Not all pictures were drawn; drape report " + run.folder.string() + " draws them.");
   }
   return set;
 }

@@ -20,6 +20,7 @@ struct PictureFrame {
   /// Towards the camera: three quarters from above. The top shows how the cloth lies, the side how it folds.
   Eigen::Vector3d direction{0.55, -1.0, 0.68};
   int width = default_picture_width;           ///< [pixels]
+  bool edges = true;                           ///< of coarse meshes
   std::vector<const Positions*> further = {};  ///< in view, beside the run's final states
 };
 
@@ -46,6 +47,7 @@ class PictureScene {
   Camera camera_;
   std::optional<double> floor_;  // height below everything
   int width_;                    // [pixels]
+  bool edges_;
   std::function<bool()> cancelled_;
 };
 

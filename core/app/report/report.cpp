@@ -25,6 +25,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr int thumbnail_width = 300;    // [pixels]
 constexpr std::size_t most_rows = 500;  // of one level of one method; more points are not visible
 
 /// A CSV file of a run, with the number of each row in its series; of a long series evenly chosen rows.
@@ -48,8 +49,6 @@ Json csv_json(const Csv& csv) {
   names.push_back("row");
   return {{"names", names}, {"rows", rows}};
 }
-
-Json table_json(const RunTable& table) { return {{"columns", table.columns}, {"rows", table.rows}}; }
 
 Json measures_json(const std::vector<ErrorMeasure>& measures) {
   Json all = Json::array();
@@ -101,7 +100,7 @@ Json pictures_json(const RunData& run, const PictureSet& set) {
 /// Small pictures of the ends of a run's methods.
 Json thumbnails(const RunData& run) {
   std::vector<std::string> notes;
-  const PictureScene scene(run, notes, {.width = 240});
+  const PictureScene scene(run, notes, {.width = thumbnail_width, .edges = false});
   Json all = Json::array();
   for (const MethodRecord& method : run.methods)
     if (const TriangleMesh* end = method.levels.empty() ? nullptr : scene.state(method.levels.back()))
@@ -113,9 +112,17 @@ fs::path own_report(const RunRecord& run) {
   return fs::absolute(run.folder / "report.html").lexically_normal();
 }
 
-/// `physics` numbers the models, which runs of a page share.
-Json run_json(const RunRecord& run, std::map<std::string, int>& physics, const fs::path& from) {
-  const fs::path report = own_report(run);
+/// Its own page is written first where there is none, or an older one than its results.
+Json run_json(const RunRecord& run, const fs::path& from) {
+  const fs::path report = own_report(run), results = run.folder / "results.json";
+  if (std::error_code none;
+      run.data && access(run.folder.c_str(), W_OK) == 0 &&
+      (!fs::exists(report) || fs::last_write_time(report, none) < fs::last_write_time(results, none)))
+    try {
+      write_report(run.folder, [] { return true; });  // without pictures, which take longest
+    } catch (const std::exception&) {
+      // There is no link to it then.
+    }
   Json entry = {
       {"variation", run.variation},
       {"seed", run.seed ? Json(*run.seed) : Json()},
@@ -127,14 +134,12 @@ Json run_json(const RunRecord& run, std::map<std::string, int>& physics, const f
       {"errors", csv_json(run.data ? run.data->errors : Csv())},
       {"first_levels", Json::object()}};
   if (!run.data) return entry;
-  entry["physics"] =
-      physics.emplace(model_of(run.data->config), static_cast<int>(physics.size())).first->second;
   entry["pictures"] = thumbnails(*run.data);
   entry["reference"] = run.data->reference;
   for (const MethodRecord& method : run.data->methods)
     entry["first_levels"][method.name] = method.first_level();
-  entry["version"] = member_of(run.data->results, "version");
-  entry["machine"] = member_of(run.data->results, "machine");
+  for (const char* about : {"version", "commit", "machine", "ended"})
+    entry[about] = member_of(run.data->results, about);
   return entry;
 }
 
@@ -163,7 +168,7 @@ std::vector<std::string> write_report(const fs::path& folder, const std::functio
   for (const std::string& note : view.notes) add_new(set.notes, note);
   const Json data = {{"kind", "run"},
                      {"results", run.results},
-                     {"table", table_json(table_of(collection))},
+                     {"table", table_json(collection)},
                      {"measures", measures_json(error_measures(run.metrics))},
                      {"styles", styles_json(collection)},
                      {"step_sizes", newton_numbers(run, "step_size")},
@@ -188,15 +193,14 @@ void write_runs_report(const std::vector<fs::path>& folders, const fs::path& fil
   for (const RunRecord& run : collection.runs)
     if (std::error_code error; own_report(run) == place || fs::equivalent(own_report(run), place, error))
       refuse_path(file, "is the place of a run's own report; name another page with --out");
-  std::map<std::string, int> physics;
-  const RunTable table = table_of(collection);
   Json runs = Json::array();
-  for (const RunRecord& run : collection.runs) runs.push_back(run_json(run, physics, place.parent_path()));
+  for (const RunRecord& run : collection.runs) runs.push_back(run_json(run, place.parent_path()));
   write_file(file, page(collection.name.empty() ? "Several runs" : collection.name,
                         {{"kind", "runs"},
                          {"name", collection.name},
+                         {"description", collection.description},
                          {"complete", collection.complete},
-                         {"table", table_json(table)},
+                         {"table", table_json(collection)},
                          {"measures", measures_json(collection.error_measures())},
                          {"metrics", json_of(collection.metrics())},
                          {"model_keys", model_keys()},

@@ -43,6 +43,7 @@ std::string read_sweep(const fs::path& folder, RunCollection& collection) {
   const JsonFile file(path, "run the sweep again, which writes it");
   collection.complete = collection.complete && member_of(json, "complete") == true;
   std::string name = text_member(json, "sweep");
+  collection.description += text_member(json, "description");
   collection.name += (collection.name.empty() ? "" : ", ") + name;
   for (const Json& entry : json["runs"]) {
     if (!entry.is_object()) continue;

@@ -27,7 +27,7 @@ struct RunRecord {
 
 /// Runs that are reported together: those of a sweep, or of several folders.
 struct RunCollection {
-  std::string name;
+  std::string name, description;
   bool complete = true;
   std::vector<RunRecord> runs;
 

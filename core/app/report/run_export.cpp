@@ -217,6 +217,7 @@ std::vector<fs::path> export_pictures(const RunData& run, const MethodRecord& me
   PictureFrame frame;
   frame.width = options.picture.width.value_or(2 * default_picture_width);
   if (options.picture.direction) frame.direction = *options.picture.direction;
+  frame.edges = options.picture.edges;
   for (const TriangleMesh& state : states) frame.further.push_back(&state.vertices);
   std::vector<std::string> notes;  // of states that are not drawn here; the report has them
   const PictureScene scene(run, notes, frame);

@@ -16,6 +16,7 @@ struct PictureOptions {
   std::optional<Eigen::Vector3d> direction;  ///< towards the camera; of any length but 0
   bool outline = false;                      ///< draw the outline of the method's coarsest state
   bool xray = false;                         ///< let obstacles show faintly through the cloth
+  bool edges = true;                         ///< of coarse meshes
 };
 
 /// Options of `export_run`.

@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "core/app/experiment/exit_codes.h"
 #include "core/app/files/json_file.h"
+#include "core/app/report/compare.h"
 #include "core/kernel/files/string_utils.h"
 #include "core/kernel/interfaces/solver.h"
 
@@ -44,6 +46,20 @@ struct IterationSummary {
     if (crossing) intersections = intersections.value_or(0) + *crossing;
   }
 };
+
+/// Whether the times of a method's levels tell of more than the method: the system had more running tasks
+/// than processors, or not even one thread a processor of its own.
+bool was_busy(const RunData& run, const MethodRecord& method) {
+  const Json& processors = member_of(member_of(run.results, "machine"), "processors");
+  for (const LevelRecord& level : method.levels) {
+    const OptionalNumber cpu = level.values.of("cpu_seconds"), wall = level.values.of("seconds");
+    if (cpu && wall && *wall > 0.2 && *cpu < 0.9 * *wall) return true;
+    for (const char* load : {"load_before", "load_after"})
+      if (processors.is_number() && level.values.of(load).value_or(0) > processors.get<double>() + 0.5)
+        return true;
+  }
+  return false;
+}
 
 /// The error of a method's final state, or of its preview, the last state of its coarsest level.
 OptionalNumber last_error(const RunData& run, const MethodRecord& method, bool preview,
@@ -141,7 +157,8 @@ TableRow row_of(const RunData& run, const MethodRecord& method) {
     if (!level.message.empty())
       (has_converged(level.status) ? remark : fault) +=
           (several ? "level " + std::to_string(level.level) + ": " : "") + level.message + "\n";
-  Json row = {{"method", method.name}, {"pass", false}, {"status", statuses(method)}};
+  Json row = {
+      {"method", method.name}, {"solver", method.solver}, {"pass", false}, {"status", statuses(method)}};
   row["stability"] = member_of(member_of(last.json, "stability"), "verdict");
   row["lowest_eigenvalue"] = json_of(last.of("stability.lowest_eigenvalue"));
   row["curvature_ratio"] = json_of(last.of("stability.curvature_ratio"));
@@ -150,6 +167,8 @@ TableRow row_of(const RunData& run, const MethodRecord& method) {
   row["iterations"] = count_of(method.cost("iterations"));
   row["shortened_steps"] = count_of(iterations.shortened_steps);
   row["seconds"] = json_of(method.cost("seconds"));
+  row["cpu_seconds"] = json_of(method.cost("cpu_seconds"));
+  row["machine"] = was_busy(run, method) ? "busy" : "";
   row["flops"] = json_of(method.cost("flops"));
   row["energy_released"] = json_of(last.of("energy_released"));
   row["smallest_gap"] = json_of(iterations.smallest_gap);
@@ -157,6 +176,7 @@ TableRow row_of(const RunData& run, const MethodRecord& method) {
   row["preview_seconds"] = json_of(first.of("seconds"));
   // The error of the reference against itself says nothing.
   const bool is_reference = run.reference == method.name;
+  row["reference"] = is_reference;
   for (const ErrorMeasure& m : error_measures(run.metrics)) {
     if (m.use < ErrorUse::summary) continue;
     row[error_name(m)] =
@@ -183,11 +203,11 @@ OptionalNumber worst_over_levels(const MetricColumn& column, const MethodRecord&
 RunTable table_of(const RunCollection& collection) {
   RunTable table;
   table.columns = {"sweep", "run"};
-  const std::vector<std::string> varied = varied_keys(collection);
-  table.columns.insert(table.columns.end(), varied.begin(), varied.end());
+  table.keys = varied_keys(collection);
+  table.columns.insert(table.columns.end(), table.keys.begin(), table.keys.end());
   for (const char* column :
        {"seed", "method", "pass", "status", "stability", "vertices", "steps", "iterations", "shortened_steps",
-        "seconds", "energy_released", "smallest_gap", "intersections"})
+        "seconds", "cpu_seconds", "machine", "energy_released", "smallest_gap", "intersections"})
     table.columns.emplace_back(column);
   const std::vector<DeclaredMetric> metrics = collection.metrics();
   for (const MetricScope scope : {MetricScope::state, MetricScope::pair})
@@ -203,9 +223,12 @@ RunTable table_of(const RunCollection& collection) {
   for (const MetricScope scope : {MetricScope::state, MetricScope::pair})
     for (const MetricColumn& column : columns_of(metrics, scope, Shown::stored)) add_to_files(column.name);
   table.columns.push_back("message");
+  std::map<std::string, int> models;  // numbers of the physics that runs share
   for (const RunRecord& run : collection.runs) {
-    Json name = {{"sweep", run.sweep}, {"run", run.name}, {"seed", count_of(run.seed)}};
-    for (const std::string& key : varied) {
+    Json name = {
+        {"sweep", run.sweep}, {"run", run.name}, {"variation", run.variation}, {"seed", count_of(run.seed)}};
+    if (run.data) name["physics"] = models.emplace(model_of(run.data->config), models.size()).first->second;
+    for (const std::string& key : table.keys) {
       const Json& value = member_of(run.settings, key);
       name[key] = value.is_structured() ? Json(json_text(value)) : value;
     }

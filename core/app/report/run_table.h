@@ -21,6 +21,7 @@ std::vector<std::string> summary_quantities(const std::vector<ErrorMeasure>& mea
 /// other values; the message.
 struct RunTable {
   std::vector<std::string> columns;
+  std::vector<std::string> keys;      ///< those of the columns that a sweep varies
   std::vector<std::string> in_files;  ///< columns that Markdown leaves out unless they are asked for
   std::vector<TableRow> rows;
   bool has_results = false;  ///< of any run: else it is not known which metrics there would be
@@ -32,6 +33,19 @@ struct RunTable {
 /// `timeout` at the time limit, `crash` by a signal, otherwise `failed` or its status. A row passes with the
 /// expected status and message, finite energies and no intersection.
 RunTable table_of(const RunCollection& collection);
+
+/// A row for each method of each variation: what its rows share, the number of `starts`, how many `converged`
+/// and of how many it was the `reference`, and for each number {median, low, high, count} over those that
+/// converged. `best` names the columns that bold_text is about.
+std::vector<TableRow> summary_of(const RunTable& table, const std::vector<DeclaredMetric>& metrics);
+
+/// The table of a page: columns, rows, the units of the varied keys, and the summary.
+Json table_json(const RunCollection& collection);
+
+/// What it means that a value is bold, for whoever reads a page or a table.
+inline constexpr const char* bold_text =
+    "Bold: over at least two starts, the whole range is better than that of every other row of the same "
+    "physics.";
 
 /// The worst of a state metric's values over a method's levels: where neither direction is better, the
 /// largest.

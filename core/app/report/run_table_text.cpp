@@ -98,9 +98,14 @@ std::string table_text(const RunTable& table, std::vector<std::string> columns, 
 }
 
 std::string methods_text(const RunTable& table) {
-  std::vector<std::string> columns = {"method",  "status",    "preview_seconds", "preview_rms",
-                                      "seconds", "error_rms", "energy_gap"};
-  std::erase_if(columns, [&](const std::string& column) { return !is_one_of(column, table.columns); });
+  std::vector<std::string> columns = {"method",     "status",      "preview_seconds", "preview_rms",
+                                      "seconds",    "cpu_seconds", "iterations",      "error_rms",
+                                      "energy_gap", "machine"};
+  const bool busy = std::ranges::any_of(
+      table.rows, [](const TableRow& row) { return member_of(row, "machine") == "busy"; });
+  std::erase_if(columns, [&](const std::string& column) {
+    return !is_one_of(column, table.columns) || (column == "machine" && !busy);
+  });
   std::vector<std::vector<std::string>> lines = {columns};
   for (const TableRow& row : table.rows) {
     std::vector<std::string>& cells = lines.emplace_back();

@@ -1,0 +1,132 @@
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "core/app/experiment/experiment_path.h"
+#include "core/app/report/run_table.h"
+#include "core/kernel/files/string_utils.h"
+#include "core/kernel/interfaces/solver.h"
+
+namespace drape {
+
+namespace {
+
+std::optional<Better> better_of(const std::string& column, const std::vector<DeclaredMetric>& metrics) {
+  if (column == "energy_released") return Better::higher;
+  if (is_one_of(column, {"iterations", "seconds", "cpu_seconds", "preview_seconds", "flops"}))
+    return Better::lower;
+  if (is_one_of(column, summary_quantities(error_measures(metrics)))) return Better::lower;
+  for (const MetricScope scope : {MetricScope::state, MetricScope::pair})
+    for (const MetricColumn& declared : columns_of(metrics, scope, Shown::stored))
+      if (declared.name == column && declared.better != Better::neither) return declared.better;
+  return {};
+}
+
+Json spread_of(std::vector<double> values) {
+  if (values.empty()) return nullptr;
+  std::sort(values.begin(), values.end());
+  const std::size_t n = values.size();
+  return {{"median", (values[(n - 1) / 2] + values[n / 2]) / 2},
+          {"low", values.front()},
+          {"high", values.back()},
+          {"count", n}};
+}
+
+/// A range of ranks, lower ones better. Where lower values are better, those nearer to zero are: a difference
+/// of energies may be negative.
+struct Ranks {
+  double best, worst;
+};
+
+Ranks ranks_of(const Json& spread, Better better) {
+  const double low = spread["low"], high = spread["high"];
+  if (better == Better::higher) return {-high, -low};
+  const double nearest = low <= 0 && high >= 0 ? 0 : std::min(std::abs(low), std::abs(high));
+  return {nearest, std::max(std::abs(low), std::abs(high))};
+}
+
+/// Names the column in the one row, if there is one, whose range is apart from those of all rivals, and whose
+/// median is so with three digits too.
+void mark_best(const std::vector<TableRow*>& rivals, const std::string& column, Better better) {
+  const auto is_known = [&](const TableRow* row) { return (*row)[column].is_object(); };
+  if (std::ranges::count_if(rivals, is_known) < 2) return;
+  TableRow* best = nullptr;
+  for (TableRow* row : rivals)
+    if (is_known(row) && (*row)[column]["count"] == 1) return;  // its range is not known
+  for (TableRow* row : rivals)
+    if (is_known(row) && std::ranges::all_of(rivals, [&](const TableRow* other) {
+          return other == row || !is_known(other) ||
+                 (ranks_of((*row)[column], better).worst < ranks_of((*other)[column], better).best &&
+                  number_text((*row)[column]["median"].get<double>()) !=
+                      number_text((*other)[column]["median"].get<double>()));
+        }))
+      best = row;
+  if (best) (*best)["best"].push_back(column);
+}
+
+}  // namespace
+
+std::vector<TableRow> summary_of(const RunTable& table, const std::vector<DeclaredMetric>& metrics) {
+  std::vector<TableRow> summary;
+  std::map<std::pair<std::string, std::string>, std::size_t> places;
+  std::vector<std::vector<const TableRow*>> starts;
+  for (const TableRow& row : table.rows) {
+    const auto [place, is_new] = places.emplace(std::pair(row["variation"], row["method"]), starts.size());
+    if (is_new) starts.emplace_back();
+    starts[place->second].push_back(&row);
+  }
+  std::vector<std::string> numbers;
+  for (const std::string& column : table.columns)
+    if (!is_one_of(column, table.keys) && column != "seed" &&
+        std::ranges::any_of(table.rows,
+                            [&](const TableRow& row) { return member_of(row, column).is_number(); }))
+      numbers.push_back(column);
+  for (const auto& rows : starts) {
+    std::vector<const TableRow*> good = rows;
+    std::erase_if(good, [](const TableRow* row) { return !has_converged(text_member(*row, "status")); });
+    Json& entry = summary.emplace_back();
+    for (const char* shared : {"sweep", "run", "variation", "method", "solver", "physics"})
+      entry[shared] = member_of(*rows.front(), shared);
+    for (const std::string& key : table.keys) entry[key] = (*rows.front())[key];
+    entry["starts"] = rows.size();
+    entry["converged"] = std::to_string(good.size()) + " of " + std::to_string(rows.size());
+    entry["reference"] =
+        std::ranges::count_if(rows, [](const auto* row) { return member_of(*row, "reference") == true; });
+    entry["machine"] =
+        std::ranges::any_of(rows, [](const auto* row) { return member_of(*row, "machine") == "busy"; })
+            ? "busy"
+            : "";
+    entry["best"] = Json::array();
+    for (const std::string& column : numbers) {
+      std::vector<double> values;
+      for (const TableRow* row : good)
+        if (const Json& value = member_of(*row, column); value.is_number()) values.push_back(value);
+      entry[column] = spread_of(std::move(values));
+    }
+  }
+  std::map<Json, std::vector<TableRow*>> groups;
+  for (TableRow& row : summary) groups[row["physics"]].push_back(&row);
+  for (const auto& [physics, rows] : groups)
+    for (const std::string& column : numbers)
+      if (const auto better = better_of(column, metrics)) {
+        std::vector<TableRow*> rivals = rows;
+        // The reference is at no distance from itself by its definition.
+        const bool to_reference = column == energy_gap || column.starts_with("error_");
+        std::erase_if(rivals, [&](const TableRow* row) { return to_reference && (*row)["reference"] > 0; });
+        mark_best(rivals, column, *better);
+      }
+  return summary;
+}
+
+Json table_json(const RunCollection& collection) {
+  const RunTable table = table_of(collection);
+  Json units = Json::object();
+  for (const std::string& key : table.keys) units[key] = unit_of(key);
+  return {{"columns", table.columns},
+          {"rows", table.rows},
+          {"units", units},
+          {"summary", summary_of(table, collection.metrics())},
+          {"bold", bold_text}};
+}
+
+}  // namespace drape
