@@ -32,6 +32,37 @@ std::vector<int> vertices_of_piece(const VertexSelection& selection, const Level
   return vertices;
 }
 
+/// The vertices on the edges of a label: those of finer levels lie on the coarsest level's edges, in the
+/// placement. On levels below the cloth's mesh, those that stand for its vertices on these edges.
+std::vector<int> vertices_of_label(const VertexSelection& selection, const Level& level,
+                                   const Level& coarsest) {
+  if (!coarsest.own_vertices.empty()) {
+    std::vector<int> vertices;
+    for (const int v : selection.label_edges) vertices.push_back(level.own_vertex(v));
+    std::ranges::sort(vertices);
+    vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
+    return vertices;
+  }
+  constexpr double rounding = 1e-9;  // of an edge
+  std::vector<char> at_edge(level.topology.on_border.begin(), level.topology.on_border.end());
+  for (int e = 0; e < level.topology.edges.rows(); ++e)
+    if (is_seam(level.rest, level.topology, e))
+      for (const int v : level.topology.edges.row(e)) at_edge[v] = 1;
+  std::vector<int> vertices;
+  for (int v = 0; v < level.vertex_count(); ++v)
+    for (std::size_t i = 0; at_edge[v] && i + 1 < selection.label_edges.size(); i += 2) {
+      const auto end = [&](std::size_t k) -> Eigen::RowVector3d {
+        return coarsest.rest.vertices.row(selection.label_edges[k]);
+      };
+      const Eigen::RowVector3d a = end(i), along = end(i + 1) - a, p = level.rest.vertices.row(v);
+      const double t = std::clamp((p - a).dot(along) / along.squaredNorm(), 0.0, 1.0);
+      if ((p - a - t * along).squaredNorm() > rounding * rounding * along.squaredNorm()) continue;
+      vertices.push_back(v);
+      break;
+    }
+  return vertices;
+}
+
 }  // namespace
 
 VertexSearch::VertexSearch(const Level& level, const Level& coarsest, std::size_t count)
@@ -79,13 +110,14 @@ std::vector<int> VertexSearch::candidates(const VertexSelection& selection) cons
 std::vector<int> VertexSearch::selected(const VertexSelection& selection) const {
   std::vector<int> selected;
   if (selection.region == "vertices") {
-    // Children of coarse vertices keep their index on every level.
+    // Children of the cloth's vertices keep their index on every level.
     for (int v : selection.vertices)
-      if (v >= 0 && v < coarsest_.vertex_count()) selected.push_back(v);
+      if (v >= 0 && v < coarsest_.cloth_vertex_count()) selected.push_back(level_.own_vertex(v));
     std::ranges::sort(selected);
     selected.erase(std::unique(selected.begin(), selected.end()), selected.end());
     return selected;
   }
+  if (selection.region == "label") return vertices_of_label(selection, level_, coarsest_);
   if (selection.region == "piece" || selection.region == "seam" ||
       (selection.piece && selection.region == "border"))
     return vertices_of_piece(selection, level_);
@@ -96,7 +128,7 @@ std::vector<int> VertexSearch::selected(const VertexSelection& selection) const 
         .rowwise()
         .squaredNorm()
         .minCoeff(&nearest);
-    return {among[nearest]};
+    return {level_.own_vertex(coarsest_.cloth_vertex(among[nearest]))};
   }
   constexpr double rounding = 1e-12;  // round-off must not exclude vertices on a region's boundary
   std::erase_if(among, [&](int v) {
