@@ -40,7 +40,7 @@ function matrix(all) {
         others().every(key => run.settings[key] === first.settings[key])), run => run.variation).values()].map(tile)))];
     const grid = h('div', {class: 'matrix'}, columns.map(value => h('p', {class: 'head'}, all.keyText(chosen.across, value))), lines.map(line).flat());
     grid.style.gridTemplateColumns = `repeat(${columns.length}, minmax(0, 1fr))`;
-    grid.style.maxWidth = Math.max(360, columns.length * Math.min(260, Math.max(70, (560 / lines.length - 40) * 9 / 7))) + 'px';  // it fits a screen
+    grid.style.maxWidth = columns.length * Math.min(260, Math.max(70, (500 / lines.length - 50) * 9 / 7)) + 'px';  // it fits a screen
     frame.replaceChildren(grid);
   };
   all.redraw.push(draw);
