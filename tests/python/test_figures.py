@@ -2,17 +2,17 @@
 
 import csv
 import os
+import re
 import sys
 
 import numpy
-import pandas
 import pytest
 
 import drape
 from conftest import SMALL_FILE, command
 
 pytest.importorskip("matplotlib")
-from drape.figures import _cell, latex_table  # noqa: E402
+from drape.paper import _cell  # noqa: E402
 
 SWEEP = f"name: two\nbase: {SMALL_FILE}\nseeds: [1, 2]\nmethods: [pcs, newton]\n"
 GRID = "ablation: {grid: {newton.step_growth: [1.5, 3]}}\n"
@@ -40,6 +40,17 @@ def written(tmp_path):
         return {file.name: file for file in (tmp_path / "figures").iterdir()}
 
     return write
+
+
+def check_latex(text):
+    """The subset of LaTeX with booktabs that a table may be made of: what is checked here compiles."""
+    assert set(re.findall(r"\\[a-zA-Z]+", text)) <= {r"\begin", r"\end", r"\toprule", r"\midrule", r"\bottomrule", r"\textbf", r"\par", r"\smallskip", r"\footnotesize", r"\cdot"}
+    columns, body = re.search(r"\\begin{tabular}{([lr]+)}\n(.*)\n\\end{tabular}\n", text, re.DOTALL).groups()
+    rows = [line for line in body.split("\n") if not line.endswith("rule")]
+    assert len(rows) > 1 and all(line.endswith(r" \\") and len(re.findall(r"(?<!\\)&", line)) == len(columns) - 1 for line in rows)
+    plain = re.sub(r"\\[&%$#_{}]", "", text)
+    assert plain.count("{") == plain.count("}") and plain.count("$") % 2 == 0
+    assert not re.search(r"[%#_^]", re.sub(r"\$[^$]*\$", "", plain))
 
 
 def rows_of(file):
@@ -109,11 +120,16 @@ def test_a_sweep_is_one_table_and_has_figures(written, swept):
     assert set(frame["method"]) == {"pcs", "newton"} and numpy.all(frame["energy_released"] > 0)
     with pytest.raises(RuntimeError, match="neither results.json nor sweep.json"):
         drape.read_sweep(sweep / "runs")
-    assert {"seconds_by_step_growth.svg", "preview_rms_by_step_growth.png"} <= set(files)
+    assert {"seconds_by_step_growth.svg", "preview_rms_by_step_growth.png", "iterations_by_step_growth.pdf", "pictures.pdf",
+            "distance_over_seconds.pdf", "distance_over_iterations.csv"} <= set(files)
+    drawn = rows_of(files["seconds_by_step_growth.csv"])
+    assert len(drawn) == 4 and all(float(row["low"]) <= float(row["median"]) <= float(row["high"]) and row["count"] == "2" for row in drawn)
+    assert "Bold: " in files["table.tex"].read_text() or r"\textbf" not in files["table.tex"].read_text()
     rows = rows_of(files["table.csv"])
     assert len(rows) == 8 and {float(row["newton.step_growth"]) for row in rows} == {1.5, 3}
-    assert r"step\_growth & method & converged" in files["table.tex"].read_text()
+    assert r"step growth & method & converged" in files["table.tex"].read_text()
     assert r"1.5 & pcs & 2 of 2 & " in files["table.tex"].read_text()
+    check_latex(files["table.tex"].read_text())
 
 
 @pytest.mark.parametrize("grid, plots, says", [
@@ -133,14 +149,43 @@ def test_what_has_no_results_has_no_figures(swept, tmp_path):
         assert why in command("figures", folder, "-o", tmp_path / "out", code=2).stderr
 
 
-def test_a_method_has_converged_if_all_its_levels_have():
-    status = ["converged", "converged, max_steps_reached", "converged_to_rounding, converged", "converged, failed"]
-    rows = pandas.DataFrame({"run": "a", "seed": [1, 2, 3, 4], "method": "pcs", "status": status,
-                             "seconds": [1.0, 50.0, 1.0, 70.0]})
-    assert r"pcs & 2 of 4 & 1 \\" in latex_table(rows)
-
-
 def test_runs_without_results_are_in_the_tables(written, swept):
     files = written(swept(f"ablation: [{{name: whole}}, {{name: far, {NOTHING_PINNED}}}]", code=1))
     assert len(rows_of(files["table.csv"])) == 6
     assert " & -- & 0 of 2 & " in files["table.tex"].read_text()
+    check_latex(files["table.tex"].read_text())
+
+
+def test_figures_have_the_measures_methods_width_and_style_that_are_asked_for(swept, tmp_path):
+    (tmp_path / "mine.mplstyle").write_text("axes.prop_cycle: cycler('color', ['112233'])\nfont.size: 11\n")
+    sweep = swept(GRID)
+    for asked in ("--measures=speed", "--methods=multigrid"):
+        assert f'there is no {asked[2:].split("s=")[0]} "' in command("figures", sweep, "-o", tmp_path / "out", asked, code=2).stderr
+    command("figures", sweep, "-o", tmp_path / "out", "--measures", "seconds", "--methods", "pcs", "--width", "100", "--log", "--style", tmp_path / "mine.mplstyle")
+    names = {file.name for file in (tmp_path / "out").iterdir()}
+    assert "seconds_by_step_growth.svg" in names and not any(name.startswith("iterations_by") for name in names)
+    svg = (tmp_path / "out/seconds_by_step_growth.svg").read_text()
+    assert "#112233" in svg and "newton<" not in svg and 'width="283' in svg  # 100 mm in points
+    assert {row["method"] for row in rows_of(tmp_path / "out/seconds_by_step_growth.csv")} == {"pcs"}
+
+
+def test_scenes_are_not_joined_and_stand_in_the_order_of_the_file(written, swept):
+    files = written(swept("ablation: {grid: {refiner: [midpoint, loop]}}"))
+    rows = rows_of(files["error_rms_by_refiner.csv"])
+    assert [row["refiner"] for row in rows] == ["midpoint", "loop"] * 2
+    reference = [row for row in rows if row["method"] == "newton"]
+    assert all(row["reference"] == "2" and row["median"] == "" for row in reference) and ">reference<" in files["error_rms_by_refiner.svg"].read_text()
+
+
+def test_a_sweep_from_python_is_that_of_the_command_and_runs_what_is_missing(tmp_path):
+    experiment = drape.Experiment(SMALL_FILE)
+    ask = dict(methods=["pcs"], out=tmp_path / "sweep", progress=False)
+    frame = drape.sweep(experiment, {"newton.step_growth": [1.5]}, 2, **ask)
+    assert len(frame) == 2 and set(frame["seed"]) == {1, 2}
+    before = (tmp_path / "sweep/runs/step_growth=1.5/seed_1/results.json").stat().st_mtime_ns
+    frame = drape.sweep(experiment, {"newton.step_growth": [1.5, 3]}, 2, **ask)
+    assert len(frame) == 4 and set(frame["newton.step_growth"]) == {1.5, 3}
+    assert (tmp_path / "sweep/runs/step_growth=1.5/seed_1/results.json").stat().st_mtime_ns == before
+    with pytest.raises(RuntimeError, match="unknown key"):
+        drape.sweep(experiment, {"newton.step_grwth": [1]}, 2, methods=["pcs"], out=tmp_path / "other", progress=False)
+    assert drape.figures(tmp_path / "sweep", tmp_path / "figures")

@@ -157,5 +157,5 @@ def test_a_run_with_a_method_that_failed_is_read_and_drawn(small, tmp_path):
     with pytest.raises(ZeroDivisionError):
         run(experiment, methods=["failing"], out=tmp_path / "first", report=False)
     assert drape.read_run(tmp_path / "first")._repr_png_() is None
-    subprocess.run([sys.executable, "-m", "drape.figures", tmp_path / "out", "-o", tmp_path / "figures"], check=True)
+    subprocess.run([sys.executable, "-m", "drape.paper", tmp_path / "out", "-o", tmp_path / "figures"], check=True)
     assert (tmp_path / "figures/newton_end.png").exists()

@@ -86,7 +86,7 @@ constexpr const char* figures_program = R"(import sys
 sys.path = [part for part in [*sys.argv.pop(1).split(':'), *sys.path] if part]
 try:
     import matplotlib
-    import drape.figures as figures
+    import drape.paper as figures
 except ImportError as error:
     print(f'error: figures are made by the Python module of drape and matplotlib, which {sys.executable} lacks '
           f'({error}); build it with make python, or name its folder in PYTHONPATH', file=sys.stderr)
@@ -96,7 +96,7 @@ sys.exit(figures.main())
 
 /// Becomes python3, whose exit code is the command's. Throws std::runtime_error for a folder without results,
 /// and if python3 does not start.
-int make_figures(const std::string& folder, const std::string& out, bool overwrite) {
+int make_figures(const std::string& folder, const std::string& out, const std::vector<std::string>& options) {
   require_run_or_sweep(folder);
   const char* given = std::getenv("PYTHONPATH");
   std::string path = given ? given : "";
@@ -110,8 +110,12 @@ int make_figures(const std::string& folder, const std::string& out, bool overwri
   }
   const char* python = std::getenv("DRAPE_PYTHON");
   python = python && *python ? python : "/usr/bin/python3";  // for which `make python` builds the module
-  execlp(python, python, "-E", "-c", figures_program, path.c_str(), folder.c_str(), "--out", out.c_str(),
-         overwrite ? "--overwrite" : nullptr, nullptr);
+  std::vector<std::string> words = {python, "-E", "-c", figures_program, path, folder, "--out", out};
+  words.insert(words.end(), options.begin(), options.end());
+  std::vector<char*> arguments;
+  for (std::string& word : words) arguments.push_back(word.data());
+  arguments.push_back(nullptr);
+  execvp(python, arguments.data());
   throw std::runtime_error(std::string(python) + ": cannot be started; name a Python in DRAPE_PYTHON");
 }
 
@@ -192,16 +196,34 @@ void add_export_command(Commands& commands) {
 void add_figures_command(Commands& commands) {
   struct Options {
     std::string folder, out;
-    bool overwrite = false;
+    std::vector<std::string> further;  // for Python
   };
   const auto o = std::make_shared<Options>();
   CLI::App& command =
-      commands.add("figures", "write a paper's figures of a run or a sweep: SVG, PNG, CSV and LaTeX",
-                   "drape figures results/sphere -o figures",
-                   [o] { return make_figures(o->folder, o->out, o->overwrite); });
+      commands.add("figures", "write a paper's figures of a run or a sweep: PDF, SVG, PNG, CSV and LaTeX",
+                   "drape figures results/my_sweep -o figures --width 84 --log",
+                   [o] { return make_figures(o->folder, o->out, o->further); });
+  const auto flag = [&](const char* name, const char* help) {
+    command.add_flag_callback(
+        name, [o = o.get(), name] { o->further.emplace_back(name); }, help);
+  };
+  const auto option = [&](const std::string& name, const char* type, const char* help) -> CLI::Option& {
+    return *command
+                .add_option_function<std::string>(
+                    name,
+                    [o = o.get(), name](const std::string& text) { o->further.push_back(name + "=" + text); },
+                    help)
+                ->type_name(type);
+  };
   command.add_option("folder", o->folder, "results folder, or a sweep's")->required();
   add_option(command, "-o,--out DIR", o->out, "folder of the figures, which is made")->required();
-  command.add_flag("--overwrite", o->overwrite, "replace existing files");
+  option("--measures", "A,B", "of a sweep: columns of `drape table` that are drawn");
+  option("--methods", "A,B", "of a sweep: methods that are drawn");
+  option("--width", "MM", "width of a figure (default: 84, and 174 of several panels)")
+      .check(number_of_at_least(20));
+  option("--style", "FILE", "a matplotlib style: a file, or a name that matplotlib knows");
+  flag("--log", "logarithmic axes of measures");
+  flag("--overwrite", "replace existing files");
 }
 
 void add_report_commands(Commands& commands) {

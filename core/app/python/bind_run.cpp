@@ -155,17 +155,24 @@ void bind_results(py::module_& m) {
       [](const fs::path& folder) { return table_text(table_of(read_runs({folder})), {}, TableFormat::json); },
       py::arg("folder"), "The rows of `drape table FOLDER --format json`.");
   m.def(
+      "_summary", [](const fs::path& folder) { return json_text(table_json(read_runs({folder}))); },
+      py::arg("folder"),
+      "Columns, rows, units of varied keys, and the summary of rows over starts, as JSON.");
+  m.def(
       "_run_page", [](const fs::path& folder) { return viewer_page(read_run(folder)); }, py::arg("folder"));
   m.def(
       "_draw",
       [](const fs::path& folder, const fs::path& file, const std::string& method, std::optional<int> level,
-         bool outline, std::optional<int> width) {
-        export_run(
-            folder, file,
-            {.method = method, .level = level, .picture = {width, std::nullopt, outline}, .overwrite = true});
+         bool outline, std::optional<int> width, bool edges) {
+        export_run(folder, file,
+                   {.method = method,
+                    .level = level,
+                    .picture = {width, std::nullopt, outline, false, edges},
+                    .overwrite = true});
       },
       py::arg("folder"), py::arg("file"), py::arg("method"), py::arg("level") = std::nullopt,
-      py::arg("outline") = false, py::arg("width") = std::nullopt, "As `drape export` of a .png.");
+      py::arg("outline") = false, py::arg("width") = std::nullopt, py::arg("edges") = true,
+      "As `drape export` of a .png.");
   m.def(
       "_read_mesh",
       [](const fs::path& file) {

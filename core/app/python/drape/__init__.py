@@ -43,11 +43,18 @@ from ._core import (
 from .experiment import ConfigError, ConfigFault, Experiment, resume
 from .prototypes import Column, Energy, Metric, Parameter, Refiner, Solver, check_energy, register
 from .result import LevelRecord, MethodRecord, Page, Result, read_run, read_sweep, show
+from .sweeps import sweep
+
+
+def figures(results, out, **options):
+    """Write the figures of a run or a sweep to a folder: see drape.paper.figures, which needs matplotlib."""
+    return importlib.import_module("drape.paper").figures(results, out, **options)
+
 
 __all__ = [
     "BoundEnergy", "Checkpoint", "Column", "ConfigError", "ConfigFault", "Energy", "Experiment", "Iteration",
     "Level", "LevelRecord", "LevelResult", "Material", "MethodRecord", "Metric", "Model", "Page", "Parameter",
     "Problem", "Refiner", "Result", "RunAborted", "Scene", "Solve", "Solver", "__commit__", "__version__",
-    "bind_energy", "check_energy", "plugins", "read_run", "read_sweep", "register", "resume", "set_threads",
-    "show",
+    "bind_energy", "check_energy", "figures", "plugins", "read_run", "read_sweep", "register", "resume", "set_threads",
+    "show", "sweep",
 ]

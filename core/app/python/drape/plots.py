@@ -2,12 +2,47 @@
 
 from __future__ import annotations
 
+from typing import Any, Dict
+
 from . import _core
 
 COLOURS = ("#0072b2", "#d55e00", "#009e73", "#b0518c")
 MARKS = "os^D"
 LINES = ("-", "--", ":", "-.")
 COSTS = {"seconds": "time [s]", "iterations": "Newton iterations", "flops": "floating-point operations"}
+
+
+# What a page of a journal asks for: small type that stays type, thin lines, no frame, vectors. A style of the reader's own counts
+# first, whether from a matplotlibrc or by --style.
+STYLE = {"font.size": 8, "axes.titlesize": 8, "axes.labelsize": 8, "xtick.labelsize": 7, "ytick.labelsize": 7, "legend.fontsize": 8,
+         "axes.spines.top": False, "axes.spines.right": False, "axes.linewidth": 0.6, "lines.linewidth": 1.2, "grid.linewidth": 0.4,
+         "grid.color": "#d9d9d9", "axes.grid": True, "axes.axisbelow": True, "legend.frameon": False, "figure.dpi": 150, "savefig.dpi": 300,
+         "pdf.fonttype": 42, "svg.fonttype": "none", "svg.hashsalt": "drape", "figure.constrained_layout.use": True}
+
+
+def use_style(file: str = "", width=None) -> None:
+    """Sets what the reader's own style leaves at matplotlib's defaults; width of a figure in mm."""
+    import matplotlib
+    import matplotlib.style
+
+    mine: Dict[str, Any] = {**STYLE, "figure.figsize": [(width or 84) / 25.4, 0.72 * (width or 84) / 25.4]}
+    default = matplotlib.rcParamsDefault
+    matplotlib.rcParams.update({key: value for key, value in mine.items() if matplotlib.rcParams[key] == default[key]})
+    if file:
+        matplotlib.style.use(file)
+
+
+def style_of(solvers: dict, method: str) -> dict:
+    """Colour and mark are those of the method's solver; lines tell methods of one solver apart. Colours are those of the reader's
+    style, if it has its own."""
+    import matplotlib
+
+    cycle = matplotlib.rcParams["axes.prop_cycle"]
+    own = cycle.by_key().get("color", []) if cycle != matplotlib.rcParamsDefault["axes.prop_cycle"] else []
+    styles = {name: _core._solver_style(solver) for name, solver in solvers.items()}
+    style = styles[method]
+    alike = [name for name in styles if styles[name] == style]
+    return {"color": own[style % len(own)] if own else COLOURS[style], "marker": MARKS[style], "linestyle": LINES[alike.index(method) % len(LINES)]}
 
 
 def _axes(axes):
@@ -17,11 +52,7 @@ def _axes(axes):
 
 
 def _look(result, method: str) -> dict:
-    """Colour and mark are those of the method's solver; lines tell methods of one solver apart."""
-    styles = {name: _core._solver_style(result[name].solver) for name in result.methods}
-    style = styles[method]
-    alike = [name for name in result.methods if styles[name] == style]
-    return {"color": COLOURS[style], "marker": MARKS[style], "linestyle": LINES[alike.index(method) % len(LINES)]}
+    return style_of({name: result[name].solver for name in result.methods}, method)
 
 
 def measures_of(errors, target: str) -> list[str]:

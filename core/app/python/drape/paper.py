@@ -1,0 +1,193 @@
+"""What `drape figures RESULTS -o DIR` writes: a paper's figures (PDF, SVG, PNG, each with its CSV), tables (CSV, LaTeX) and pictures.
+
+The style is plots.STYLE, under the reader's own: a matplotlibrc in the working folder, or --style.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import pathlib
+import sys
+import tempfile
+
+import pandas
+
+from . import _core, paper_sweep
+from .plots import measures_of, use_style
+from .result import read_run, read_sweep
+
+# Columns of the LaTeX table and figures, beside what tells their rows apart, in order, as far as the runs have them.
+COLUMNS = {"preview_seconds": "preview [s]", "seconds": "end [s]", "cpu_seconds": "CPU time [s]", "iterations": "Newton iterations",
+           "preview_rms": "preview error [diagonal]", "error_rms": "error [diagonal]",
+           "energy_released": "energy released [J]", "intersections": "intersections"}
+ESCAPES = str.maketrans({c: "\\" + c for c in "&%$#_{}"} | {"\\": r"\textbackslash{}", "~": r"\textasciitilde{}", "^": r"\textasciicircum{}"})
+
+
+def _digits(value: float) -> str:
+    text = f"{value:.3g}"
+    if "e" not in text:
+        return text
+    digits, power = text.split("e")
+    return rf"${digits}\cdot10^{{{int(power)}}}$"
+
+
+def _latex_cell(name: str, row) -> str:
+    spread, reference = row[name], row["reference"] if name.startswith("error_") else 0
+    if not isinstance(spread, dict):
+        return "reference" if reference else "--"
+    median, low, high = (_digits(spread[part]) for part in ("median", "low", "high"))
+    text = median if low == high else f"{median} ({low} -- {high})"
+    text = rf"\textbf{{{text}}}" if name in row["best"] else text
+    notes = [f"$n={spread['count']}$"] * (spread["count"] < row["starts"]) + [f"reference in {reference}"] * bool(reference)
+    return ", ".join([text, *notes])
+
+
+def _varied(table: dict) -> list[str]:
+    """The keys that a sweep varies, or the run's name where only that differs."""
+    summary = pandas.DataFrame(table["summary"])
+    keys = [key for key in table["units"] if summary[key].map(str).nunique() > 1]
+    return keys or (["variation"] if summary["variation"].nunique() > 1 else [])
+
+
+def latex_table(table: dict) -> str:
+    """Medians over the starts that converged, with ranges, for the package booktabs; what is bold is the pages' choice."""
+    summary, keys = pandas.DataFrame(table["summary"]), _varied(table)
+    names = paper_sweep.Keys({key: table["units"].get(key, "") for key in keys}, table["summary"])
+    columns = {name: title for name, title in COLUMNS.items() if name in summary and summary[name].notna().any()}
+    head = [*(names.title(key) for key in keys), "method", "converged", *columns.values()]
+    lines = [rf"\begin{{tabular}}{{{'l' * (len(keys) + 1)}{'r' * (len(columns) + 1)}}}", r"\toprule",
+             " & ".join(name.translate(ESCAPES) for name in head) + r" \\", r"\midrule"]
+    for _, row in summary.iterrows():
+        cells = [names.value(key, row[key]).translate(ESCAPES) for key in keys] + [row["method"].translate(ESCAPES) or "--", row["converged"]]
+        lines.append(" & ".join(cells + [_latex_cell(name, row) for name in columns]) + r" \\")
+    timed = [row for row in table["rows"] if row["method"]]
+    busy = sum(row["machine"] == "busy" for row in timed)
+    notes = ["Medians over the starts that converged, with ranges; $n$ where it is not all of them."]
+    notes += [table["bold"].translate(ESCAPES)] if any(summary["best"].map(len)) else []
+    notes += [f"The machine was busy during {busy} of {len(timed)} timings."] if busy else []
+    return "\n".join([*lines, r"\bottomrule", r"\end{tabular}", r"\par\smallskip{\footnotesize " + " ".join(notes) + "}", ""])
+
+
+def _save(figure, rows: pandas.DataFrame, file: pathlib.Path) -> list[pathlib.Path]:
+    """The figure as PDF, SVG and PNG, and what it shows as CSV. Equal figures give equal files."""
+    import matplotlib.pyplot
+
+    files = [file.with_suffix(ending) for ending in (".pdf", ".svg", ".png", ".csv")]
+    figure.canvas.draw()
+    figure.set_layout_engine("none")  # as it is laid out now
+    for each in files[:3]:
+        figure.savefig(each, metadata={".pdf": {"CreationDate": None}, ".svg": {"Date": None}}.get(each.suffix))
+    rows.apply(lambda column: column.map(_cell)).to_csv(files[3], index=False)
+    matplotlib.pyplot.close(figure)
+    return files
+
+
+def _run_figures(folder: pathlib.Path, out: pathlib.Path) -> list[pathlib.Path]:
+    result = read_run(folder)
+    files = _save(result.plot_convergence().figure, result.iterations, out / "convergence")
+    for target in ("own", "reference"):
+        if measures_of(result.errors, target):
+            files += _save(result.plot_errors(target=target).figure, result.errors, out / f"distance_{target}")
+    if len(result.errors):
+        (out / "errors.csv").write_bytes((folder / "errors.csv").read_bytes())
+        files.append(out / "errors.csv")
+    for method in result.methods:
+        levels = [entry.level for entry in result[method].levels if vars(entry).get("mesh")]
+        pictures: dict[str, dict] = {"end": {}}
+        if len(levels) > 1:
+            pictures |= {"preview": {"level": levels[0]}, "outline": {"outline": True}}
+        for name, options in pictures.items() if levels else ():
+            files.append(out / f"{method}_{name}.png")
+            _core._draw(folder, files[-1], method, **options)
+    return files
+
+
+def _sweep_figures(folder: pathlib.Path, table: dict, out: pathlib.Path, measures, methods, width, log) -> list[pathlib.Path]:
+    """Each measure against each varied key; distance against time and iterations; previews and ends side by side."""
+    files, keys = [], _varied(table)
+    names = paper_sweep.Keys({key: table["units"].get(key, "") for key in keys}, table["summary"])
+    summary = pandas.DataFrame(row for row in table["summary"] if row["method"] and (not methods or row["method"] in methods))
+    styles, order = paper_sweep.styles_of(summary), list(dict.fromkeys(summary["method"]))
+    busy = any(row.get("machine") == "busy" for row in table["rows"])
+    columns = measures or [name for name in COLUMNS if name in summary and summary[name].notna().any()]
+    for name in columns:
+        title = COLUMNS.get(name, name.replace("_", " ")) + (", on a busy machine" if busy and name in ("seconds", "preview_seconds") else "")
+        for key in keys:
+            figure, rows = paper_sweep.measure_figure(summary, name, title, key, names, styles, width, log)
+            files += _save(figure, rows, out / f"{name}_by_{names.short(key)}")
+    titles = {row["variation"]: ", ".join(names.text(key, row[key]) for key in keys) or row["variation"] for _, row in summary.iterrows()}
+    runs: dict = {}
+    for run in json.loads((folder / "sweep.json").read_text(encoding="utf-8"))["runs"]:
+        if (folder / run["folder"] / "results.json").exists() and run["name"] in titles:
+            runs.setdefault(titles[run["name"]], []).append(read_run(folder / run["folder"]))
+    drawn: dict = {f"distance_over_{cost}": paper_sweep.distance_figure(runs, cost, order, styles, width, busy) for cost in ("seconds", "iterations")}
+    drawn["pictures"] = paper_sweep.pictures_figure(runs, order, width)
+    for name, pair in drawn.items():
+        files += _save(pair[0], pair[1], out / name) if pair else []
+    return files
+
+
+def _cell(value):
+    return _core._uncomputed(value) if isinstance(value, str) else value
+
+
+def figures(results, out, overwrite: bool = False, *, measures=(), methods=(), width=None, log: bool = False, style: str = "") -> list[pathlib.Path]:
+    """Writes the figures of a run or a sweep to a folder, which is made, and returns the files. Raises RuntimeError for a
+    folder without results, for a file that exists, and for a measure or a method that the results do not have.
+
+    measures, methods: of a sweep's figures, by their names in `drape table`; all of COLUMNS, and all methods, by default.
+    width: of a figure in mm; by default 84, and 174 of one with several panels. log: logarithmic measures.
+    style: a matplotlib style, by its name or file.
+    """
+    import matplotlib
+
+    matplotlib.use("Agg")
+    folder, out = pathlib.Path(results), pathlib.Path(out)
+    rows, table = read_sweep(folder), json.loads(_core._summary(folder))
+    if not any(row["method"] for row in table["summary"]):  # a run without results has no method
+        raise RuntimeError(f"{folder}: no run has written results yet")
+    for what, asked, known in (("measure", measures, [name for name, value in table["summary"][0].items() if isinstance(value, (dict, type(None)))]),
+                               ("method", methods, list(dict.fromkeys(row["method"] for row in table["summary"] if row["method"])))):
+        for name in asked:
+            if name not in known:
+                raise RuntimeError(f"there is no {what} \"{name}\"; there are {', '.join(known)}")
+    out.mkdir(parents=True, exist_ok=True)
+    _core._refuse_target(out / "table.csv", overwrite)  # before anything is drawn
+    with matplotlib.rc_context(), tempfile.TemporaryDirectory(prefix="drape_figures_") as made:
+        use_style(style, width)
+        files = [pathlib.Path(made, "table.csv"), pathlib.Path(made, "table.tex")]
+        rows.apply(lambda column: column.map(_cell)).to_csv(files[0], index=False)
+        files[1].write_text(latex_table(table), encoding="utf-8")
+        of_run = (folder / "results.json").exists()
+        files += _run_figures(folder, pathlib.Path(made)) if of_run else _sweep_figures(folder, table, pathlib.Path(made), measures, methods, width, log)
+        written = [out / file.name for file in files]
+        for target in written:
+            _core._refuse_target(target, overwrite)
+        for file, target in zip(files, written):
+            _core._write_file(target, file.read_bytes(), overwrite)
+    return written
+
+
+def main() -> int:
+    parser = argparse.ArgumentParser(prog="drape figures", description=__doc__)
+    parser.add_argument("results", help="results folder of a run, or a sweep's")
+    parser.add_argument("-o", "--out", required=True, help="folder of the figures")
+    parser.add_argument("--overwrite", action="store_true", help="replace existing files")
+    for name in ("measures", "methods"):
+        parser.add_argument(f"--{name}", type=lambda text: [word for word in text.split(",") if word], default=[])
+    parser.add_argument("--width", type=float, help="width of a figure [mm]")
+    parser.add_argument("--log", action="store_true", help="logarithmic measures")
+    parser.add_argument("--style", default="", help="a matplotlib style: its name, or a file")
+    given = vars(parser.parse_args())
+    try:
+        for file in figures(given.pop("results"), given.pop("out"), given.pop("overwrite"), **given):
+            print(file)
+    except (RuntimeError, OSError) as error:
+        print(f"error: {error}", file=sys.stderr)
+        return 2
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
