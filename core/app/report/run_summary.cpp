@@ -32,6 +32,14 @@ Json spread_of(std::vector<double> values) {
           {"count", n}};
 }
 
+/// Whether every level of a method has: levels that ended differently have a word each, as in "converged,
+/// stalled".
+bool all_converged(const std::string& status) {
+  return std::ranges::all_of(split(status, ','), [](const std::string& word) {
+    return has_converged(word.starts_with(' ') ? word.substr(1) : word);
+  });
+}
+
 /// A range of ranks, lower ones better. Where lower values are better, those nearer to zero are: a difference
 /// of energies may be negative.
 struct Ranks {
@@ -83,7 +91,7 @@ std::vector<TableRow> summary_of(const RunTable& table, const std::vector<Declar
       numbers.push_back(column);
   for (const auto& rows : starts) {
     std::vector<const TableRow*> good = rows;
-    std::erase_if(good, [](const TableRow* row) { return !has_converged(text_member(*row, "status")); });
+    std::erase_if(good, [](const TableRow* row) { return !all_converged(text_member(*row, "status")); });
     Json& entry = summary.emplace_back();
     for (const char* shared : {"sweep", "run", "variation", "method", "solver", "physics"})
       entry[shared] = member_of(*rows.front(), shared);

@@ -69,3 +69,17 @@ TEST_CASE("a method that is the reference has no rival in the distance from it")
   CHECK(three[2]["best"] == Json::array({"energy_gap"}));
   CHECK(three[0]["best"].empty());
 }
+
+TEST_CASE("a method has converged if all its levels have, and only such starts count") {
+  std::vector<TableRow> rows;
+  for (const char* status : {"converged", "converged, max_steps_reached", "converged_to_rounding, converged",
+                             "converged, failed"}) {
+    rows.push_back(row("pcs", static_cast<int>(rows.size()), 1, none));
+    rows.back()["status"] = status;
+  }
+  const auto of_four = summary(rows);
+  REQUIRE(of_four.size() == 1);
+  CHECK(of_four[0]["converged"] == "2 of 4");
+  CHECK(of_four[0]["starts"] == 4);
+  CHECK(of_four[0]["seconds"]["count"] == 2);
+}
