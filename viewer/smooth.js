@@ -1,7 +1,7 @@
 /// A mesh as its smooth surface: Loop's, at its limit. Borders are cubic B-splines between corners, which stay.
 
 /// {x, index, tints} of the limit at the vertices of so many subdivisions, the mesh's own vertices first.
-export function smoothed({x, index, tints}, rounds) {
+function smoothed({x, index, tints}, rounds) {
   for (let round = 0; round < rounds; ++round) ({x, index, tints} = subdivided(x, index, tints));
   return {x: moved(x, index, [2 / 3, 1 / 3], valence => valence === 3 ? [2 / 5, 3 / 5] : [1 / 2, 1 / 2]), index, tints};
 }
@@ -55,4 +55,18 @@ function subdivided(x, index, tints) {
     finer.set([a, ab, ca, ab, b, bc, ca, bc, c, ab, bc, ca], 4 * t);
   }
   return {x: all, index: finer, tints: colours};
+}
+
+/* global THREE */
+/// The smooth surface of a coarse state, kept with its positions; nothing for a mesh that is fine already.
+export function surface({index, x, tints}, colours) {
+  const rounds = Math.min(2, Math.floor(Math.log(3 * 60000 / x.length) / Math.log(4)));
+  if (rounds < 1) return null;
+  x.surfaces ??= {};
+  if (!x.surfaces[colours]) {
+    const made = smoothed({x, index: index.array, tints}, rounds);
+    x.surfaces[colours] = {...made, index: new THREE.BufferAttribute(made.index, 1)};
+    made.x.rounding = x.rounding;
+  }
+  return x.surfaces[colours];
 }

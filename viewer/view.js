@@ -1,21 +1,8 @@
 /// The 3D view and its controls: which states are shown, in which colours, in which panels.
 import {embedded, gradient, paint, positions, scalars, triangles} from './blocks.js';
 import {Scene} from './scene.js';
-import {smoothed} from './smooth.js';
+import {surface} from './smooth.js';
 import {choice, count, fold, h, save, say, tick} from './text.js';
-
-/// The smooth surface of a coarse state, kept with its positions; nothing for a mesh that is fine already.
-function surface({index, x, tints}, colours) {
-  const rounds = Math.min(2, Math.floor(Math.log(3 * 60000 / x.length) / Math.log(4)));
-  if (rounds < 1) return null;
-  x.surfaces ??= {};
-  if (!x.surfaces[colours]) {
-    const made = smoothed({x, index: index.array, tints}, rounds);
-    x.surfaces[colours] = {...made, index: new THREE.BufferAttribute(made.index, 1)};
-    made.x.rounding = x.rounding;
-  }
-  return x.surfaces[colours];
-}
 
 /// So many digits, or a whole number where these do not suffice: no exponent.
 const digits = (value, n) => value < 10 ** n - .5 ? value.toPrecision(n) : count(value);
