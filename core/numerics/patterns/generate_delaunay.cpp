@@ -241,25 +241,35 @@ Triangles constrained_triangulation(const std::vector<Eigen::Vector2d>& points,
 }
 
 std::pair<LoopSide, LoopSide> crossing_sides(const std::vector<Polygon>& loops) {
-  std::vector<std::pair<LoopSide, Kernel::Segment_2>> sides;
+  struct Side {
+    LoopSide of;
+    Kernel::Segment_2 segment;
+    CGAL::Bbox_2 box;
+  };
+  std::vector<Side> sides;
   for (std::size_t k = 0; k < loops.size(); ++k)
     for (std::size_t i = 0; i < loops[k].size(); ++i) {
       const Eigen::Vector2d &a = loops[k][i], &b = loops[k][(i + 1) % loops[k].size()];
-      sides.push_back({{int(k), int(i)}, {Point2(a.x(), a.y()), Point2(b.x(), b.y())}});
+      const Kernel::Segment_2 segment({a.x(), a.y()}, {b.x(), b.y()});
+      sides.push_back({{int(k), int(i)}, segment, segment.bbox()});
     }
-  for (std::size_t i = 0; i < sides.size(); ++i)
-    for (std::size_t j = i + 1; j < sides.size(); ++j) {
-      const auto& [one, a] = sides[i];
-      const auto& [other, b] = sides[j];
-      if (!CGAL::do_overlap(a.bbox(), b.bbox())) continue;
-      const bool same = one.loop == other.loop;
-      const bool next = same && other.side == one.side + 1;
-      const bool last = same && one.side == 0 && other.side + 1 == std::ssize(loops[one.loop]);
-      const bool meet = next   ? a.has_on(b.target()) || b.has_on(a.source())
-                        : last ? a.has_on(b.source()) || b.has_on(a.target())
-                               : CGAL::do_intersect(a, b);
-      if (meet || a.is_degenerate()) return {one, other};
-    }
+  std::ranges::stable_sort(sides, {}, [](const Side& side) { return side.box.xmin(); });
+  const auto meet = [&](const Side& one, const Side& other) {
+    const Kernel::Segment_2 &a = one.segment, &b = other.segment;
+    const auto count = static_cast<int>(loops[one.of.loop].size());
+    const bool same = one.of.loop == other.of.loop;
+    if (same && other.of.side == (one.of.side + 1) % count)
+      return a.has_on(b.target()) || b.has_on(a.source());
+    if (same && one.of.side == (other.of.side + 1) % count)
+      return a.has_on(b.source()) || b.has_on(a.target());
+    return CGAL::do_intersect(a, b);
+  };
+  for (auto one = sides.begin(); one != sides.end(); ++one)
+    for (auto other = one + 1; other != sides.end() && other->box.xmin() <= one->box.xmax(); ++other)
+      if (CGAL::do_overlap(one->box, other->box) && meet(*one, *other))
+        return std::minmax(one->of, other->of, [](const LoopSide& a, const LoopSide& b) {
+          return std::pair(a.loop, a.side) < std::pair(b.loop, b.side);
+        });
   return {};
 }
 

@@ -3,7 +3,10 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
+#include <optional>
+#include <utility>
 
 #include "core/numerics/patterns/delaunay.h"
 
@@ -35,22 +38,63 @@ bool leans_left(const Polygon& loop, double middle) {
   return moment < 0;
 }
 
-double distance_to_side(const Vector2d& p, const Vector2d& a, const Vector2d& b) {
-  const Vector2d along = b - a;
-  const double t = std::clamp((p - a).dot(along) / along.squaredNorm(), 0.0, 1.0);
-  return (p - a - t * along).norm();
+/// Whether a side from a to b crosses the line to the right of a point.
+bool crosses(const Vector2d& a, const Vector2d& b, const Vector2d& p) {
+  return (a.y() > p.y()) != (b.y() > p.y()) &&
+         p.x() < (b.x() - a.x()) * (p.y() - a.y()) / (b.y() - a.y()) + a.x();
 }
 
-/// Whether p is in the region and farther from its border than `gap`.
-bool is_well_inside(const std::vector<Polygon>& loops, const Vector2d& p, double gap) {
-  bool inside = false;
-  for (const Polygon& loop : loops) {
-    if (is_inside(loop, p)) inside = !inside;
-    for (std::size_t i = 0; i < loop.size(); ++i)
-      if (distance_to_side(p, loop[i], loop[(i + 1) % loop.size()]) < gap) return false;
+/// The sides of a region's loops, by the rows of a lattice that they are near to.
+class RowsOfSides {
+ public:
+  RowsOfSides(const std::vector<Polygon>& loops, double middle, double height, long rows, double gap)
+      : rows_(rows), of_row_(static_cast<std::size_t>(2 * rows + 1)), gap_(gap) {
+    for (const Polygon& loop : loops)
+      for (std::size_t i = 0; i < loop.size(); ++i) {
+        const Side side{loop[i], loop[(i + 1) % loop.size()]};
+        const auto [low, high] = std::minmax(side.a.y(), side.b.y());
+        const auto row_of = [&](double y) {
+          return std::clamp(std::round((y - middle) / height), -double(rows), double(rows));
+        };
+        // A row's points are moved by less than its height.
+        const auto first = static_cast<long>(row_of(low - gap)) - 1,
+                   last = static_cast<long>(row_of(high + gap)) + 1;
+        for (long j = std::max(first, -rows); j <= std::min(last, rows); ++j)
+          of_row_[j + rows_].push_back(side);
+      }
   }
-  return inside;
-}
+
+  /// From the leftmost to the rightmost end of the row's sides; nothing without any.
+  std::optional<std::pair<double, double>> extent(long row) const {
+    if (of_row_[row + rows_].empty()) return std::nullopt;
+    double left = std::numeric_limits<double>::infinity(), right = -left;
+    for (const Side& side : of_row_[row + rows_]) {
+      left = std::min({left, side.a.x(), side.b.x()});
+      right = std::max({right, side.a.x(), side.b.x()});
+    }
+    return std::pair(left, right);
+  }
+
+  /// Whether a point of the row is in the region and farther from its border than the gap.
+  bool has_well_inside(long row, const Vector2d& p) const {
+    bool inside = false;
+    for (const auto& [a, b] : of_row_[row + rows_]) {
+      if (crosses(a, b, p)) inside = !inside;
+      const Vector2d along = b - a;
+      const double t = std::clamp((p - a).dot(along) / along.squaredNorm(), 0.0, 1.0);
+      if ((p - a - t * along).norm() < gap_) return false;
+    }
+    return inside;
+  }
+
+ private:
+  struct Side {
+    Vector2d a, b;
+  };
+  long rows_;
+  std::vector<std::vector<Side>> of_row_;
+  double gap_;
+};
 
 /// A number from -1 to 1 that looks random, of two integers.
 double scattered(long i, long j) {
@@ -67,15 +111,19 @@ Polygon lattice(const std::vector<Polygon>& loops, const Eigen::AlignedBox2d& bo
   Polygon points;
   const double height = edge_length * std::numbers::sqrt3 / 2;
   const auto rows = static_cast<long>(std::ceil(box.sizes().y() / (2 * height)));
-  const auto columns = static_cast<long>(std::ceil(box.sizes().x() / edge_length)) + 1;
-  for (long j = -rows; j <= rows; ++j)
-    for (long i = -columns; i <= columns; ++i) {
+  const RowsOfSides sides(loops, box.center().y(), height, rows, gap * edge_length);
+  for (long j = -rows; j <= rows; ++j) {
+    const auto extent = sides.extent(j);
+    if (!extent) continue;
+    const auto column = [&](double x) { return std::lround((x - box.center().x()) / (edge_length / 2)); };
+    for (long i = column(extent->first); i <= column(extent->second); ++i) {
       if ((i + j) % 2 != 0) continue;  // i counts half edges
       const double across = static_cast<double>(i) / 2 + moved * scattered(i, j);
       const double along = static_cast<double>(j) + moved * scattered(j, i);
       const Vector2d p = box.center() + Vector2d(across * edge_length, along * height);
-      if (is_well_inside(loops, p, gap * edge_length)) points.push_back(p);
+      if (sides.has_well_inside(j, p)) points.push_back(p);
     }
+  }
   return points;
 }
 
@@ -94,12 +142,8 @@ void smooth(Polygon& points, std::size_t first_inner, const Triangles& triangles
 
 bool is_inside(const Polygon& loop, const Vector2d& p) {
   bool inside = false;
-  for (std::size_t i = 0; i < loop.size(); ++i) {
-    const Vector2d &a = loop[i], &b = loop[(i + 1) % loop.size()];
-    if ((a.y() > p.y()) != (b.y() > p.y()) &&
-        p.x() < (b.x() - a.x()) * (p.y() - a.y()) / (b.y() - a.y()) + a.x())
-      inside = !inside;
-  }
+  for (std::size_t i = 0; i < loop.size(); ++i)
+    if (crosses(loop[i], loop[(i + 1) % loop.size()], p)) inside = !inside;
   return inside;
 }
 
