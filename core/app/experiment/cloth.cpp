@@ -101,15 +101,6 @@ OutlineSize outline_of(const ClothParameters& c) {
   return outline;
 }
 
-/// The number of vertices by the edge length. Throws std::runtime_error for too many.
-int vertices_within(const OutlineSize& outline, double edge_length) {
-  const double count = outline.vertices(edge_length);
-  if (count > bounds::most_vertices)
-    throw std::runtime_error("\"edge_length\" would give about " + about(count) +
-                             " vertices; a coarsest level has at most " + about(bounds::most_vertices));
-  return static_cast<int>(std::lround(std::max(count, 3.0)));
-}
-
 /// The number of vertices of a generated cloth but a grid.
 int vertices_of(const ClothParameters& c) {
   return c.edge_length ? vertices_within(outline_of(c), *c.edge_length) : c.vertex_count();
@@ -172,6 +163,14 @@ bool is_grid(const ClothParameters& c) {
 
 }  // namespace
 
+int vertices_within(const OutlineSize& outline, double edge_length) {
+  const double count = outline.vertices(edge_length);
+  if (count > bounds::most_vertices)
+    throw std::runtime_error("\"edge_length\" would give about " + about(count) +
+                             " vertices; a coarsest level has at most " + about(bounds::most_vertices));
+  return static_cast<int>(std::lround(std::max(count, 3.0)));
+}
+
 Positions AsReadParameters::in_file(Positions x) const {
   if (!rotate.isZero(0)) x *= rotation_matrix(rotate);
   x /= scale;
@@ -187,8 +186,9 @@ std::optional<TriangleMesh> checked_cloth(const Experiment& e, ConfigErrors& err
     std::vector<std::string> faults = check_mesh(*cloth);
     if (faults.empty() && cloth->sewing) faults = check_pieces(*cloth);
     if (faults.empty()) faults = cut(*cloth, c);
+    const std::string placed = c.shape == "pattern" ? "as the panels are placed, " : "";
     for (const std::string& fault : faults)
-      errors.push_back({e.location_of("cloth"), (c.file.empty() ? "" : c.file + ": ") + fault});
+      errors.push_back({e.location_of("cloth"), (c.file.empty() ? "" : c.file + ": ") + placed + fault});
     if (faults.empty()) return cloth;
   } catch (const std::exception& error) {
     errors.push_back({e.location_of("cloth"), reason_of(error)});

@@ -3,6 +3,7 @@
 #include <optional>
 
 #include "core/app/experiment/experiment.h"
+#include "core/numerics/patterns/delaunay.h"
 
 namespace drape {
 
@@ -16,6 +17,10 @@ std::optional<TriangleMesh> start_mesh(const Experiment& experiment, ConfigError
 /// vertices with square cells. Throws std::runtime_error if the result is far from the requested vertices or
 /// too large for a coarsest level.
 Eigen::Vector2i grid_counts(const ClothParameters& cloth);
+
+/// The number of vertices by the edge length. Throws std::runtime_error for more than a coarsest level may
+/// have.
+int vertices_within(const OutlineSize& outline, double edge_length);
 
 /// Estimated vertices of each level, without building any; reads only a mesh file. Empty if the cloth cannot
 /// be made, which checked_cloth reports.

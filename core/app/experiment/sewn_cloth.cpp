@@ -5,6 +5,7 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "core/app/experiment/cloth.h"
 #include "core/app/experiment/pattern_file.h"
 #include "core/kernel/files/message_text.h"
 #include "core/kernel/files/string_utils.h"
@@ -61,11 +62,14 @@ Sewing sewing_of(const ClothParameters& c, double uv_length) {
   return {uv_length, c.seams.angle * std::numbers::pi / 180, c.seams.stiffness};
 }
 
-/// As asked for, or by the number of vertices; 2 cm without either.
+/// As asked for, or by the number of vertices; 2 cm without either. Throws std::runtime_error for too many
+/// vertices.
 double edge_length_of(const Pattern& pattern, const ClothParameters& c) {
-  if (c.edge_length || !c.vertices) return c.edge_length.value_or(0.02);
   const OutlineSize size = outline_size(pattern);
-  return even_spacing(size.area, size.border, *c.vertices);
+  const double length = c.edge_length || !c.vertices ? c.edge_length.value_or(0.02)
+                                                     : even_spacing(size.area, size.border, *c.vertices);
+  vertices_within(size, length);
+  return length;
 }
 
 }  // namespace
@@ -113,29 +117,33 @@ std::optional<TriangleMesh> cloth_of_pattern(const ClothParameters& c, ConfigErr
 }
 
 void find_label_edges(const ConfigNode& source, ExperimentParameters& p, ConfigErrors& errors) {
-  std::optional<LabelEdges> labels;
-  const auto find = [&](VertexSelection& selection, const char* key, std::size_t k) {
-    if (!selection.label || !selection.label_edges.empty()) return;
-    if (!labels) {
-      labels.emplace();
-      ConfigErrors of_cloth;  // which its check reports
-      if (p.cloth.shape == "pattern" && !p.cloth.file.empty() &&
-          !cloth_of_pattern(p.cloth, of_cloth, &*labels))
-        return;
-    }
-    selection.label_edges = (*labels)[*selection.label];
-    if (!selection.label_edges.empty()) return;
-    labels->erase(*selection.label);
-    std::vector<std::string> names;
-    for (const auto& [name, edges] : *labels) names.push_back(name);
-    errors.push_back({source.find(key)->items[k].where,
-                      "no edge of the cloth has the label \"" + excerpt(*selection.label) + "\"; " +
-                          (p.cloth.shape != "pattern" ? "only edges of a sewing pattern have labels"
-                           : names.empty()            ? "the pattern has no labels"
-                                                      : "the pattern has " + joined(names))});
+  std::vector<std::pair<VertexSelection*, const Location*>> asked;
+  const auto add = [&](auto& selections, const char* key) {
+    for (std::size_t k = 0; k < selections.size(); ++k)
+      if (selections[k].label && selections[k].label_edges.empty())
+        asked.emplace_back(&selections[k], &source.find(key)->items[k].where);
   };
-  for (std::size_t k = 0; k < p.pins.size(); ++k) find(p.pins[k], "pins", k);
-  for (std::size_t k = 0; k < p.handles.size(); ++k) find(p.handles[k], "handles", k);
+  add(p.pins, "pins");
+  add(p.handles, "handles");
+  if (asked.empty()) return;
+  LabelEdges labels;
+  const bool is_pattern = p.cloth.shape == "pattern";
+  try {
+    ConfigErrors of_cloth;  // which the check of the cloth reports
+    if (is_pattern && !cloth_of_pattern(p.cloth, of_cloth, &labels)) return;
+  } catch (const std::runtime_error&) {
+    return;  // as well
+  }
+  std::vector<std::string> names;
+  for (const auto& [name, edges] : labels) names.push_back(name);
+  for (const auto& [selection, where] : asked) {
+    selection->label_edges = labels[*selection->label];
+    if (selection->label_edges.empty())
+      errors.push_back({*where, "no edge of the cloth has the label \"" + excerpt(*selection->label) + "\"; " +
+                                    (!is_pattern     ? "only edges of a sewing pattern have labels"
+                                     : names.empty() ? "the pattern has no labels"
+                                                     : "the pattern has " + joined(names))});
+  }
 }
 
 std::string sewing_text(const Level& coarsest) {
