@@ -125,6 +125,10 @@ TEST_CASE("patterns that cannot be sewn are refused with file, line, panel and e
   check_error(
       said(&Bag::front_edges, "{bottom: [0, 4]}"),
       "p.yaml:7:27: panel front: edge bottom ends at vertex 4, which is not there; it has 0, 1, 2, 3");
+  check_error(said(&Bag::front_edges, "{bottom: [0, 1], bottom: [1, 2]}"),
+              "p.yaml:7:31: panel front: bottom is given twice; rename one");
+  check_error(said(&Bag::stitches, "{a: [front.left, back.left], a: [front.right, back.right]}"),
+              "p.yaml:11:42: seam a is given twice; rename one");
   // Stitched twice, lengths that differ, one side, curves of no known kind.
   check_error(said(&Bag::stitches, "{left: [front.left, back.left], again: [front.left, back.top]}"),
               "p.yaml:11:45: edge left of panel front is in seam again and in seam left; an edge is sewn to "
@@ -142,6 +146,16 @@ TEST_CASE("patterns that cannot be sewn are refused with file, line, panel and e
       said(&Bag::front_edges, "{bottom: {endpoints: [0, 1], curvature: {type: circle, params: [9, 0, 1]}}}"),
       "p.yaml:7:77: panel front: edge bottom: no circle of that radius has both of its ends; at least 10");
   check_error(refused_pattern("pattern: {panels: {}}\n"), "p.yaml:1:19: the pattern has no panels");
+}
+
+TEST_CASE("a pattern is meshed to a length of edges, or to about a number of vertices, within bounds") {
+  const Scratch folder(of_pattern);
+  folder.write("p.yaml", pattern({}));
+  CHECK_THAT(shown_by("check e.yaml --set cloth.edge_length=null --set cloth.vertices=500 --set levels=1",
+                      folder.path),
+             Catch::Matches("[^]*Vertices by level: 4[0-9][0-9]\n[^]*"));
+  check_error(refused(folder, "check e.yaml --set cloth.edge_length=1e-6"),
+              "e.yaml:3:8: \"edge_length\" would give about 9.2e+10 vertices; a coarsest level has at most");
 }
 
 TEST_CASE("a pattern is no cloth of other keys, and other cloth has no seams") {

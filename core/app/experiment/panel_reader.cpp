@@ -72,8 +72,16 @@ class PanelReader {
     errors_.push_back({where, "panel " + excerpt(read_.panel.name) + ": " + what});
   }
 
+  /// Whether a name stands for two vertices or two edges, which is an error.
+  bool is_repeated(const ConfigNode& map, const NamedNode& named) {
+    if (named.name.empty() || map.find(named.name) == named.node) return false;
+    refuse(named.where, excerpt(named.name) + " is given twice; rename one");
+    return true;
+  }
+
   void read_vertices() {
     for (const NamedNode& vertex : named_nodes(p_.vertices)) {
+      if (is_repeated(p_.vertices, vertex)) return;
       const auto place = numbers(*vertex.node, 2);
       if (!place)
         return refuse(vertex.where, "a vertex is [x, y], two numbers, not " + vertex.node->one_line());
@@ -140,11 +148,12 @@ class PanelReader {
 
   void read_edges() {
     for (const NamedNode& written : named_nodes(p_.edges)) {
+      if (is_repeated(p_.edges, written)) return;
       PanelEdgeParameters e;
       const std::string number = std::to_string(ends_.size());
       schema_of<PanelEdgeParameters>("edge " + (written.name.empty() ? number : excerpt(written.name)) +
                                      " of panel " + excerpt(read_.panel.name))
-          .read(&e, written.node->kind == Kind::list ? in_map(*written.node) : *written.node, errors_);
+          .read(&e, with_key("endpoints", *written.node), errors_);
       if (failed()) return;
       const std::string own = e.name.value_or(written.name), name = own.empty() ? number : excerpt(own);
       if (e.endpoints.items.size() != 2)
@@ -164,13 +173,6 @@ class PanelReader {
     }
     if (ends_.empty())
       refuse(p_.edges.kind == Kind::null ? node_.where : p_.edges.where, "it is empty: it has no edges");
-  }
-
-  static ConfigNode in_map(const ConfigNode& endpoints) {
-    ConfigNode map;
-    map.where = endpoints.where;
-    map.add("endpoints", endpoints);
-    return map;
   }
 
   void find_loops() {

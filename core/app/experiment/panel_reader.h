@@ -10,6 +10,15 @@
 
 namespace drape {
 
+/// A node as a map: a bare list stands for the value of `key`.
+inline ConfigNode with_key(const std::string& key, const ConfigNode& node) {
+  if (node.kind != ConfigNode::Kind::list) return node;
+  ConfigNode map;
+  map.where = node.where;
+  map.add(key, node);
+  return map;
+}
+
 /// How the numbers of a pattern's file are meant.
 struct PatternUnits {
   double length = 1;               ///< [m]

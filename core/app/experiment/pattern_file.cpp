@@ -22,8 +22,7 @@ class SeamReader {
   std::optional<Seam> read(const std::string& name, const ConfigNode& node, const Location& where) {
     const std::size_t before = errors_.size();
     PatternSeamParameters p;
-    schema_of<PatternSeamParameters>("seam " + excerpt(name))
-        .read(&p, node.kind == Kind::list ? in_map(node) : node, errors_);
+    schema_of<PatternSeamParameters>("seam " + excerpt(name)).read(&p, with_key("sides", node), errors_);
     if (errors_.size() > before) return std::nullopt;
     Seam seam{excerpt(p.name.value_or(name)), {}, p.right_wrong, p.ease, where};
     std::vector<ConfigNode> sides = p.sides.items;
@@ -46,13 +45,6 @@ class SeamReader {
   }
 
  private:
-  static ConfigNode in_map(const ConfigNode& sides) {
-    ConfigNode map;
-    map.where = sides.where;
-    map.add("sides", sides);
-    return map;
-  }
-
   /// Adds an edge, or the parts of one with darts, in their order along the seam.
   void add_edge(const ConfigNode& node, const std::string& seam, bool against, std::vector<EdgeIndex>& side) {
     ConfigNode panel, edge;
@@ -121,8 +113,12 @@ std::optional<Pattern> read_pattern(const std::filesystem::path& file, ConfigErr
   const ConfigNode& stitches = p.pattern.stitches;
   for (std::size_t i = 0; i < stitches.items.size(); ++i)
     add(std::to_string(i), stitches.items[i], stitches.items[i].where);
-  for (std::size_t i = 0; i < stitches.entries.size(); ++i)
-    add(stitches.entries[i].first, stitches.entries[i].second, stitches.key_locations[i]);
+  for (std::size_t i = 0; i < stitches.entries.size(); ++i) {
+    const auto& [name, node] = stitches.entries[i];
+    if (stitches.find(name) != &node)
+      errors.push_back({stitches.key_locations[i], "seam " + excerpt(name) + " is given twice; rename one"});
+    add(name, node, stitches.key_locations[i]);
+  }
   for (std::size_t k = 0; k < panels.size(); ++k) {
     for (const auto& [leg, other] : panels[k].darts) {
       const PanelEdge& edge = panels[k].panel.edges[leg];
