@@ -71,12 +71,13 @@ TEST_CASE("all errors of a config are listed in file order, those of --set last"
   text = replaced(text, "region: nearest, point: [1", "region: nearst, point: [1");
   text = replaced(text, "cascadic: {}", "cascadic: {prolongation: linear}");
   CHECK(said_of(text, "--set newton.max_steps=few") ==
-        "error: e.yaml:2:16: \"shape\" must be \"square\", \"rectangle\", \"disc\", \"polygon\" or \"file\", "
+        "error: e.yaml:2:16: \"shape\" must be \"square\", \"rectangle\", \"disc\", \"polygon\", \"file\" or "
+        "\"pattern\", "
         "not \"sqare\"; did you mean \"square\"?\n"
         "error: e.yaml:3:9: \"levels\" must be an integer, not 2.5\n"
         "error: e.yaml:4:16: \"scale\" must be a list of 3 numbers, not of 2\n"
         "error: e.yaml:7:14: \"region\" must be \"nearest\", \"ball\", \"box\", \"border\", \"vertices\", "
-        "\"piece\" or \"seam\", "
+        "\"piece\", \"seam\" or \"label\", "
         "not \"nearst\"; did you mean \"nearest\"?\n"
         "error: e.yaml:12:28: \"prolongation\" must be \"midpoint\" or \"refiner\", not \"linear\"\n"
         "error: --set newton.max_steps: \"max_steps\" must be an integer, not \"few\"\n");
@@ -123,7 +124,8 @@ TEST_CASE("what the contact models share stands outside them, and each obstacle 
 
 TEST_CASE("keys that the shape or the region does not read, and empty items, are refused") {
   const std::pair<std::string, std::string> refusals[] = {
-      {"cloth: {file: skirt.obj}", "5:15: \"file\" in cloth needs \"shape: file\"; here \"shape\" is square"},
+      {"cloth: {file: skirt.obj}",
+       "5:15: \"file\" in cloth needs \"shape: file or shape: pattern\"; here \"shape\" is square"},
       {"cloth: {vertices: 400, columns: 9, rows: 9}", "5:19: \"vertices\" in cloth is not read beside "},
       {"cloth: {shape: disc, seed: 2}", "5:28: \"seed\" in cloth is not read by this cloth; "},
       {"contact: ipc\nobstacles: [{mesh: ball.ply, radius: 0.3}]", "6:38: \"radius\" in obstacles needs "},

@@ -6,6 +6,7 @@
 
 #include "core/app/experiment/cloth.h"
 #include "core/numerics/collision_detection/components.h"
+#include "core/numerics/mesh/area_vectors.h"
 #include "core/numerics/mesh/mesh_faults.h"
 #include "core/numerics/mesh_files/io.h"
 #include "tests/support/meshes.h"
