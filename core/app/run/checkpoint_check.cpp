@@ -98,7 +98,8 @@ class Check {
     require(s.step.controller.step_size > 0 && s.step.max_iterations > 0 &&
                 s.step.factor.fallback_solves >= 0 && blend >= 0 && blend < HessianModification::blend_count,
             "the settings of the step");
-    require(s.check.strictness >= 1 && s.saddle_exit.exits >= 0, "the exit from a saddle");
+    require(s.check.strictness >= 1 && s.check.slack >= 1 && s.saddle_exit.exits >= 0,
+            "the exit from a saddle");
     for (const Positions* x : {&s.load_stepper.response.from, &s.load_stepper.response.predicted})
       if (x->rows() > 0) positions(*x, level, "the response to an increment");
     contacts(s.contacts, level);

@@ -22,13 +22,10 @@ class BlockSink {
   BlockSink(const int* slots, int pairs, double* values, double factor)
       : slots_(slots), pairs_(pairs), values_(values), factor_(factor) {}
 
-  /// A sink for the elements from row `first` of the stencils on.
-  BlockSink from(int first) const {
-    return {slots_ + static_cast<std::ptrdiff_t>(first) * pairs_, pairs_, values_, factor_};
+  /// A sink for the elements from row `first` of the stencils on, with a further factor.
+  BlockSink from(int first, double factor = 1) const {
+    return {slots_ + static_cast<std::ptrdiff_t>(first) * pairs_, pairs_, values_, factor * factor_};
   }
-
-  /// This sink, whose blocks are multiplied by a further factor.
-  BlockSink scaled(double factor) const { return {slots_, pairs_, values_, factor * factor_}; }
 
   /// Adds the element's 3×3 block h, row-major, whose rows belong to its vertex a and whose columns belong to
   /// its vertex b. Only pairs a ≤ b are given: the other half follows by symmetry. Nothing is checked.

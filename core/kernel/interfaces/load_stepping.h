@@ -1,7 +1,6 @@
 #pragma once
 
 #include <memory>
-#include <string>
 #include <vector>
 
 #include "core/kernel/interfaces/energy.h"
@@ -64,8 +63,7 @@ class LoadStepping {
 struct IncrementRow {
   int level = 0, increment = 0;
   double time = 0;                      ///< pseudo-time
-  int steps = 0;                        ///< of this increment
-  int iterations = 0;                   ///< likewise
+  int steps = 0, iterations = 0;        ///< of this increment
   double energy = 0;                    ///< of the objective, without friction [J]
   double force_residual = 0;            ///< [1]
   double max_constraint_violation = 0;  ///< largest distance of a Dirichlet vertex from its target [m]

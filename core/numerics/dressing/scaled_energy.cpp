@@ -1,4 +1,4 @@
-#include "core/numerics/elements/scaled_energy.h"
+#include "core/numerics/dressing/scaled_energy.h"
 
 #include <utility>
 
@@ -20,7 +20,7 @@ class BoundScaledEnergy final : public BoundEnergy {
   }
   Stencils stencils() const override { return whole_->stencils(); }
   void add_hessian(const Positions& x, Projection projection, BlockSink& sink) const override {
-    BlockSink own = sink.scaled(factor_);
+    BlockSink own = sink.from(0, factor_);
     whole_->add_hessian(x, projection, own);
   }
   StepLimit max_step(const Positions& x0, const Positions& x1) const override {
