@@ -39,8 +39,7 @@ class WriteError : public std::runtime_error {
 };
 
 /// The whole file as bytes. Every file that a user names or can change goes through this function. Throws
-/// FileError, without blocking, for a file that is not regular (a pipe may never end) or larger than `most`
-/// bytes.
+/// FileError, without blocking, for a file that is not regular (a pipe) or larger than `most` bytes.
 std::string read_file(const std::filesystem::path& path, std::uintmax_t most = largest_file);
 
 enum class Existing { replaced, kept };  ///< what becomes of a file that has the name already

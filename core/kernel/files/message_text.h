@@ -14,8 +14,7 @@ std::string printable(std::string_view text, std::size_t most_bytes = 2000);
 /// The same for every line of a text.
 std::string printable_lines(std::string_view text);
 
-/// The index of the first byte that is not UTF-8 or is a control character other than tabs and line ends;
-/// npos without one.
+/// The index of the first byte that is not UTF-8, or a control character but tabs and line ends; or npos.
 std::size_t first_unprintable(std::string_view text);
 
 /// As printable, for a word within a message.

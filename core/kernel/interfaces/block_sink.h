@@ -9,8 +9,7 @@ namespace drape {
 /// m×k vertex indices, one row for each element; -1 where an element has fewer vertices.
 using Stencils = Eigen::Matrix<int, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-/// Adds elements' 3×3 blocks to a matrix (BlockSlots::sink). Concurrent calls are safe for elements that
-/// share no vertex.
+/// Adds elements' 3×3 blocks to a matrix (BlockSlots::sink), also concurrently if they share no vertex.
 class BlockSink {
  public:
   /// The slot of a pair with a missing vertex.

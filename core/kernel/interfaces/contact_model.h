@@ -84,13 +84,11 @@ class Collisions : public BoundEnergy {
   virtual void append_gaps([[maybe_unused]] std::vector<double>& gaps) const {}
 };
 
-/// Candidate pairs of the linear motion from x0 to x1, as the broad phase finds them. They may refer to the
-/// BoundContact.
+/// Candidate pairs of the linear motion from x0 to x1, by the broad phase. May refer to the BoundContact.
 class CollisionCandidates {
  public:
   virtual ~CollisionCandidates() = default;
-  /// The largest collision-free step, by continuous collision detection. Every gap keeps a fraction of its
-  /// length.
+  /// The largest collision-free step, by continuous collision detection. Every gap keeps a fraction.
   virtual StepLimit max_step() const = 0;
   /// The collisions at x, a state of this motion no farther than max_step.
   virtual std::unique_ptr<Collisions> build_collisions(const Positions& x) const = 0;

@@ -10,8 +10,7 @@
 namespace drape {
 
 /// Order of elements in coloured chunks. Chunks of one colour share no vertex, so threads can scatter from
-/// them concurrently. The order depends only on the mesh, which makes sums bitwise reproducible for any
-/// number of threads.
+/// them concurrently. It depends only on the mesh: sums have the same bits with any number of threads.
 struct ElementOrder {
   std::vector<int> elements;      ///< the element at each position
   std::vector<int> chunk_start;   ///< chunks + 1 positions; all chunk lengths but one are multiples of 8

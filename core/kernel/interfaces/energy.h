@@ -114,8 +114,7 @@ class Energy {
   /// Copies what it needs: level and material need not outlive the result.
   virtual std::unique_ptr<BoundEnergy> bind(const Level& level, const Material& material) const = 0;
   /// Binds a membrane to a coarse level below whose mesh the cloth buckles: no compressive stress exceeds s /
-  /// V by much, V rest area × thickness of the triangle and s [J] the same for all triangles,
-  /// but for the level's bound_factors
+  /// V by much, V rest area × thickness of the triangle and s [J] times the level's bound_factors
   /// (docs/theory/locking.md; bind_buckling_membrane makes it of an isotropic law). By default bind(): its
   /// triangles resist compression as they do on the finest mesh. A triangle's law, but not s, is
   /// multiplied by the level's softening: areas of RestTriangle::of and material_triangles have that factor.

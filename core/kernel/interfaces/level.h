@@ -22,24 +22,17 @@ struct Level {
   /// m, factors on the stiffness of a membrane's triangles [1], as a coarse level has them at lone pins
   /// (Energy::bind_buckling); empty: all are 1.
   Eigen::VectorXd softening;
-  /// m, factors on the bound s of Energy::bind_buckling [1], as levels of uneven meshes have them; empty: all
-  /// are 1.
-  Eigen::VectorXd bound_factors;
-  /// The vertex of the cloth's own mesh that each vertex is, ascending, on a level that is coarser than that
-  /// mesh; empty on others, where the cloth's vertices are the first and keep their indices.
-  std::vector<int> cloth_vertices;
-  /// The vertex that stands for each of the cloth's own on a level that is coarser; else empty.
-  std::vector<int> own_vertices;
+  Eigen::VectorXd bound_factors;    ///< m, on the bound s of Energy::bind_buckling [1]; empty: all are 1
+  std::vector<int> cloth_vertices;  ///< the cloth's own vertex that each is, on a level coarser than its mesh
+  std::vector<int> own_vertices;    ///< the vertex that stands for each of the cloth's own, on such a level
 
   /// Builds a level from `rest`, which must have passed check_mesh.
   static Level of(int index, TriangleMesh rest);
 
   int vertex_count() const { return static_cast<int>(rest.vertices.rows()); }
   double bound_factor(int t) const { return bound_factors.size() > 0 ? bound_factors[t] : 1; }
-  /// The cloth's own vertex that a vertex is, if it is one.
   int cloth_vertex(int v) const { return cloth_vertices.empty() ? v : cloth_vertices[v]; }
   int cloth_vertex_count() const { return std::max(vertex_count(), static_cast<int>(own_vertices.size())); }
-  /// The vertex that stands for one of the cloth's own.
   int own_vertex(int v) const { return own_vertices.empty() ? v : own_vertices[v]; }
   int triangle_count() const { return static_cast<int>(rest.triangles.rows()); }
 };

@@ -36,8 +36,7 @@ class LoadStepping {
   /// Begins a level with the load of an earlier state.
   virtual void restore(int level, const LoadSteppingState& state) = 0;
 
-  /// The plain model of a level under the current load. Levels coarser than the one that was begun keep the
-  /// load that they reached.
+  /// The plain model of a level under the current load; coarser levels than the begun one keep theirs.
   virtual std::shared_ptr<const LevelModel> model(int level) = 0;
 
   /// The current increment, and whether it has been applied in full.

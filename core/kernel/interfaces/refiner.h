@@ -1,7 +1,6 @@
 #pragma once
 
 #include <optional>
-#include <vector>
 
 #include "core/kernel/interfaces/level.h"
 #include "core/kernel/interfaces/prolongation_matrix.h"
@@ -23,12 +22,8 @@ class Refiner {
   /// P_{l→l+1}, by the level's rest shape and connectivity alone: a row for each vertex of the level, then
   /// one for each edge in the order of Topology::edges; a column for each vertex. Rows sum to 1.
   virtual ProlongationMatrix weights(const Level& coarse) const = 0;
-  /// A mesh with about a quarter of the level's vertices, all of which are vertices of the level. Nothing,
-  /// the default, from a refiner that makes no coarser levels. Throws std::runtime_error for a cloth that it
-  /// cannot coarsen.
-  virtual std::optional<CoarserMesh> coarser([[maybe_unused]] const Level& fine) const {
-    return std::nullopt;
-  }
+  /// A mesh of about a quarter of the level's vertices; nothing from a refiner that makes no coarser levels.
+  virtual std::optional<CoarserMesh> coarser(const Level& /*fine*/) const { return std::nullopt; }
 };
 
 /// Which prolongation maps a coarse level's vertices to a finer level.

@@ -22,8 +22,7 @@ struct Grouped {
   std::span<const Item> row(int i) const { return {begin(i), end(i)}; }
   std::span<Item> row(int i) { return {items.data() + start[i], items.data() + start[i + 1]}; }
 
-  /// Row by row the items that visit(add) gives by add(row, item), in its order, which is the same in two
-  /// calls. A counting sort.
+  /// Row by row the items that visit(add) gives by add(row, item), in its order, in two equal calls.
   template <class Visit>
   static Grouped of(int row_count, const Visit& visit) {
     Grouped list{std::vector<int>(row_count + 1, 0), {}};

@@ -26,8 +26,7 @@ inline double bounding_box_diagonal(const Positions& x) {
 /// m×3 vertex indices, one row a triangle, counter-clockwise.
 using Triangles = Eigen::Matrix<int, Eigen::Dynamic, 3, Eigen::RowMajor>;
 
-/// m×6 texture coordinates u, v of the three corners of each triangle, v upwards. Corners at one vertex that
-/// differ make a seam.
+/// m×6 texture coordinates u, v of each triangle's corners, v upwards; a seam where those of a vertex differ.
 using CornerUv = Eigen::Matrix<double, Eigen::Dynamic, 6, Eigen::RowMajor>;
 
 /// How a cloth of flat pieces rests: each triangle as its texture coordinates lie in the plane.

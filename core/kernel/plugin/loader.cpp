@@ -29,8 +29,7 @@ std::vector<fs::path> libraries_of(const fs::path& directory) {
 }
 
 /// Why the file is no loadable library, with a remedy; "" if it may be one. dlopen maps a file without a look
-/// at its size, so one that is cut short would end the process with SIGBUS. Its section headers are the last
-/// bytes.
+/// at its size, so one that is cut short would end the process with SIGBUS. Section headers come last.
 std::string fault_of(const fs::path& library) {
   std::error_code error;
   const fs::file_status status = fs::status(library, error);

@@ -49,8 +49,7 @@ std::string fault_of(const Schema& schema) {
   return "";
 }
 
-/// The location of what a path leads to from a node, at a byte of its text; of the last node on the way that
-/// is written.
+/// Where a path leads from a node, at a byte of its text; or the last node on the way that is written.
 Location location_of(const ConfigNode& written, const std::string& path,
                      const std::optional<std::size_t>& at) {
   const ConfigNode* node = &written;

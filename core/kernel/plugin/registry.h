@@ -43,8 +43,7 @@ class Registry {
   template <class Interface, class Implementation>
   void add(const std::string& name, const std::string& summary);
 
-  /// Registers an entry that was made without a class of its own, such as a prototype in Python. Throws as
-  /// above.
+  /// Registers an entry that was made without a class of its own, as a prototype in Python. Throws as above.
   void add_entry(std::unique_ptr<RegistryEntry> entry);
   /// Takes an entry out, so that its name is free again; null if there is none. Experiments refer to their
   /// entries: the caller keeps the entry as long as they live.

@@ -30,8 +30,7 @@ struct Task {
 thread_local bool inside_task = false;
 
 /// Thread pool for one task at a time. Unlike in an OpenMP team, the caller waits for pieces, never for
-/// threads: on a busy machine a helper may be scheduled milliseconds late, and the caller then does its
-/// pieces.
+/// threads: a helper may be scheduled milliseconds late, and the caller then does its pieces.
 class Pool {
  public:
   /// Returns false if another thread's task is running.
