@@ -1,7 +1,9 @@
 #include "core/numerics/solve/safe_refinement.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
+#include <optional>
 #include <string>
 
 #include "core/numerics/elements/stretch_penalty.h"
@@ -16,6 +18,8 @@ namespace {
 constexpr double target_step_size = 1e-3;
 /// Force residual at which a round's descent ends, relative to its start.
 constexpr double tolerance = 0.05;
+/// The same of a flight, whose start is far: it ends within a fraction of an edge.
+constexpr double flight_tolerance = 5e-4;
 constexpr int max_steps = 100, max_rounds = 12;
 /// A round ends after so many steps in a row of which the line search left less than this fraction.
 constexpr int max_negligible_steps = 8;
@@ -162,6 +166,13 @@ bool is_intersection_free(const LevelModel& model, const Positions& x) {
   return std::ranges::all_of(model.contacts(), [&](const auto& c) { return c->intersections(x).empty(); });
 }
 
+/// The number of vertices that are farther from their goal than a triangle's edge at rest: such a vertex may
+/// be caught behind other cloth.
+int left_behind(const Level& level, const Positions& x, const Positions& goal) {
+  const double edge = std::sqrt(2 * level.vertex_area.sum() / level.triangle_count());
+  return static_cast<int>(((x - goal).rowwise().norm().array() > edge).count());
+}
+
 }  // namespace
 
 LevelResult refine_safely(const Problem& problem, int level, const Positions& x,
@@ -172,11 +183,13 @@ LevelResult refine_safely(const Problem& problem, int level, const Positions& x,
   Positions target = weights * x;
   model.set_dirichlet(target);
   LevelResult refined;
+  std::optional<Positions> goal;  // of a cloth that begins far from its target
   bool is_feasible = model.contacts().empty() && model.limits().empty();
   if (!is_feasible) {
     refined.x = problem.hierarchy.midpoints[level] * x;
     if (!problem.hierarchy.splits(level) && !is_intersection_free(model, refined.x)) {
       refined.x = problem.starts[level + 1];
+      goal = target;
       if (!is_intersection_free(model, refined.x)) {  // under a schedule obstacles have moved
         refined.outcome = Outcome::stalled;
         refined.message = "the state intersects something on the finer mesh";
@@ -194,7 +207,7 @@ LevelResult refine_safely(const Problem& problem, int level, const Positions& x,
     NewtonParameters newton;
     newton.form = NewtonForm::statics;
     newton.psd_blend = PsdBlend::full;
-    newton.force_tolerance = tolerance;
+    newton.force_tolerance = goal ? flight_tolerance : tolerance;
     newton.max_steps = max_steps;
     newton.stability = StabilityMode::off;  // the target term is no energy of the cloth
     newton.step_size = target_step_size;    // scales the mass that damps a step without descent
@@ -218,6 +231,11 @@ LevelResult refine_safely(const Problem& problem, int level, const Positions& x,
     if (refined.outcome != Outcome::cancelled && !violations.empty()) {
       refined.outcome = Outcome::stalled;
       refined.message = "the refined state violates the strain limit: " + violations;
+    }
+    const int left = goal ? left_behind(model.level(), refined.x, *goal) : 0;
+    if (refined.outcome != Outcome::cancelled && left > 0) {
+      refined.outcome = Outcome::stalled;
+      refined.message = "contact keeps " + std::to_string(left) + " vertices from the coarse state";
     }
   }
   refined.seconds = refined.seconds_by_phase["refinement"] = watch.seconds();
