@@ -154,6 +154,8 @@ void refuse_intersecting_start(const Experiment& e, const LevelModel& model, con
   const std::string remedy =  // repair_start moves no cloth with pins
       pins.empty() ? "; change the start or the obstacle, or let --allow-start-repair move the start"
                    : "; change the start, the pins or the obstacle";
+  const std::string few =
+      model.level().cloth_vertices.empty() ? "" : ", or ask for fewer levels below the cloth's mesh";
   for (const auto& contact : model.contacts()) {
     const std::vector<Intersection> found = contact->intersections(start);
     for (std::size_t k = 0; k < std::min(found.size(), max_listed); ++k)
@@ -166,7 +168,7 @@ void refuse_intersecting_start(const Experiment& e, const LevelModel& model, con
     if (!unwelded.empty())
       errors.push_back({e.location_of("cloth"), unwelded});
     else if (!found.empty())
-      errors.back().message += remedy;
+      errors.back().message += remedy + few;
   }
 }
 
