@@ -49,7 +49,7 @@ TEST_CASE("whoever changes a class that plugins see is told of the ABI number") 
   CHECK(sizeof(Parameter) == 536);
   CHECK(sizeof(TriangleMesh) == 144);
   CHECK(sizeof(Topology) == 168);
-  CHECK(sizeof(Level) == 544);
+  CHECK(sizeof(Level) == 608);
   CHECK(sizeof(Material) == 144);
   CHECK(sizeof(BlockMatrix) == 40);
   CHECK(sizeof(NewtonParameters) == 64);
