@@ -209,6 +209,19 @@ TEST_CASE("A sewn run can be run again from its own config, and goes out as its 
   FileCoordinates{"cm", "y"}.convert(front);
   CHECK(front.isApprox(state.vertices.topRows(n * n), 1e-12));
 
+  for (const auto& [unit, factor] : {std::pair("mm", 1.), {"m", 1e-3}, {"inch", 1 / 25.4}}) {
+    drape_ends("export out --to uv.obj --overwrite --level 0 --uv-unit " + std::string(unit), folder);
+    CHECK(read_mesh(folder / "uv.obj").uv.isApprox(factor * own.uv, 1e-12));
+  }
+  drape_ends("export out --to uv.ply --level 1 --uv-unit normalised", folder);
+  CHECK(read_mesh(folder / "uv.ply").uv.minCoeff() == 0);
+  CHECK(read_mesh(folder / "uv.ply").uv.maxCoeff() == Approx(1));
+  CHECK(read_mesh(folder / "uv.ply").sewing->uv_length == Approx(2.5 * side));
+  CHECK_THAT(refused(folder, "export out --to uv.glb --uv-unit m"),
+             Contains("--uv-unit is of a .obj or .ply"));
+  CHECK_THAT(refused(folder, "export out --to b.obj --uv-unit foot"),
+             Contains("must be mm, cm, m, inch or "));
+
   drape_ends("export out --to fine.ply", folder);
   const TriangleMesh fine = read_mesh(folder / "fine.ply");
   CHECK(fine.uv.leftCols(1).maxCoeff() <= 1000 * 2.5 * side + 1e-9);

@@ -187,6 +187,15 @@ void add_export_command(Commands& commands) {
   command.add_flag("--outline", o->picture.outline,
                    "with .png: draw the outline of the method's coarsest state over the picture");
   command.add_flag("--xray", o->picture.xray, "with .png: let obstacles show faintly through the cloth");
+  add_option(
+      command, "--uv-unit UNIT", o->uv_unit,
+      ".obj, .ply: unit of the texture coordinates of flat pieces: mm, cm, m, inch or normalised, 0 to 1 "
+      "(default: as they came)")
+      ->check([](const std::string& unit) {
+        const bool known =
+            unit == "mm" || unit == "cm" || unit == "m" || unit == "inch" || unit == "normalised";
+        return known ? "" : "must be mm, cm, m, inch or normalised, not " + excerpt(unit);
+      });
   command.add_flag("--as-read", o->as_read,
                    "with .obj and .ply: in the unit and axes of the cloth's file, level 0 with its vertices");
   command.add_flag("--rest", o->rest, "with .obj and .ply: the level's rest shape in place of a state");

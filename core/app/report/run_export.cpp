@@ -89,15 +89,15 @@ TriangleMesh mesh_as_read(const RunData& run, const LevelRecord& level) {
   return own;
 }
 
-/// Makes texture coordinates of flat pieces those of a picture: from 0 to 1 along the longest extent. Returns
-/// the length of one [m], 0 of other texture coordinates.
-double scale_to_picture(TriangleMesh& mesh) {
-  if (!mesh.sewing) return 0;
-  Eigen::Map<UvVertices::Coordinates> uv(mesh.uv.data(), 3 * mesh.uv.rows(), 2);
-  const Eigen::RowVector2d low = uv.colwise().minCoeff();
-  const double extent = (uv.colwise().maxCoeff() - low).maxCoeff();
-  uv = ((uv.rowwise() - low) / extent).eval();
-  return extent * mesh.sewing->uv_length;
+/// Converts texture coordinates of flat pieces to a unit of length, or to those of a picture.
+void convert_uv(TriangleMesh& mesh, const std::string& unit) {
+  if (!mesh.sewing) throw std::runtime_error("--uv-unit is of flat pieces; the run's cloth has none");
+  Positions metres = Eigen::RowVector3d::UnitX();
+  FileCoordinates{unit}.convert(metres);
+  if (unit == "normalised")
+    mesh.sewing->uv_length = scale_to_picture(mesh);
+  else
+    mesh.uv *= std::exchange(mesh.sewing->uv_length, metres(0, 0)) / metres(0, 0);
 }
 
 /// A state with its normals, at the vertices that the texture coordinates have split.
@@ -245,6 +245,8 @@ void check_options(const fs::path& file, const ExportOptions& options) {
                              " cannot hold; take .glb, or .png for numbered pictures");
   if (options.as_read && extension != ".obj" && extension != ".ply")
     throw std::runtime_error("--as-read is of meshes; take .obj or .ply");
+  if (!options.uv_unit.empty() && ((extension != ".obj" && extension != ".ply") || options.as_read))
+    throw std::runtime_error("--uv-unit is of a .obj or .ply without --as-read");
   const PictureOptions& picture = options.picture;
   if (extension != ".png" && (picture.width || picture.direction || picture.outline || picture.xray))
     throw std::runtime_error("--width, --view, --outline and --xray are of pictures; take .png");
@@ -275,7 +277,11 @@ std::vector<fs::path> export_run(const fs::path& folder, const fs::path& file, c
   if (extension == ".png") return export_pictures(run, method, levels, file, options);
   refuse_target(file, options.overwrite);
   const LevelRecord& level = *levels[0];
-  const auto mesh = [&] { return options.as_read ? mesh_as_read(run, level) : cloth_mesh(run, level); };
+  const auto mesh = [&] {
+    TriangleMesh mesh = options.as_read ? mesh_as_read(run, level) : cloth_mesh(run, level);
+    if (!options.uv_unit.empty()) convert_uv(mesh, options.uv_unit);
+    return mesh;
+  };
   write_file(file,
              extension == ".glb" ? gltf_of(run, method, levels, options.frames)
              : extension == ".vtp"

@@ -26,6 +26,7 @@ struct ExportOptions {
   bool frames = false;  ///< the recorded snapshots: of one level, as an animation in a .glb; or as pictures
   PictureOptions picture;  ///< of a .png alone
   bool as_read = false;    ///< in the unit, axes and, of level 0, the vertices of the cloth's file
+  std::string uv_unit;     ///< of the texture coordinates of flat pieces; empty: as they came
   bool overwrite = false;  ///< replace existing files
   Existing existing() const { return overwrite ? Existing::replaced : Existing::kept; }
 };

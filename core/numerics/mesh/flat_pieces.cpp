@@ -9,6 +9,7 @@
 
 #include "core/numerics/mesh/disjoint_sets.h"
 #include "core/numerics/mesh/seams.h"
+#include "core/numerics/mesh/texture_coordinates.h"
 
 namespace drape {
 
@@ -84,5 +85,14 @@ UvLength UvLength::of(const TriangleMesh& mesh, const std::vector<char>& marked)
 }
 
 bool similar_lengths(double a, double b) { return a < 1.1 * b && b < 1.1 * a; }
+
+double scale_to_picture(TriangleMesh& mesh) {
+  if (!mesh.sewing) return 0;
+  Eigen::Map<UvVertices::Coordinates> uv(mesh.uv.data(), 3 * mesh.uv.rows(), 2);
+  const Eigen::RowVector2d low = uv.colwise().minCoeff();
+  const double extent = (uv.colwise().maxCoeff() - low).maxCoeff();
+  uv = ((uv.rowwise() - low) / extent).eval();
+  return extent * mesh.sewing->uv_length;
+}
 
 }  // namespace drape

@@ -30,4 +30,8 @@ struct UvLength {
 /// Whether two lengths are nearer than a placement in space may stretch them: a tenth.
 bool similar_lengths(double a, double b);
 
+/// Makes texture coordinates of flat pieces those of a picture: from 0 to 1 along the longest extent. Returns
+/// the length of one [m], 0 of other texture coordinates.
+double scale_to_picture(TriangleMesh& mesh);
+
 }  // namespace drape

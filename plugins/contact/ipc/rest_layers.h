@@ -17,6 +17,11 @@ namespace drape::ipc {
 /// Pairs that are neighbours along the cloth would be pushed apart at rest, so they have no barrier. Two
 /// layers of a folded or sewn rest shape are not neighbours: they have a barrier that ends at their gap at
 /// rest, so that it does not load the rest shape, but not below a quarter of d̂. Source: this project.
+///
+/// The rest shape is meant in space, also of cloth that is sewn of flat pieces: where their placement has it.
+/// Pieces in their plane have no gaps, since they may lie on one another there, or anywhere. The placement is
+/// what the cloth starts from, so a barrier that ends at its gaps does not load the start, and paths along
+/// the cloth lead across seams, whose vertices the pieces share.
 class RestLayers {
  public:
   /// The pairs of the level's rest shape; `cloth` is its surface. Throws std::runtime_error if there are more
