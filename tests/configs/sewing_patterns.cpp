@@ -145,7 +145,10 @@ TEST_CASE("patterns that cannot be sewn are refused with file, line, panel and e
   check_error(
       said(&Bag::front_edges, "{bottom: {endpoints: [0, 1], curvature: {type: circle, params: [9, 0, 1]}}}"),
       "p.yaml:7:77: panel front: edge bottom: no circle of that radius has both of its ends; at least 10");
-  check_error(refused_pattern("pattern: {panels: {}}\n"), "p.yaml:1:19: the pattern has no panels");
+  check_error(refused_pattern("properties: {units_in_meter: 100}\npattern: {panels: {}}\n"),
+              "p.yaml:2:19: the pattern has no panels");
+  check_error(refused_pattern("properties: {up: z}\npattern: {panels: {}}\n"),
+              "p.yaml:1:13: \"units_in_meter\" in properties is required and missing");
 }
 
 TEST_CASE("a pattern is meshed to a length of edges, or to about a number of vertices, within bounds") {

@@ -92,7 +92,8 @@ void PatternParameters::declare(Declaration<PatternParameters>& d) {
 void PatternPropertyParameters::declare(Declaration<PatternPropertyParameters>& d) {
   d.add("units_in_meter", &PatternPropertyParameters::units_in_meter,
         "how many of the file's units make a metre")
-      .between(1e-6, 1e6);
+      .between(1e-6, 1e6)
+      .required();
   d.add("curvature_coords", &PatternPropertyParameters::curvature_coords,
         "control points relative to their edge, or as the vertices are")
       .choices({"relative", "absolute"});
@@ -103,7 +104,7 @@ void PatternPropertyParameters::declare(Declaration<PatternPropertyParameters>& 
 }
 
 void PatternFileParameters::declare(Declaration<PatternFileParameters>& d) {
-  d.add_section("properties", &PatternFileParameters::properties, "unit and conventions");
+  d.add_section("properties", &PatternFileParameters::properties, "unit and conventions").required();
   d.add_section("pattern", &PatternFileParameters::pattern, "panels and seams").required();
   d.add("parameters", &PatternFileParameters::parameters, "of a template; not read");
   d.add("parameter_order", &PatternFileParameters::parameter_order, "not read");

@@ -20,9 +20,13 @@ using Eigen::Vector2d;
 
 namespace {
 
+std::string in_metres(const std::string& text) {
+  return text.starts_with("properties") ? text : "properties: {units_in_meter: 1}\n" + text;
+}
+
 Pattern pattern_of(const std::string& text) {
   const Scratch folder;
-  folder.write("p.yaml", text);
+  folder.write("p.yaml", in_metres(text));
   ConfigErrors errors;
   const auto pattern = read_pattern(folder / "p.yaml", errors);
   INFO((errors.empty() ? "" : errors[0].text()));
@@ -41,7 +45,7 @@ TriangleMesh sewn(const std::string& text, double edge_length) {
 /// The first error of a pattern that cannot be sewn, without its file.
 std::string refused_pattern(const std::string& text, double edge_length = 0.02) {
   const Scratch folder;
-  folder.write("p.yaml", text);
+  folder.write("p.yaml", in_metres(text));
   ConfigErrors errors;
   if (const auto pattern = read_pattern(folder / "p.yaml", errors))
     sew_pattern(*pattern, edge_length, errors);
