@@ -53,8 +53,7 @@ class LoadStepping {
   /// Continues the current increment, or begins the next, as far as a cloth at x (n×3) [m] allows on this
   /// level. Returns the fraction of the remaining increment that was applied.
   virtual StepLimit advance(int level, const Positions& x) = 0;
-  /// Applies this fraction of the remaining increment if a cloth at x allows all of it. Otherwise returns
-  /// false and changes nothing.
+  /// Applies this fraction of the remaining increment if a cloth at x allows all of it, else returns false.
   virtual bool advance_by(double fraction, int level, const Positions& x) = 0;
 };
 

@@ -67,7 +67,9 @@ class EquilibriumCheck {
   /// Notes the end of a step with this `inertia` [J].
   void note_step(double inertia);
   /// For another objective: restarts the count of idle steps, and forgets cycles, residuals and decrements.
-  void restart() { s_ = {.initial_centroid = s_.initial_centroid, .strictness = s_.strictness, .slack = s_.slack}; }
+  void restart() {
+    s_ = {.initial_centroid = s_.initial_centroid, .strictness = s_.strictness, .slack = s_.slack};
+  }
   /// Measures the drift from here on.
   void restart_drift() { s_.initial_centroid = iterate_.free_centroid(); }
 
