@@ -48,9 +48,7 @@ void make_refiner(Experiment& e, ConfigErrors& errors) {
   const bool coarsens = hierarchy.coarsen > 0 || hierarchy.multigrid;
   // Flat pieces are refined at edge midpoints.
   if (node.kind == ConfigNode::Kind::null)
-    node = ConfigNode::of(coarsens                          ? "coarsen"
-                          : e.parameters.cloth.is_sewn() ? "midpoint"
-                                                            : default_refiner);
+    node = ConfigNode::of(coarsens ? "coarsen" : e.parameters.cloth.is_sewn() ? "midpoint" : default_refiner);
   if (hierarchy.coarsen > 0 && !e.source.find("levels")) {
     e.parameters.levels = 1;
     set_path(e.resolved, "levels", ConfigNode::of(e.parameters.levels));

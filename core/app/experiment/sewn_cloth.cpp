@@ -139,7 +139,8 @@ void find_label_edges(const ConfigNode& source, ExperimentParameters& p, ConfigE
   for (const auto& [selection, where] : asked) {
     selection->label_edges = labels[*selection->label];
     if (selection->label_edges.empty())
-      errors.push_back({*where, "no edge of the cloth has the label \"" + excerpt(*selection->label) + "\"; " +
+      errors.push_back({*where, "no edge of the cloth has the label \"" + excerpt(*selection->label) +
+                                    "\"; " +
                                     (!is_pattern     ? "only edges of a sewing pattern have labels"
                                      : names.empty() ? "the pattern has no labels"
                                                      : "the pattern has " + joined(names))});

@@ -14,16 +14,14 @@ class DeclaredNumbers {
  public:
   /// Follows the words of a path, such as "obstacles", "plate", "translate", "2", in a struct with this
   /// schema. An item of a list is named by its index from 0, or a section's by its type or name; a named
-  /// number by its name, with or without "value" behind it. Empty without such a parameter, or if it has no
-  /// numbers.
+  /// number by its name, with or without "value" behind it. Empty without such a parameter with numbers.
   static std::optional<DeclaredNumbers> find(const Schema& schema, void* object,
                                              const std::vector<std::string>& words);
 
   std::size_t count() const { return count_; }
   /// Number k in a struct whose lists are as long as in find's.
   double* at(void* object, std::size_t k) const { return parameter_->number(owner(object), first_ + k); }
-  /// Writes `count` values. Appends an error, without a location, for each that the parameter refuses, and
-  /// then writes none.
+  /// Writes `count` values; none if the parameter refuses any: appends an error without a location for each.
   void set(void* object, const double* values, ConfigErrors& errors) const;
 
  private:

@@ -5,8 +5,7 @@
 
 namespace drape {
 
-/// Declares `unit` and `up`: how a mesh file that the struct names is read (numerics/mesh_files/
-/// file_coordinates.h).
+/// Declares `unit` and `up` of a mesh file that the struct names (numerics/mesh_files/file_coordinates.h).
 template <class Struct>
 void declare_file_coordinates(Declaration<Struct>& d) {
   d.add("unit", &Struct::unit, "unit of the file's coordinates, which are converted to metres before `scale`")

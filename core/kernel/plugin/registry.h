@@ -22,8 +22,7 @@ struct RegistryEntry {
   std::string details;  ///< lines that `drape describe` prints below the parameters; may be empty
   Schema schema;        ///< its parameters
   /// Makes the object from a struct of the schema. `before`, null or an object of this entry with other
-  /// parameters, may share with it what does not differ. Both pointers to objects are to the kind's
-  /// interface.
+  /// parameters, may share with it what does not differ. Both objects' pointers are to the interface.
   std::function<std::shared_ptr<void>(const void* parameters, const void* before)> make;
 };
 
