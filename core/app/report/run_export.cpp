@@ -67,18 +67,21 @@ TriangleMesh cloth_mesh(const RunData& run, const LevelRecord& level) {
   return mesh;
 }
 
-/// The cloth in the unit and the axes of the file that it was read from; on level 0 with that file's vertices
-/// and faces.
+/// The cloth in the unit and the axes of the file that it was read from; on the level of that file's mesh
+/// with its vertices and faces.
 TriangleMesh mesh_as_read(const RunData& run, const LevelRecord& level) {
   ClothParameters cloth;
   ConfigErrors unread;
   if (const ConfigNode* written = run.config.find("cloth"))
     schema_of<ClothParameters>().read(&cloth, *written, unread);
+  HierarchyParameters hierarchy;
+  if (const ConfigNode* written = run.config.find("hierarchy"))
+    schema_of<HierarchyParameters>().read(&hierarchy, *written, unread);
   const AsReadParameters& read = cloth.as_read;
   if (read.file.empty()) throw std::runtime_error("--as-read: the run's cloth is not of a file");
   TriangleMesh mesh = cloth_mesh(run, level);
   mesh.vertices = read.in_file(mesh.vertices);
-  if (level.level > 0) return mesh;
+  if (level.level != hierarchy.coarsen) return mesh;
   TriangleMesh own = read_mesh(read.file), joined = own;
   read.convert(joined.vertices);
   joined.vertices *= read.scale;
