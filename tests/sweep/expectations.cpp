@@ -51,7 +51,7 @@ RunRecord run_of(const std::string& status, const std::map<std::string, double>&
 
 bool passes(RunRecord run, const std::string& expected = "converged") {
   run.expected = expected;
-  return table_of({"set", true, {run}}).all_pass();
+  return table_of({"set", "", true, {run}}).all_pass();
 }
 
 }  // namespace
@@ -110,7 +110,7 @@ TEST_CASE("every value that a metric declares is a column by its name") {
   method.consistency.push_back({0, 1, {{{"drift", 0.5}}}, ""});
   RunRecord run;
   run.data = data;
-  const RunTable table = table_of({"set", true, {run}});
+  const RunTable table = table_of({"set", "", true, {run}});
   CHECK(table_text(table, {"sag", "drift", "worst"}, TableFormat::csv) == "sag,drift,worst\n2,0.5,3\n");
   CHECK_THAT(table_text(table, {}, TableFormat::csv), Contains(",sag,drift"));
   CHECK_THAT(table_text(table, {}, TableFormat::markdown),
@@ -136,7 +136,7 @@ TEST_CASE("what has converged to rounding passes where it was to converge, and i
 }
 
 TEST_CASE("a table counts no shortened steps where rows of iterations.csv are missing") {
-  const RunTable table = table_of({"set", true, {run_of("converged", {{"iterations", 3}})}});
+  const RunTable table = table_of({"set", "", true, {run_of("converged", {{"iterations", 3}})}});
   CHECK(table.rows[0]["shortened_steps"].is_null());
 }
 
