@@ -20,6 +20,7 @@ start: {translate: [-0.2, -0.2, 0.105], perturbation: 1e-3, perturbation_wavelen
 energies: [neo_hookean, hinge, gravity]
 contact: [ipc, shapes]
 obstacles: [{shape: sphere, radius: 0.1}]
+friction: 0.3
 newton: {force_tolerance: 1e-2}
 methods: {pcs: {}}
 )");

@@ -26,11 +26,17 @@ struct ContainerMemory {
 double load_average();
 int processor_count();  ///< of the machine, also where this process may use only some
 
+/// What a stretch of the program took.
+struct Work {
+  double seconds, cpu_seconds;
+};
+
 /// Wall and processor time since construction [s], the latter of all threads of the process.
 class WorkClock {
  public:
   double seconds() const { return wall_.seconds(); }
   double cpu_seconds() const { return cpu_time() - cpu_; }
+  Work work() const { return {seconds(), cpu_seconds()}; }
 
  private:
   static double cpu_time();

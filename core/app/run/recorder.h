@@ -64,9 +64,10 @@ class Recorder : public Observer {
 
   void method_started(const std::string& method);
   /// Does not count what the clock has measured as the method's time.
-  void exclude(const WorkClock& work) {
-    s_.overhead += work.seconds();
-    s_.cpu -= work.cpu_seconds();
+  void exclude(const WorkClock& clock) { exclude(clock.work()); }
+  void exclude(const Work& work) {
+    s_.overhead += work.seconds;
+    s_.cpu -= work.cpu_seconds;
   }
   /// Evaluates the metrics on all finished levels and pairs of them, and writes results.json. A failed method
   /// keeps the results of its earlier levels.

@@ -75,12 +75,13 @@ class RunObserver : public Observer {
   void level_finished(const LevelResult& reported) override {
     const WorkClock watch;
     const LevelResult result = audited(scene_, reported, force_tolerance_);
-    recorder_.exclude(watch);
+    const Work audit = watch.work();
     if (const auto& before = now_.state.finished; !before.empty() && result.level <= before.back().level)
       throw std::runtime_error("the method reported level " + std::to_string(result.level) + " after level " +
                                std::to_string(before.back().level) +
                                "; report levels from coarse to fine, each once");
     recorder_.level_finished(result);
+    recorder_.exclude(audit);  // a level's seconds end before it
     now_.state.finished.push_back(result);
     if (resumable_ && result.outcome != Outcome::cancelled) {
       now_.state.level = result.level + 1;

@@ -25,16 +25,20 @@ constexpr int relaxations = 4;
 /// Forces along a mode below this fraction of all forces do not choose its sign.
 constexpr double clear_slope = 1e-3;
 
-/// Counts all the time of its life as the phase `stability`, but for the building of collisions, which is a
-/// phase of its own and subtracted from the gradient's.
+/// Counts all the time of its life as the phase `stability`, but for the seconds that observers take and for
+/// the building of collisions, which is a phase of its own and subtracted from the gradient's.
 class OwnPhase {
  public:
-  explicit OwnPhase(const Iterate& iterate)
-      : iterate_(iterate), before_(iterate.result().seconds_by_phase), built_before_(built()) {}
+  OwnPhase(const Iterate& iterate, const double& observed)
+      : iterate_(iterate),
+        before_(iterate.result().seconds_by_phase),
+        built_before_(built()),
+        observed_(observed),
+        observed_before_(observed) {}
   ~OwnPhase() {
     const double building = built() - built_before_;
     before_["gradient"] += building;
-    before_["stability"] += watch_.seconds() - building;
+    before_["stability"] += watch_.seconds() - building - (observed_ - observed_before_);
     iterate_.result().seconds_by_phase = std::move(before_);
   }
   OwnPhase(const OwnPhase&) = delete;
@@ -46,6 +50,8 @@ class OwnPhase {
   const Iterate& iterate_;
   std::map<std::string, double> before_;
   const double built_before_;
+  const double& observed_;
+  const double observed_before_;
   const Stopwatch watch_;
 };
 
@@ -70,7 +76,7 @@ std::string SaddleExit::text() const {
 bool SaddleExit::leave(bool at_end) {
   LevelResult& result = iterate_.result();
   if (p_.stability == StabilityMode::off || !iterate_.objective().has_exact_hessian()) return false;
-  const OwnPhase phase(iterate_);
+  const OwnPhase phase(iterate_, observed_);
   const std::optional<StabilityTest> test = test_stability(iterate_, factor_, !at_end);
   result.stability.reset();
   if (test && (at_end || test->stability.verdict != Stability::stable)) result.stability = test->stability;
@@ -172,7 +178,9 @@ void SaddleExit::relax_across(const Positions& mode) {
 void SaddleExit::note_relaxation() {
   ++iterate_.result().iterations;
   iterate_.update_residual();
+  const Stopwatch watch;
   report_();
+  observed_ += watch.seconds();
 }
 
 bool SaddleExit::end_tightening() {

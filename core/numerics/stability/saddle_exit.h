@@ -69,6 +69,7 @@ class SaddleExit {
   const std::function<bool()> stop_;
   bool stopped_ = false;
   bool factor_serves_ = false;  // the walk's
+  double observed_ = 0;         // seconds that observers of relaxations took
   LineSearch line_search_;
   State s_;
 };
