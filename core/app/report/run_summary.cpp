@@ -2,6 +2,7 @@
 #include <cmath>
 #include <map>
 
+#include "core/app/experiment/exit_codes.h"
 #include "core/app/experiment/experiment_path.h"
 #include "core/app/report/run_table.h"
 #include "core/kernel/files/string_utils.h"
