@@ -32,6 +32,8 @@ const otherRuns = {
     '--set', 'methods.plain={type: pcs, membranes: plain}'],
 };
 
+const garmentRuns = {tshirt: [path.join(runs, 'my_tshirt.yaml')]};
+
 const build = execFileSync(path.join(process.env.DRAPE_BIN, 'drape'), ['--version'], {encoding: 'utf8'}).match(/\((.*)\)/)[1];
 
 function hasRun(results) {
@@ -48,7 +50,13 @@ function resultsOf(name) {
     const readme = fs.readFileSync(path.join(root, 'README.md'), 'utf8');
     fs.writeFileSync(path.join(runs, 'my_curtain.yaml'), readme.match(/```yaml my_curtain.yaml\n(.*?)```/s)[1]);
   }
-  drape('run', ...{...galleryRuns, ...otherRuns}[name], '-o', results, '--overwrite', '--no-report');
+  if (name === 'tshirt') {
+    execFileSync(path.join(root, 'configs/garments/make_body'), [path.join(runs, 'figure.obj')], {stdio: 'inherit'});
+    const guide = fs.readFileSync(path.join(root, 'docs/guide/dress.md'), 'utf8');
+    fs.copyFileSync(path.join(root, 'configs/garments/tshirt.yaml'), path.join(runs, 'tshirt.yaml'));
+    fs.writeFileSync(path.join(runs, 'my_tshirt.yaml'), guide.match(/```yaml my_tshirt.yaml\n(.*?)```/s)[1]);
+  }
+  drape('run', ...{...galleryRuns, ...otherRuns, ...garmentRuns}[name], '-o', results, '--overwrite', '--no-report');
   return results;
 }
 
@@ -96,6 +104,8 @@ async function levels() {
     await still(resultsOf('lone_pins'), `lone_pins_${method}_l${level}`, 480, '--method', method, '--level', level, '--view=1,-2,0.15');
 }
 
+const garments = () => still(resultsOf('tshirt'), 'tshirt', 640);
+
 const seconds = s => s < 9.95 ? s.toFixed(1) : s.toFixed(0);
 const thousands = n => (n / 1000).toFixed(n < 9950 ? 1 : 0);
 
@@ -131,6 +141,6 @@ async function progression() {
 }
 
 fs.mkdirSync(runs, {recursive: true});
-const parts = {plot, viewer, levels, gallery, progression};
+const parts = {plot, viewer, levels, gallery, garments, progression};
 for (const name of process.argv[4] ? process.argv[4].split(',') : Object.keys(parts)) await parts[name]();
 await (await browser()).close();
