@@ -49,7 +49,7 @@ test('levels appear and move; "refine now" goes on to the next; "stop" ends the 
   const first = (await state()).panels[0];
   assert.deepEqual([first.method, first.level, first.vertices], ['pcs', 0, 81]);
   await until('a newer state', async () => (await state()).panels[0].sum !== first.sum);
-  assert.match(await textOf(page, '#viewer-labels'), /level 0, running, [0-9]+ iterations/);
+  assert.match(await textOf(page, '#viewer-labels'), /level 0 of 1, running, [0-9]+ iterations/);
   assert.ok(await drawnAtRest(running, page, '#viewer-canvas') > .05);
   assert.ok(await drawnAtRest(running, page, '#live-residual') > .002);
   await page.evaluate(() => {
