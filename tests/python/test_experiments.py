@@ -21,7 +21,7 @@ ALL = ["pcs", "cascadic", "newton"]
 
 def test_a_run_has_the_bits_of_the_command(tmp_path):
     assert command("--version").stdout == f"drape {drape.__version__} ({drape.__commit__})\n"
-    assert [name for name, _ in drape.plugins("refiner")] == ["loop", "midpoint"]
+    assert [name for name, _ in drape.plugins("refiner")] == ["coarsen", "loop", "midpoint"]
     command("run", SMALL_FILE, "--method", "all", "-o", tmp_path / "r", "--no-report", "-q", "--set",
             "energies.gravity.acceleration=[0, 0, -4]", "--set", "cloth.columns=7")
     experiment, theirs, seen = drape.Experiment(SMALL_FILE), drape.read_run(tmp_path / "r"), []
