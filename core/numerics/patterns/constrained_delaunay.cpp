@@ -20,24 +20,6 @@ using Faces = CGAL::Constrained_triangulation_face_base_2<Exact, FacesOf>;
 using Constrained =
     CGAL::Constrained_Delaunay_triangulation_2<Exact, CGAL::Triangulation_data_structure_2<Vertices, Faces>>;
 
-/// Pairs of segments that meet elsewhere than at a common end.
-std::vector<std::array<int, 2>> crossing(const std::vector<Exact::Point_2>& points,
-                                         const std::vector<std::array<int, 2>>& segments) {
-  std::vector<std::array<int, 2>> pairs;
-  for (int i = 0; i < std::ssize(segments); ++i) {
-    const auto [a, b] = segments[i];
-    const Exact::Segment_2 own(points[a], points[b]);
-    const CGAL::Bbox_2 box = own.bbox();
-    for (int j = 0; j < i; ++j) {
-      const auto [c, d] = segments[j];
-      if (a == c || a == d || b == c || b == d) continue;
-      const Exact::Segment_2 other(points[c], points[d]);
-      if (CGAL::do_overlap(box, other.bbox()) && CGAL::do_intersect(own, other)) pairs.push_back({j, i});
-    }
-  }
-  return pairs;
-}
-
 /// Sets each face's number of segments between it and the outside.
 void count_segments_to_outside(Constrained& triangulation) {
   for (const auto f : triangulation.all_face_handles()) f->info() = -1;
@@ -58,19 +40,35 @@ void count_segments_to_outside(Constrained& triangulation) {
 
 }  // namespace within
 
-TrianglesWithin triangles_within(const std::vector<Eigen::Vector2d>& points,
-                                 const std::vector<std::array<int, 2>>& segments) {
-  std::vector<within::Exact::Point_2> places;
-  for (const Eigen::Vector2d& p : points) places.emplace_back(p.x(), p.y());
-  TrianglesWithin result;
-  result.crossing = within::crossing(places, segments);
-  if (!result.crossing.empty()) return result;
+std::vector<std::array<int, 2>> crossing_segments(const std::vector<Eigen::Vector2d>& points,
+                                                  const std::vector<std::array<int, 2>>& segments) {
+  const auto segment = [&](const std::array<int, 2>& ends) {
+    const Eigen::Vector2d &a = points[ends[0]], &b = points[ends[1]];
+    return within::Exact::Segment_2({a.x(), a.y()}, {b.x(), b.y()});
+  };
+  std::vector<std::array<int, 2>> pairs;
+  for (int i = 0; i < std::ssize(segments); ++i) {
+    const auto [a, b] = segments[i];
+    const within::Exact::Segment_2 own = segment(segments[i]);
+    const CGAL::Bbox_2 box = own.bbox();
+    for (int j = 0; j < i; ++j) {
+      const auto [c, d] = segments[j];
+      if (a == c || a == d || b == c || b == d) continue;
+      const within::Exact::Segment_2 other = segment(segments[j]);
+      if (CGAL::do_overlap(box, other.bbox()) && CGAL::do_intersect(own, other)) pairs.push_back({j, i});
+    }
+  }
+  return pairs;
+}
+
+Triangles triangles_within(const std::vector<Eigen::Vector2d>& points,
+                           const std::vector<std::array<int, 2>>& segments) {
   within::Constrained triangulation;
   std::vector<within::Constrained::Vertex_handle> handles;
   within::Constrained::Face_handle near;
-  for (int i = 0; i < std::ssize(places); ++i) {
+  for (int i = 0; i < std::ssize(points); ++i) {
     const std::size_t before = triangulation.number_of_vertices();
-    const auto v = handles.emplace_back(triangulation.insert(places[i], near));
+    const auto v = handles.emplace_back(triangulation.insert({points[i].x(), points[i].y()}, near));
     if (triangulation.number_of_vertices() == before)
       throw std::runtime_error("two vertices of a flat piece lie at one place");
     v->info() = i;
@@ -86,9 +84,7 @@ TrianglesWithin triangles_within(const std::vector<Eigen::Vector2d>& points,
     std::ranges::rotate(t, std::ranges::min_element(t));
   }
   std::ranges::sort(inside);
-  result.triangles =
-      Eigen::Map<const Triangles>(inside.data()->data(), static_cast<Eigen::Index>(inside.size()), 3);
-  return result;
+  return Eigen::Map<const Triangles>(inside.data()->data(), static_cast<Eigen::Index>(inside.size()), 3);
 }
 
 }  // namespace drape

@@ -13,12 +13,6 @@ namespace drape {
 /// on the points alone.
 Triangles delaunay_triangulation(const std::vector<Eigen::Vector2d>& points);
 
-/// The constrained Delaunay triangulation of the region within loops, counter-clockwise, in an order that
-/// depends on the points alone. The first points are the loops' corners, `loop_sizes` of them, the others lie
-/// inside.
-Triangles constrained_triangulation(const std::vector<Eigen::Vector2d>& points,
-                                    const std::vector<int>& loop_sizes);
-
 /// Two sides of closed loops, by the loop and the number in it.
 struct LoopSide {
   int loop = -1, side = -1;
@@ -26,16 +20,16 @@ struct LoopSide {
 /// Two sides that meet elsewhere than at the end that one has in common with the next; exact. No loops (-1)
 /// if none do.
 std::pair<LoopSide, LoopSide> crossing_sides(const std::vector<Polygon>& loops);
-/// Triangles within a region of the plane, or why there are none.
-struct TrianglesWithin {
-  Triangles triangles;  ///< counter-clockwise, in an order that depends on the input alone
-  std::vector<std::array<int, 2>> crossing;  ///< pairs of segments that cross or touch, if any do
-};
-/// The Delaunay triangulation of distinct points in the plane that is constrained by segments, pairs of
-/// points which enclose a region, within that region: holes are left out. Throws std::runtime_error if two
-/// points are at one place.
-TrianglesWithin triangles_within(const std::vector<Eigen::Vector2d>& points,
-                                 const std::vector<std::array<int, 2>>& segments);
+
+/// Pairs of segments, each of two points, that cross or touch elsewhere than at a common end; exact.
+std::vector<std::array<int, 2>> crossing_segments(const std::vector<Eigen::Vector2d>& points,
+                                                  const std::vector<std::array<int, 2>>& segments);
+
+/// The Delaunay triangulation of distinct points in the plane that is constrained by segments, which enclose
+/// a region and do not cross, within that region: holes are left out. Counter-clockwise, in an order that
+/// depends on the input alone. Throws std::runtime_error if two points are at one place.
+Triangles triangles_within(const std::vector<Eigen::Vector2d>& points,
+                           const std::vector<std::array<int, 2>>& segments);
 
 /// Edge length h of a mesh of `vertices` vertices with equilateral triangles: with b = border_length / h
 /// boundary vertices there are 2 · vertices − b triangles of area √3/4 h² (Euler's formula, less its

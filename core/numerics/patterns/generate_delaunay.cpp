@@ -11,7 +11,6 @@
 #include <cmath>
 #include <numbers>
 #include <optional>
-#include <set>
 #include <stdexcept>
 #include <string>
 
@@ -205,38 +204,6 @@ Triangles delaunay_triangulation(const std::vector<Eigen::Vector2d>& points) {
   std::vector<std::array<int, 3>> triangles;
   for (auto f : triangulation.finite_face_handles())
     triangles.push_back({f->vertex(0)->info(), f->vertex(1)->info(), f->vertex(2)->info()});
-  return in_order(std::move(triangles));
-}
-
-Triangles constrained_triangulation(const std::vector<Eigen::Vector2d>& points,
-                                    const std::vector<int>& loop_sizes) {
-  Triangulation triangulation;
-  std::vector<Triangulation::Vertex_handle> vertices;
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    vertices.push_back(triangulation.insert(Point2(points[i].x(), points[i].y())));
-    vertices.back()->info() = static_cast<int>(i);
-  }
-  for (std::size_t first = 0, k = 0; k < loop_sizes.size(); first += loop_sizes[k++])
-    for (int i = 0; i < loop_sizes[k]; ++i)
-      triangulation.insert_constraint(vertices[first + i], vertices[first + (i + 1) % loop_sizes[k]]);
-  // A face is inside if an odd number of loops lie between it and infinity.
-  std::set<Triangulation::Face_handle> found = {triangulation.infinite_face()};
-  std::vector<Triangulation::Face_handle> open = {triangulation.infinite_face()};
-  open.back()->set_in_domain(false);
-  while (!open.empty()) {
-    const auto face = open.back();
-    open.pop_back();
-    for (int k = 0; k < 3; ++k) {
-      const auto next = face->neighbor(k);
-      if (!found.insert(next).second) continue;
-      next->set_in_domain(face->is_in_domain() != face->is_constrained(k));
-      open.push_back(next);
-    }
-  }
-  std::vector<std::array<int, 3>> triangles;
-  for (auto f : triangulation.finite_face_handles())
-    if (f->is_in_domain())
-      triangles.push_back({f->vertex(0)->info(), f->vertex(1)->info(), f->vertex(2)->info()});
   return in_order(std::move(triangles));
 }
 

@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -157,17 +158,18 @@ TriangleMesh mesh_panel(const std::vector<Polygon>& loops, double edge_length) {
     for (Polygon& loop : own)
       for (Vector2d& p : loop) p.x() = 2 * box.center().x() - p.x();
   Polygon points;
-  std::vector<int> sizes;
+  std::vector<std::array<int, 2>> border;
   for (const Polygon& loop : own) {
+    const auto first = static_cast<int>(points.size()), count = static_cast<int>(loop.size());
+    for (int i = 0; i < count; ++i) border.push_back({first + i, first + (i + 1) % count});
     points.insert(points.end(), loop.begin(), loop.end());
-    sizes.push_back(static_cast<int>(loop.size()));
   }
   const std::size_t first_inner = points.size();
   for (const Vector2d& p : lattice(own, box, edge_length)) points.push_back(p);
-  Triangles triangles = constrained_triangulation(points, sizes);
+  Triangles triangles = triangles_within(points, border);
   for (int round = 0; round < rounds; ++round) {
     smooth(points, first_inner, triangles);
-    triangles = constrained_triangulation(points, sizes);
+    triangles = triangles_within(points, border);
   }
   // Counter-clockwise as the outline runs: the mirrored triangles of a mirrored loop are clockwise.
   if (mirrored != (area_of(loops[0]) < 0)) triangles.col(1).swap(triangles.col(2));

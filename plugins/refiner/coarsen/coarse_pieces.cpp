@@ -113,10 +113,12 @@ class Builder {
       for (const int i : images[p]) places.push_back(place(i));
       std::vector<std::array<int, 2>> segments;
       for (const CoarseSide* side : sides[p]) segments.push_back({number[side->from], number[side->to]});
-      const TrianglesWithin within = triangles_within(places, segments);
-      for (const auto& pair : within.crossing)
+      const auto crossing = crossing_segments(places, segments);
+      for (const auto& pair : crossing)
         for (const int s : pair) want(*sides[p][s]);
-      for (const int k : within.triangles.reshaped<Eigen::RowMajor>()) all.push_back(images[p][k]);
+      if (crossing.empty())
+        for (const int k : triangles_within(places, segments).reshaped<Eigen::RowMajor>())
+          all.push_back(images[p][k]);
       result_.first.push_back(static_cast<int>(all.size() / 3));
     }
     result_.triangles = Eigen::Map<const Triangles>(all.data(), static_cast<Eigen::Index>(all.size() / 3), 3);
