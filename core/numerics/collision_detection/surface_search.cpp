@@ -58,7 +58,8 @@ Eigen::Vector3d SurfaceSearch::shortest_from(const SurfaceSearch& other, Eigen::
   tree_.visit_near(
       shortest.squaredNorm(), [&](const Box& box) { return box.squared_distance(other.bounds_); },
       [&](int i) {
-        for (const auto& p : corners(triangles_[i]).colwise())
+        const Eigen::Matrix3d own = corners(triangles_[i]);
+        for (const auto& p : own.colwise())
           if (const NearestPoint near = other.nearest(p, shortest.norm()); near.triangle >= 0)
             shortest = near.offset;
         return shortest.squaredNorm();

@@ -116,9 +116,10 @@ class Builder {
       const auto crossing = crossing_segments(places, segments);
       for (const auto& pair : crossing)
         for (const int s : pair) want(*sides[p][s]);
-      if (crossing.empty())
-        for (const int k : triangles_within(places, segments).reshaped<Eigen::RowMajor>())
-          all.push_back(images[p][k]);
+      if (crossing.empty()) {
+        const Triangles own = triangles_within(places, segments);
+        for (const int k : own.reshaped<Eigen::RowMajor>()) all.push_back(images[p][k]);
+      }
       result_.first.push_back(static_cast<int>(all.size() / 3));
     }
     result_.triangles = Eigen::Map<const Triangles>(all.data(), static_cast<Eigen::Index>(all.size() / 3), 3);
