@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "core/app/experiment/panel_reader.h"
+#include "core/app/experiment/pattern_parameters.h"
 #include "core/app/files/yaml_file.h"
 #include "core/kernel/files/message_text.h"
 #include "core/kernel/files/string_utils.h"
@@ -125,7 +126,7 @@ std::optional<Pattern> read_pattern(const std::filesystem::path& file, ConfigErr
       pattern.seams.push_back({panels[k].panel.name + "." + edge.name,
                                {std::vector{EdgeIndex{int(k), leg}}, std::vector{EdgeIndex{int(k), other}}},
                                false,
-                               0.3,
+                               PatternSeamParameters().ease,
                                edge.where});
     }
     pattern.panels.push_back(std::move(panels[k].panel));

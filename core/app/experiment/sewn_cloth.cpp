@@ -58,8 +58,8 @@ double normalised_length(const TriangleMesh& cloth) {
   return length.whole;
 }
 
-Sewing sewing_of(const ClothParameters& c, double uv_length) {
-  return {uv_length, c.seams.angle * std::numbers::pi / 180, c.seams.stiffness};
+Sewing sewing_of(const ClothParameters& c) {
+  return {1, c.seams.angle * std::numbers::pi / 180, c.seams.stiffness};
 }
 
 /// As asked for, or by the number of vertices; 2 cm without either. Throws std::runtime_error for too many
@@ -82,7 +82,7 @@ void sew(TriangleMesh& cloth, const ClothParameters& c) {
         c.file +
         ": \"rest: uv\" needs texture coordinates, which the file has not; unwrap it, or leave out "
         "\"rest\"");
-  cloth.sewing = sewing_of(c, 1);
+  cloth.sewing = sewing_of(c);
   if (cloth.piece.empty()) {
     cloth.piece =
         flat_pieces(cloth, Topology::of_any(cloth.triangles, static_cast<int>(cloth.vertices.rows())));
@@ -112,7 +112,7 @@ std::optional<TriangleMesh> cloth_of_pattern(const ClothParameters& c, ConfigErr
   std::optional<TriangleMesh> cloth = sew_pattern(*pattern, edge_length_of(*pattern, c), errors, labels);
   if (!cloth) return std::nullopt;
   if (!c.rotate.isZero(0)) cloth->vertices *= rotation_matrix(c.rotate).transpose();
-  cloth->sewing = sewing_of(c, 1);
+  cloth->sewing = sewing_of(c);
   return cloth;
 }
 

@@ -268,7 +268,8 @@ void Recorder::level_finished(const LevelResult& r) {
   const double cpu = std::max(s_.cpu + clock_.cpu_seconds(), 0.0);
   const LevelModel model = scene_.model(r.level)->with_stiffness(r.contact_stiffness);
   RecordedState state{s_.method, r.level, r.x, model.contact_pressure(r.x)};
-  const std::uint32_t mesh_checksum = write_state(state);
+  const VertexFields garment = garment_fields_of(state);
+  const std::uint32_t mesh_checksum = write_state(state, garment);
   Json& entry = method_entry();
   // By the clock of the rows, which includes the setup of the objective; a level's own seconds exclude it.
   const double own = r.seconds - (s_.overhead - s_.overhead_before);
@@ -280,7 +281,7 @@ void Recorder::level_finished(const LevelResult& r) {
                                  {"mesh_checksum", mesh_checksum}});
   if (scene_.dressing)
     entry["levels"].back()["pieces"] =
-        garment_pieces(scene_.hierarchy.levels[r.level], garment_fields_of(state), state.contact_pressure);
+        garment_pieces(scene_.hierarchy.levels[r.level], garment, state.contact_pressure);
   if (experiment_.parameters.snapshots > 0)
     entry["levels"].back()["snapshots"] = add_snapshots(r, cost, state);
   s_.states.push_back(std::move(state));

@@ -97,7 +97,7 @@ class Recorder : public Observer {
   /// The obstacles under the load that the finest level has reached.
   void write_obstacles();
   /// Returns the checksum of the .ply.
-  std::uint32_t write_state(const RecordedState& state);
+  std::uint32_t write_state(const RecordedState& state, const VertexFields& garment);
   /// None of a scene without dressing.
   VertexFields garment_fields_of(const RecordedState& state) const;
   /// The states of a method as a ParaView collection.

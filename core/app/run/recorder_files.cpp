@@ -144,11 +144,11 @@ VertexFields Recorder::garment_fields_of(const RecordedState& state) const {
                            obstacles_of(scene_.finest_model().contacts()));
 }
 
-std::uint32_t Recorder::write_state(const RecordedState& state) {
+std::uint32_t Recorder::write_state(const RecordedState& state, const VertexFields& garment) {
   const TriangleMesh mesh{state.x, scene_.hierarchy.levels[state.level].rest.triangles};
   VertexFields fields;
   if (state.contact_pressure.size() > 0) fields.push_back({"contact_pressure", state.contact_pressure});
-  for (VertexField& field : garment_fields_of(state)) fields.push_back(std::move(field));
+  fields.insert(fields.end(), garment.begin(), garment.end());
   const std::string ply = ply_bytes(mesh, fields);
   const auto write_level = [&](const char* extension, const std::string& bytes) {
     const std::string name = level_file(state.method, state.level, extension);
@@ -172,7 +172,7 @@ void Recorder::write_collection(const std::string& method) {
 void Recorder::write_again() {
   for (const char* part : {"levels", "fields", "obstacles"}) make_folder(folder_.file(part));
   write_scene();
-  for (const RecordedState& state : s_.states) write_state(state);
+  for (const RecordedState& state : s_.states) write_state(state, garment_fields_of(state));
   for (const auto& [name, method] : results_["methods"].items())
     if (method["status"].get<std::string>() != "running") write_collection(name);
   restore_fields();

@@ -76,7 +76,7 @@ void find_dressing_start(const Experiment& e, Scene& scene, ConfigErrors& errors
   std::set<std::size_t> crossed;  // shapes that cross themselves
   std::vector<Intersection> least;
   for (const double contraction : contractions) {
-    take(contraction, 0);
+    scene.dressing = DressingStart{contraction, smoothings[0], {shapes[0]}};
     const LoadSchedule schedule(e, scene);
     const auto model = schedule.model(*schedule.at(schedule.values(0)), 0, *scene.models[0]);
     const TriangleMesh small = body_of(e, *model);

@@ -71,11 +71,13 @@ VertexSearch::VertexSearch(const Level& level, const Level& coarsest, std::size_
   for (int v = 0; v < level.vertex_count(); ++v)
     if (level.topology.on_border[v]) border_.push_back(v);
   if (count <= few) return;
-  for (auto& [tree, of] : {std::pair(&tree_, &level), {&coarse_tree_, &coarsest}}) {
+  const auto build = [](std::optional<BoxTree>& tree, const Level& of) {
     std::vector<Box> boxes;
-    for (const auto& p : of->rest.vertices.rowwise()) boxes.push_back(Box::around(p, p, 0));
-    tree->emplace().build(boxes);
-  }
+    for (const auto& p : of.rest.vertices.rowwise()) boxes.push_back(Box::around(p, p, 0));
+    tree.emplace().build(boxes);
+  };
+  build(tree_, level);
+  if (&level != &coarsest) build(coarse_tree_, coarsest);
 }
 
 std::vector<int> VertexSearch::candidates(const VertexSelection& selection) const {
@@ -92,7 +94,7 @@ std::vector<int> VertexSearch::candidates(const VertexSelection& selection) cons
                          ? Box::around(selection.point, selection.point, 0)
                          : Box::around(selection.lower.cwiseMin(selection.upper), selection.upper, 1e-9);
   double reach = nearest ? INFINITY : in_ball ? margin * selection.radius * margin * selection.radius : 0;
-  (nearest ? coarse_tree_ : tree_)
+  (nearest && coarse_tree_ ? coarse_tree_ : tree_)
       ->visit_near(
           reach, [&](const Box& box) { return box.squared_distance(region); },
           [&](int v) {

@@ -12,10 +12,10 @@ namespace drape {
 /// Finds the vertices of a level that pins and handles select. Both levels must outlive it.
 class VertexSearch {
  public:
-  /// For about so many selections: many are found by trees, in a time that does not grow with both numbers.
+  /// `count` is about how many selections will be asked for; more than 16 are searched by trees.
   VertexSearch(const Level& level, const Level& coarsest, std::size_t count);
   /// The selected vertices, ascending. "nearest" selects the vertex of the coarsest level that is nearest to
-  /// the point, and on finer levels its child, which has the same index.
+  /// the point, and on other levels the vertex that stands for it.
   std::vector<int> selected(const VertexSelection& selection) const;
 
  private:
@@ -24,7 +24,7 @@ class VertexSearch {
 
   const Level &level_, &coarsest_;
   std::vector<int> border_;
-  std::optional<BoxTree> tree_, coarse_tree_;
+  std::optional<BoxTree> tree_, coarse_tree_;  // the second one only of another level
 };
 
 }  // namespace drape

@@ -56,6 +56,16 @@ double magnitude_quantile(const std::vector<const Eigen::VectorXd*>& fields, dou
   return *place;
 }
 
+/// The distance of each point to the obstacles; +∞ where it is known to be beyond the range.
+Eigen::VectorXd nearest_obstacle(const BoxTree& points, const Positions& x,
+                                 const std::vector<TriangleMesh>& obstacles, double range) {
+  Eigen::VectorXd gap = Eigen::VectorXd::Constant(x.rows(), std::numeric_limits<double>::infinity());
+  for (const TriangleMesh& obstacle : obstacles)
+    lower_to_distance(gap, points, x, obstacle.vertices, obstacle.triangles, range,
+                      [](int, int) { return true; });
+  return gap;
+}
+
 }  // namespace
 
 const std::vector<FieldKind>& surface_fields() {
@@ -74,20 +84,15 @@ const std::vector<FieldKind>& surface_fields() {
 
 Eigen::VectorXd obstacle_distance(const Positions& x, const std::vector<TriangleMesh>& obstacles,
                                   double range) {
-  Eigen::VectorXd gap = Eigen::VectorXd::Constant(x.rows(), std::numeric_limits<double>::infinity());
-  const BoxTree points = tree_of(x);
-  for (const TriangleMesh& obstacle : obstacles)
-    lower_to_distance(gap, points, x, obstacle.vertices, obstacle.triangles, range,
-                      [](int, int) { return true; });
+  Eigen::VectorXd gap = nearest_obstacle(tree_of(x), x, obstacles, range);
   for (double& g : gap) g = g <= range ? g : nan;
   return gap;
 }
 
 Eigen::VectorXd contact_gap(const Level& level, const Positions& x,
                             const std::vector<TriangleMesh>& obstacles, double range) {
-  Eigen::VectorXd gap = obstacle_distance(x, obstacles, range);
-  gap = gap.array().isNaN().select(std::numeric_limits<double>::infinity(), gap);
   const BoxTree points = tree_of(x);
+  Eigen::VectorXd gap = nearest_obstacle(points, x, obstacles, range);
   // A vertex's neighbourhood along the cloth is always near and is no contact.
   const Positions& rest = level.rest.vertices;
   const Triangles& triangles = level.rest.triangles;

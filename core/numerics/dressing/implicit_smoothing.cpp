@@ -67,8 +67,10 @@ Positions contracted(const TriangleMesh& mesh, double time) {
   const auto area_vector = [&](Eigen::Index t, int k) -> Eigen::Vector3d {
     return (corner(t, k) - corner(t, k + 2)).cross(corner(t, k + 1) - corner(t, k + 2));
   };
-  for (Eigen::Index t = 0; t < mesh.triangles.rows(); ++t)
-    for (int k = 0; k < 3; ++k) mass[mesh.triangles(t, k)] += area_vector(t, 0).norm() / 6;
+  for (Eigen::Index t = 0; t < mesh.triangles.rows(); ++t) {
+    const double share = area_vector(t, 0).norm() / 6;
+    for (int k = 0; k < 3; ++k) mass[mesh.triangles(t, k)] += share;
+  }
   mass = mass.cwiseMax(least_share * mass.mean());  // of vertices around which all triangles are flat
   Laplacian system(mesh.triangles, mass);
   for (Eigen::Index t = 0; t < mesh.triangles.rows(); ++t)

@@ -27,6 +27,7 @@ class GroupedHinges final : public BoundEnergy {
   struct Group {
     double factor;
     std::unique_ptr<BoundEnergy> energy;
+    int count;  ///< of its hinges
   };
   explicit GroupedHinges(std::vector<Group> groups) : groups_(std::move(groups)) {}
 
@@ -64,7 +65,13 @@ class GroupedHinges final : public BoundEnergy {
     constexpr int pairs = 10;
     int first = 0;
     for (const Group& group : groups_) {
-      const auto count = static_cast<int>(group.energy->stencils().rows());
+      const int count = group.count;
+      if (group.factor == 1) {
+        BlockSink own = sink.from(first);
+        group.energy->add_hessian(x, projection, own);
+        first += count;
+        continue;
+      }
       std::vector<int> slots(static_cast<std::size_t>(count) * pairs);
       std::iota(slots.begin(), slots.end(), 0);
       std::vector<double> blocks(9 * slots.size(), 0);
@@ -109,7 +116,7 @@ std::unique_ptr<BoundEnergy> bind_with_seams(
   if (elements.rows() == 0 || elements.cols() != 4 || elements.rows() != level.hinges.rows()) return whole;
   std::vector<GroupedHinges::Group> groups;
   for (const auto& [factor, hinges] : grouped(level, factors))
-    groups.push_back({factor, bind(part_of(level, hinges))});
+    groups.push_back({factor, bind(part_of(level, hinges)), static_cast<int>(hinges.size())});
   return std::make_unique<GroupedHinges>(std::move(groups));
 }
 

@@ -7,9 +7,9 @@
 
 namespace drape {
 
-/// An energy that `bind` binds to the level. Where its elements are the level's hinges, that of each has the
-/// factor of the level's seams if it is one, and one of `factors` (h), which are 1 if there are none and else
-/// rounded to a quarter of an octave.
+/// Binds an energy to the level. If its elements are the level's hinges, each hinge has a factor: the level's
+/// seam stiffness on seams, times its entry of `factors` (one a hinge, rounded to a quarter of an octave;
+/// empty: all are 1).
 std::unique_ptr<BoundEnergy> bind_with_seams(
     const Level& level, const std::function<std::unique_ptr<BoundEnergy>(const Level&)>& bind,
     const Eigen::VectorXd& factors = {});

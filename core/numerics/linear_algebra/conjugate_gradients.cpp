@@ -5,7 +5,7 @@
 namespace drape {
 
 double inner_product(const Positions& a, const Positions& b) {
-  return parallel_sum(static_cast<int>(a.rows()), 8192, [&](int begin, int end) {
+  return parallel_sum(static_cast<int>(a.rows()), vertices_at_once, [&](int begin, int end) {
     return a.middleRows(begin, end - begin).cwiseProduct(b.middleRows(begin, end - begin)).sum();
   });
 }

@@ -10,13 +10,15 @@
 
 namespace drape {
 
+constexpr int vertices_at_once = 8192;  ///< of a thread's piece of work
+
 /// Σ a_i · b_i of n×3 a and b, with the same bits on any number of threads.
 double inner_product(const Positions& a, const Positions& b);
 
 /// Calls body(i) for each row i of x (n×3), in parallel.
 template <class Body>
 void for_each_vertex(const Positions& x, const Body& body) {
-  parallel_for(static_cast<int>(x.rows()), 8192, [&](int begin, int end) {
+  parallel_for(static_cast<int>(x.rows()), vertices_at_once, [&](int begin, int end) {
     for (int i = begin; i < end; ++i) body(i);
   });
 }

@@ -81,10 +81,8 @@ Triangles triangles_within(const std::vector<Eigen::Vector2d>& points,
     if (f->info() % 2 == 0) continue;
     std::array<int, 3>& t = inside.emplace_back();
     for (int k = 0; k < 3; ++k) t[k] = f->vertex(k)->info();
-    std::ranges::rotate(t, std::ranges::min_element(t));
   }
-  std::ranges::sort(inside);
-  return Eigen::Map<const Triangles>(inside.data()->data(), static_cast<Eigen::Index>(inside.size()), 3);
+  return in_order(std::move(inside));
 }
 
 }  // namespace drape

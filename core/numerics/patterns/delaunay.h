@@ -9,6 +9,9 @@
 
 namespace drape {
 
+/// Triangles from their smallest vertices on, sorted: an order that depends on them only.
+Triangles in_order(std::vector<std::array<int, 3>> triangles);
+
 /// The Delaunay triangulation of distinct points in the plane, counter-clockwise, in an order that depends
 /// on the points alone.
 Triangles delaunay_triangulation(const std::vector<Eigen::Vector2d>& points);

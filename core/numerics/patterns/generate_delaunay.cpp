@@ -145,14 +145,6 @@ std::vector<Point2> points_in_holes(const std::vector<Ring>& rings) {
   return inside;
 }
 
-/// Rotated so that the smallest index comes first, and sorted: independent of CGAL's order.
-Triangles in_order(std::vector<std::array<int, 3>> triangles) {
-  for (auto& t : triangles) std::rotate(t.begin(), std::min_element(t.begin(), t.end()), t.end());
-  std::sort(triangles.begin(), triangles.end());
-  return Eigen::Map<const Triangles>(triangles.data()->data(), static_cast<Eigen::Index>(triangles.size()),
-                                     3);
-}
-
 TriangleMesh inside(Triangulation& triangulation) {
   std::vector<double> coordinates;
   std::vector<std::array<int, 3>> triangles;
@@ -190,6 +182,13 @@ std::optional<TriangleMesh> refined(const std::vector<Polygon>& loops, const std
 }
 
 }  // namespace
+
+Triangles in_order(std::vector<std::array<int, 3>> triangles) {
+  for (auto& t : triangles) std::rotate(t.begin(), std::min_element(t.begin(), t.end()), t.end());
+  std::sort(triangles.begin(), triangles.end());
+  return Eigen::Map<const Triangles>(triangles.data()->data(), static_cast<Eigen::Index>(triangles.size()),
+                                     3);
+}
 
 double even_spacing(double area, double border_length, int vertices) {
   // 2 n h² − border h − 4 area/√3 = 0

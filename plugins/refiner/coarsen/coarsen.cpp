@@ -4,7 +4,6 @@
 #include "core/kernel/plugin/parameters.h"
 #include "core/kernel/plugin/plugin.h"
 #include "core/numerics/hierarchy/midpoint.h"
-#include "core/numerics/mesh/check.h"
 #include "core/numerics/mesh/grain.h"
 #include "plugins/refiner/coarsen/choose_vertices.h"
 #include "plugins/refiner/coarsen/interpolation.h"

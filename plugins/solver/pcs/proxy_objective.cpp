@@ -40,10 +40,10 @@ void add_blocks(const BlockMatrix& part, const std::vector<int>& slots, double f
 
 }  // namespace
 
-std::vector<ProxyPart> proxy_parts(const Problem& problem, int level, const ProxyOptions& options) {
+std::vector<ProxyPart> proxy_parts(const Problem& problem, int level, double halvings,
+                                   const ProxyOptions& options) {
   const ProxyInterpolation& seen_by = options.seen_by;
   const int above = problem.finest() - level;
-  const double halvings = Fineness::of(problem.hierarchy, level).levels;
   std::vector<ProxyPart> parts;
   for (const auto& [role, interpolated_by] :
        {std::pair(EnergyRole::membrane, seen_by.membrane), std::pair(EnergyRole::external, seen_by.external),
@@ -85,7 +85,7 @@ void ProxyObjective::model_changed() {
   if (finest_.areas.size() > 0)
     folded_ =
         std::make_shared<const LevelModel>((effective_ ? *effective_ : model()).with_local_folds(finest_));
-  std::vector<ProxyPart> parts = proxy_parts(problem_, level_, options_);
+  std::vector<ProxyPart> parts = proxy_parts(problem_, level_, finest_.levels, options_);
   const bool differ = parts != parts_;
   if (differ) {
     parts_ = std::move(parts);

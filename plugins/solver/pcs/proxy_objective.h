@@ -51,8 +51,9 @@ struct ProxyPart {
 
 /// Parts of the proxy of a coarse level for the finest model. An energy that midpoint refinement multiplies
 /// by a known factor (Energy::midpoint_factor) is evaluated on the level itself, any other on the finest one.
-/// The parts refer to the problem's hierarchy.
-std::vector<ProxyPart> proxy_parts(const Problem& problem, int level, const ProxyOptions& options);
+/// `halvings` is the level's Fineness::levels. The parts refer to the problem's hierarchy.
+std::vector<ProxyPart> proxy_parts(const Problem& problem, int level, double halvings,
+                                   const ProxyOptions& options);
 
 /// Proxy F_l(x) = Σ parts(x) + B_l(x) + D_l(x) + S_l(x): shell energies and loads of finer levels as
 /// functions of the vertices of level l, with that level's own contact and strain limits (PCS, section 4).

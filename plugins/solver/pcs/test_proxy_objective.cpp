@@ -102,7 +102,8 @@ TEST_CASE("By midpoints the proxy's energy is that of the coarse surface on the 
     const double expected = f.finest_value(x, level, f.problem.hierarchy.midpoints);
     REQUIRE(std::abs(expected - f.problem.models[level]->value(x)) > 1e-3 * std::abs(expected));
     CHECK(value_of(proxy, x) == Approx(expected).epsilon(1e-11));
-    const auto parts = proxy_parts(f.problem, level, {by_midpoints});
+    const auto parts =
+        proxy_parts(f.problem, level, Fineness::of(f.problem.hierarchy, level).levels, {by_midpoints});
     CHECK(std::all_of(parts.begin(), parts.end(), [](const ProxyPart& part) { return part.above == 0; }));
     CHECK(proxy.matrix(x, Projection::clamp).pattern == f.problem.models[level]->pattern());
   }
@@ -110,7 +111,7 @@ TEST_CASE("By midpoints the proxy's energy is that of the coarse surface on the 
 
 TEST_CASE("An energy without a factor is evaluated on the finest mesh by midpoints") {
   const Fixture f(Overrides{{"energies", "[neo_hookean, midedge_bending, gravity]"}});
-  const auto parts = proxy_parts(f.problem, 0, {by_midpoints});
+  const auto parts = proxy_parts(f.problem, 0, Fineness::of(f.problem.hierarchy, 0).levels, {by_midpoints});
   REQUIRE(parts.size() == 2);
   CHECK(parts[0].above == 0);
   CHECK(parts[1].above == 2);
