@@ -197,7 +197,8 @@ void add_export_command(Commands& commands) {
         return known ? "" : "must be mm, cm, m, inch or normalised, not " + excerpt(unit);
       });
   command.add_flag("--as-read", o->as_read,
-                   "with .obj and .ply: in the unit and axes of the cloth's file, level 0 with its vertices");
+                   "with .obj and .ply: in the unit and axes of the cloth's file, the level of its mesh with "
+                   "its vertices");
   command.add_flag("--rest", o->rest, "with .obj and .ply: the level's rest shape in place of a state");
   command.add_flag("--overwrite", o->overwrite, "replace existing files");
 }

@@ -22,8 +22,8 @@ Eigen::Vector2i grid_counts(const ClothParameters& cloth);
 /// have.
 int vertices_within(const OutlineSize& outline, double edge_length);
 
-/// Estimated vertices of each level, without building any; reads only a mesh file. Empty if the cloth cannot
-/// be made, which checked_cloth reports.
+/// Estimated vertices of each level. Builds no level, but reads a cloth's file, and meshes a sewing pattern
+/// to count its vertices. Empty if the cloth cannot be made, which checked_cloth reports.
 std::vector<double> estimated_vertices(const ExperimentParameters& p);
 
 /// Estimated peak memory of a run whose finest level has so many vertices [bytes].

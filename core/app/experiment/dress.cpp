@@ -49,8 +49,7 @@ class KeyMaker {
 void DressParameters::declare(Declaration<DressParameters>& d) {
   d.add("body", &DressParameters::body,
         "mesh of the body (OBJ, OFF, PLY or STL), closed or open, relative to this file; it becomes the "
-        "obstacle "
-        "`body`")
+        "obstacle `body`")
       .path();
   declare_file_coordinates(d);
   declare_scale(d);
@@ -64,10 +63,10 @@ void DressParameters::declare(Declaration<DressParameters>& d) {
         "increments in which the pieces go from the shape that they were placed in to their own")
       .between(1, 500);
   d.add("placed", &DressParameters::placed,
-        "weight of the placed shape's metric in the pieces' rest shape; the phases go from 1 to 0")
+        "weight of the placed shape's metric in the pieces' rest shape; the phases set it, from 0.99 to 0")
       .unit("1")
       .between(0, 1);
-  d.add("loads", &DressParameters::loads, "factor on loads; the phases go from 0 to 1")
+  d.add("loads", &DressParameters::loads, "factor on loads; the phases set it, from 0 to 1")
       .unit("1")
       .between(0, 1);
 }

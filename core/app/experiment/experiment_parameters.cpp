@@ -23,9 +23,8 @@ template <class Condition>
 void declare_selection(Declaration<Condition>& d) {
   d.add("region", &VertexSelection::region,
         "selects vertices by their rest positions: the coarsest level's vertex nearest to `point`, all "
-        "within `radius` of `point`, all in a box, the boundary, indices, those of a piece, "
-        "the "
-        "seams of a cloth of flat pieces, or the edges of a pattern that have a label")
+        "within `radius` of `point`, all in a box, the boundary, indices, those of a piece, the seams of a "
+        "cloth of flat pieces, or the edges of a pattern that have a label")
       .choices({"nearest", "ball", "box", "border", "vertices", "piece", "seam", "label"});
   coordinate(
       d.add("point", &VertexSelection::point, "point of `nearest`, centre of `ball`, in the rest shape"))
@@ -42,17 +41,15 @@ void declare_selection(Declaration<Condition>& d) {
                 "indices of the cloth's own mesh, from 0; on levels that `hierarchy` puts below it, those "
                 "that stand for them"))
       .only_with("region", {"vertices"});
-  d.add(
-       "piece", &VertexSelection::piece,
-       "name of a piece, a group or material of the cloth's OBJ file; with `border` or `seam`, only those of "
-       "that piece")
+  d.add("piece", &VertexSelection::piece,
+        "name of a piece, a group or material of the cloth's OBJ file; with `border` or `seam`, only those "
+        "of that piece")
       .only_with("region", {"piece", "border", "seam"});
   d.add("label", &VertexSelection::label, "label of edges of the cloth's sewing pattern")
       .only_with("region", {"label"});
   natural(d.add("label_edges", &VertexSelection::label_edges,
                 "the ends of the label's edges on the coarsest level, two by two, which drape writes to the "
-                "config of a "
-                "run, whose cloth is no pattern"))
+                "config of a run, whose cloth is no pattern"))
       .only_with("region", {"label"});
   coordinate(d.add("translate", &VertexSelection::translate,
                    "translation from the rest position to the target, applied after `rotate`; without both, "
@@ -121,8 +118,7 @@ void ClothParameters::declare(Declaration<ClothParameters>& d) {
       .only_with("shape", {"polygon"});
   d.add("file", &ClothParameters::file,
         "mesh of the rest shape (OBJ, OFF, PLY or STL), or a sewing pattern (GarmentCode's JSON, or YAML), "
-        "relative "
-        "to this file")
+        "relative to this file")
       .path()
       .only_with("shape", {"file", "pattern"});
   declare_file_coordinates(d);
@@ -137,8 +133,7 @@ void ClothParameters::declare(Declaration<ClothParameters>& d) {
       .only_with("shape", {"file", "pattern"})
       .description(
           "rotation of the file's mesh, or of a pattern's placement, about the x, then y, then z axis; "
-          "regions of pins count from the "
-          "result");
+          "regions of pins count from the result");
   d.add("rest", &ClothParameters::rest,
         "the rest shape: the file's surface in space, or flat pieces, sewn where the file's texture "
         "coordinates differ on the two sides of an edge; the surface then only places them")
@@ -188,13 +183,11 @@ void ClothParameters::declare(Declaration<ClothParameters>& d) {
       "direction of warp on the rest shape, from `grain_along` counter-clockwise seen from the "
       "cloth's front; null: 0 if `grain_along` is u or file, otherwise that of the file's faces, or along x, "
       "neither exported nor drawn"));
-  d.add_choice(
-       "grain_along", &ClothParameters::grain_along,
-       {{"x", GrainAxis::x}, {"u", GrainAxis::u}, {"file", GrainAxis::file}},
-       "what `grain` counts from: the x axis, projected into each triangle, or the y axis of flat pieces; "
-       "the "
-       "texture coordinate u of the file, where that is the pattern; or the faces' `warp_x`, `warp_y`, "
-       "`warp_z` of a PLY file")
+  d.add_choice("grain_along", &ClothParameters::grain_along,
+               {{"x", GrainAxis::x}, {"u", GrainAxis::u}, {"file", GrainAxis::file}},
+               "what `grain` counts from: the x axis, projected into each triangle, or the y axis of flat "
+               "pieces; the texture coordinate u of the file, where that is the pattern; or the faces' "
+               "`warp_x`, `warp_y`, `warp_z` of a PLY file")
       .only_with("shape", {"file"});
   d.add_sections("grain_regions", &ClothParameters::grain_regions,
                  "parts of the cloth that were cut at another angle; later ones take precedence");
@@ -268,8 +261,7 @@ void HierarchyParameters::declare(Declaration<HierarchyParameters>& d) {
       .between(0, 8);
   d.add("multigrid", &HierarchyParameters::multigrid,
         "whether meshes below the coarsest level are made for `linear_solver: multigrid`, down to 2,000 "
-        "vertices; "
-        "nothing is solved on them");
+        "vertices; nothing is solved on them");
 }
 
 void ExperimentParameters::declare(Declaration<ExperimentParameters>& d) {
@@ -279,8 +271,7 @@ void ExperimentParameters::declare(Declaration<ExperimentParameters>& d) {
                 "the coarsest level, but for those that `hierarchy` puts below it");
   d.add("levels", &ExperimentParameters::levels,
         "number of levels from the cloth's mesh on, 1 by default if `hierarchy` puts levels below it; each "
-        "splits "
-        "every triangle of the last into four")
+        "splits every triangle of the last into four")
       .between(1, 10);
   d.add_section("hierarchy", &ExperimentParameters::hierarchy,
                 "levels under a fine mesh of the user's own, which is the finest level then");

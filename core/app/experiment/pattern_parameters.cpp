@@ -24,10 +24,8 @@ void CurvatureParameters::declare(Declaration<CurvatureParameters>& d) {
       .required();
   d.add("params", &CurvatureParameters::params,
         "control points of a Bézier curve, as in [[0.5, 0.1]]: part of the edge from its start to its end, "
-        "and to "
-        "its left; of a circle the radius in the file's unit, 1 for the arc of more than half a turn, and 1 "
-        "for an "
-        "arc that runs counter-clockwise")
+        "and to its left; of a circle the radius in the file's unit, 1 for the arc of more than half a turn, "
+        "and 1 for an arc that runs counter-clockwise")
       .required();
 }
 
@@ -54,8 +52,7 @@ void PanelParameters::declare(Declaration<PanelParameters>& d) {
       .required();
   d.add("edges", &PanelParameters::edges,
         "list of edges, or a map from names to them, in their order around the panel; a bare [a, b] is a "
-        "line. Edges "
-        "after the outline has closed are holes")
+        "line. Edges after the outline has closed are holes")
       .required();
   d.add("grain", &PanelParameters::grain,
         "direction of warp, from the panel's y axis counter-clockwise as it is drawn; `cloth.grain` replaces "
@@ -70,8 +67,7 @@ void PatternSeamParameters::declare(Declaration<PatternSeamParameters>& d) {
   d.add("name", &PatternSeamParameters::name, "what messages call the seam, beside its number");
   d.add("sides", &PatternSeamParameters::sides,
         "its two sides, each an edge, as in front.hem or {panel: front, edge: 2}, or a list of edges one "
-        "behind the "
-        "other along the seam")
+        "behind the other along the seam")
       .required();
   d.add("ease", &PatternSeamParameters::ease,
         "largest difference of the sides' lengths, as a part of the longer one, which is gathered")

@@ -112,7 +112,8 @@ fs::path own_report(const RunRecord& run) {
   return fs::absolute(run.folder / "report.html").lexically_normal();
 }
 
-/// Its own page is written first where there is none, or an older one than its results.
+/// Describes a run for the page. First writes the run's own report, without pictures, if it is missing or
+/// older than its results.
 Json run_json(const RunRecord& run, const fs::path& from) {
   const fs::path report = own_report(run), results = run.folder / "results.json";
   if (std::error_code none;

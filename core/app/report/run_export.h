@@ -24,8 +24,8 @@ struct ExportOptions {
   std::string method;        ///< empty: see default_method
   std::optional<int> level;  ///< empty: every level of a .glb and of numbered pictures, or the finest
   bool frames = false;  ///< the recorded snapshots: of one level, as an animation in a .glb; or as pictures
-  PictureOptions picture;    ///< of a .png alone
-  bool as_read = false;      ///< in the unit, axes and, of level 0, the vertices of the cloth's file
+  PictureOptions picture;  ///< of a .png alone
+  bool as_read = false;  ///< in the unit and axes of the cloth's file; on its mesh's level with its vertices
   std::string uv_unit = {};  ///< of the texture coordinates of flat pieces; empty: as they came
   bool overwrite = false;    ///< replace existing files
   Existing existing() const { return overwrite ? Existing::replaced : Existing::kept; }

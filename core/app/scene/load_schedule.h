@@ -70,7 +70,8 @@ class LoadSchedule {
   };
   Change& change_of(const Experiment& experiment, const KeyTarget& target);
   void dress(LoadState& load, const LoadState& before) const;
-  /// Where pins and handles without a transform hold.
+  /// Where pins without a transform hold, n×3 [m]: where the garment was sewn, else where the scene placed
+  /// it.
   Positions placed(const LoadState& load, int level) const;
 
   const Scene& scene_;

@@ -28,7 +28,7 @@ struct Box {
                              (b.lower[1] <= upper[1]) & (lower[2] <= b.upper[2]) & (b.lower[2] <= upper[2]));
   }
   Eigen::Vector3d centre() const { return 0.5 * (corner(lower) + corner(upper)); }
-  /// Of the ball about the centre that holds the box [m].
+  /// Radius of the ball about the centre that contains the box [m].
   double radius() const { return 0.5 * (corner(upper) - corner(lower)).norm(); }
   /// To the nearest points of both boxes [m²]; 0 where they overlap.
   double squared_distance(const Box& b) const {

@@ -55,8 +55,9 @@ class BoxTree {
   template <class Found>
   void overlaps(const BoxTree& other, int run, const Found& found) const;
 
-  /// Calls visit(i) for each box i whose distance(box) is at most `reach`, which visit returns anew: a search
-  /// for the nearest shrinks it. A box's distance must not be less than that of one that holds it.
+  /// Calls visit(i) for each box i with distance(box) ≤ reach. visit returns the reach from then on, so that
+  /// a search for the nearest can shrink it. The distance of a box must be at least that of any box that
+  /// contains it.
   template <class Distance, class Visit>
   void visit_near(double reach, const Distance& distance, const Visit& visit) const;
 

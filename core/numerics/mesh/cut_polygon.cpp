@@ -20,7 +20,8 @@ constexpr double area_rounding = 1e-13;
 constexpr double line_rounding = 1e-6;
 /// The time to search ears and crossings grows with the square of the corners, or faster.
 constexpr std::size_t most_of_ears = 400, most_compared = 10'000;
-/// A fan of more would have a vertex that no mesh may have.
+/// Corners of the largest fan: corner 0 is in all its triangles, and a mesh limits the triangles around a
+/// vertex.
 constexpr std::size_t most_of_fan = 5000;
 
 /// The polygon in its mean plane, anticlockwise, at the scale of its diameter.

@@ -22,8 +22,8 @@ struct CutPolygon {
 CutPolygon cut_polygon(const std::vector<Eigen::Vector3d>& corners);
 
 /// The constrained Delaunay triangulation of what an outline of n corners encloses, anticlockwise: n - 2
-/// triangles, or none if its sides cross, or touch elsewhere than along the way to a hole and back, where
-/// each place is named by its first corner.
+/// triangles, or none if its sides cross, or touch elsewhere than along the way to a hole and back. Corners
+/// at one place are all named by the first of them.
 std::vector<std::array<int, 3>> delaunay_cut(const std::vector<Eigen::Vector2d>& outline);
 
 }  // namespace drape

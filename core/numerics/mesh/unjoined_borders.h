@@ -32,7 +32,8 @@ struct Coincidence {
 /// The first two border vertices of a level that are less than `tolerance` [m] apart, in the order of
 /// vertices; without any, the count is 0.
 Coincidence coincident_border(const Level& level, double tolerance);
-/// The same of those that are also nearer to each other than a tenth of the edges at either.
+/// The first two border vertices of a level that are less than `tolerance` [m] apart and nearer than a tenth
+/// of every edge at either of them; without any, the count is 0.
 Coincidence nearly_coincident_border(const Level& level, double tolerance);
 
 }  // namespace drape

@@ -15,7 +15,7 @@ struct PanelMesh {
   TriangleMesh flat;
   std::vector<int>
       stitches;           ///< of the loops' vertices, the stitches of the edge that begins there; -1 for none
-  std::vector<int> ends;  ///< … and of the edge that ends there
+  std::vector<int> ends;  ///< of the loops' vertices, the stitches of the edge that ends there; -1 for none
   std::set<std::pair<int, int>> sewn;  ///< sides of the loops that are sewn, the smaller vertex first
   std::map<std::pair<int, int>, int>
       sides;  ///< edges of the panel by the two vertices of each side, as `sewn`

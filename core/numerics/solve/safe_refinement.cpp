@@ -18,7 +18,8 @@ namespace {
 constexpr double target_step_size = 1e-3;
 /// Force residual at which a round's descent ends, relative to its start.
 constexpr double tolerance = 0.05;
-/// The same of a flight, whose start is far: it ends within a fraction of an edge.
+/// Relative force residual at which a descent ends that begins at the scene's start: the start is far, and
+/// the end must be within a fraction of an edge.
 constexpr double flight_tolerance = 5e-4;
 constexpr int max_steps = 100, max_rounds = 12;
 /// A round ends after so many steps in a row of which the line search left less than this fraction.

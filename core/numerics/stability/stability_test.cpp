@@ -121,7 +121,7 @@ std::optional<StabilityTest> test_stability(Iterate& iterate, FactorCache& facto
   starts[1] = scattered_on(fixed);
   Positions weighted;
   m(starts[1], weighted);
-  inverse(weighted, starts[0]);  // soft
+  inverse(weighted, starts[0]);  // mostly the motions with little stiffness
   weighted.resize(0, 3);
 
   // H + S against H⁺ + S, whose quotients are at most 1: negative ones stand out however stiff the motion is.

@@ -26,7 +26,7 @@ class EquilibriumCheck {
     double lowest_residual = unknown;  ///< the lowest force residual at the end of a step [1]
     int steps_since_lowest = 0;        ///< how many steps ago that was
     double strictness = 1;             ///< the force tolerance is divided by it
-    double slack = 1;                  ///< and multiplied by this
+    double slack = 1;                  ///< the force tolerance is multiplied by it
   };
   const State& state() const { return s_; }
   void restore(const State& state) { s_ = state; }
@@ -59,7 +59,7 @@ class EquilibriumCheck {
   double force_tolerance() const { return p_.force_tolerance * s_.slack / s_.strictness; }
   /// Divides the force tolerance by this; 1 ends it.
   void tighten(double strictness) { s_.strictness = strictness; }
-  /// Multiplies it by this, until the next call.
+  /// Multiplies the force tolerance by `slack`, until the next call.
   void set_slack(double slack) { s_.slack = slack; }
 
   /// Notes the decrement of an iteration, before the iteration is counted.
