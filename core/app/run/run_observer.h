@@ -51,7 +51,7 @@ class RunObserver : public Observer {
       now_.state = {};
       now_.state.level = now_.first_level;
       method_clock_ = Stopwatch();
-      save();
+      write();  // not excluded from the rows' time, whose clock begins after it
     }
     level_ = now_.state.level;
   }
@@ -107,11 +107,15 @@ class RunObserver : public Observer {
  private:
   void save() {
     const WorkClock watch;
+    write();
+    recorder_.exclude(watch);
+  }
+  void write() {
+    const Stopwatch watch;
     now_.state.seconds = method_clock_.seconds();
     now_.recorder = recorder_.state();
     save_checkpoint(folder_, now_);
     cost_ = watch.seconds();
-    recorder_.exclude(watch);
     since_ = Stopwatch();
   }
 
