@@ -41,7 +41,7 @@ struct ConfigArguments {
 
   /// Adds the options to a command; returns that of the file, which is required.
   CLI::Option* add_to(CLI::App& command);
-  /// The same without --allow-start-repair.
+  /// Adds the options but for --allow-start-repair.
   CLI::Option* add_overrides_to(CLI::App& command);
   Overrides overrides() const;
   LargeMemory large_memory() const { return allow_memory ? LargeMemory::allowed : LargeMemory::refused; }

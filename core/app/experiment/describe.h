@@ -21,7 +21,7 @@ struct SharedSection {
 /// A Markdown table for the reference page; parameters of sections appear as `section.name`. A section with
 /// the name, parameters and defaults of the shared one is a single row with its link.
 std::string describe_markdown(const Schema& schema, const SharedSection* shared = nullptr);
-/// The same with a heading and the summary above.
+/// The table of a plugin's parameters, below a heading and its summary.
 std::string describe_markdown(const RegistryEntry& entry, const SharedSection* shared = nullptr);
 
 /// A plugin's README with its section "## Parameters" replaced; the section is appended if there was none.

@@ -80,7 +80,7 @@ bool is_sweep_source(const ConfigNode& source);
 std::optional<Experiment> read_experiment(const std::filesystem::path& file, const Overrides& overrides,
                                           const Registry& registry, ConfigErrors& errors);
 
-/// The same from a map that has been read already, overrides included.
+/// Validates an experiment whose file has been read already, overrides included.
 std::optional<Experiment> read_experiment(ConfigNode source, const Registry& registry, ConfigErrors& errors);
 
 /// In place of a method's name: every method. No method can have this name.

@@ -23,7 +23,7 @@ std::string unit_of(const std::string& path);
 bool set_parameter(ConfigNode& experiment, const std::string& path, ConfigNode value, const Location& where,
                    ConfigErrors& errors);
 
-/// The same with a YAML value from the command line; its locations are the option, as in "--set levels".
+/// Sets a YAML value from the command line; its locations are the option, as in "--set levels".
 bool set_parameter(ConfigNode& experiment, const std::string& path, const std::string& value,
                    const std::string& option, ConfigErrors& errors);
 

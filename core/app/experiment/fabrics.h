@@ -11,8 +11,8 @@ namespace drape {
 
 /// Names of the fabrics that come with drape, in its order.
 std::vector<std::string> fabric_names();
-/// Those of a CSV file's rows; a row without one has its number. Throws std::runtime_error if it cannot be
-/// read.
+/// Names of the fabrics in a CSV file's rows; a row without one has its number. Throws std::runtime_error if
+/// it cannot be read.
 std::vector<std::string> fabric_names(const std::filesystem::path& file);
 
 /// A fabric's values for keys of `material`, and its `source`: of NAME in the table that comes with drape, or

@@ -21,7 +21,7 @@ class JsonFile {
   /// T is bool, int (not negative), double (finite) or std::string. Empty if the key is absent or null.
   template <class T>
   std::optional<T> find(const Json& object, const std::string& key) const;
-  /// The same for a required key.
+  /// The value of a required key; refuses the file without one.
   template <class T>
   T at(const Json& object, const std::string& key) const {
     if (const std::optional<T> value = find<T>(object, key)) return *value;
@@ -44,7 +44,8 @@ Json parse_json(const std::string& text);
 /// The JSON's text, on one line without `indent`. Bytes that are not UTF-8, as in a file's name, are
 /// replaced; a number that is not finite, which JSON does not have, becomes null.
 std::string json_text(const Json& json, int indent = -1);
-/// The same on one line of ASCII, other characters escaped: for scripts of a page, whatever its encoding.
+/// The JSON's text on one line of ASCII, other characters escaped: for scripts of a page, whatever its
+/// encoding.
 std::string ascii_json_text(const Json& json);
 
 /// Why files that results.json names cannot begin with this name, as in "has 300 bytes, and may have 200"; ""

@@ -13,7 +13,7 @@ namespace drape {
 /// file.
 ConfigNode read_yaml(const std::filesystem::path& file, ConfigErrors& errors);
 
-/// The same from a text; locations have `name` as their file.
+/// Reads a text as read_yaml does a file; locations have `name` as their file.
 ConfigNode parse_yaml(const std::string& text, const std::string& name, ConfigErrors& errors);
 
 /// The node in block style, lists of scalars on one line; parse_yaml gives the node back.
@@ -33,7 +33,7 @@ void set_places(ConfigNode& node, const Location& where);
 /// Returns false, with an error appended, if the path does not exist.
 bool set_path(ConfigNode& root, const std::string& path, ConfigNode value, const Location& where,
               ConfigErrors& errors);
-/// The same in a resolved experiment, in which a path of the program's own cannot fail.
+/// Sets a value in a resolved experiment, in which a path of the program's own cannot fail.
 void set_path(ConfigNode& resolved, const std::string& path, ConfigNode value);
 
 }  // namespace drape

@@ -191,7 +191,7 @@ class PythonEnergy final : public Energy {
     return with_python([&]() -> std::unique_ptr<BoundEnergy> {
       const auto kept = std::make_shared<Level>(level);  // Python may store it
       Stencils stencils = stencils_of(*prototype_, kept);
-      // Of no elements nothing is evaluated.
+      // Without elements there is nothing to evaluate.
       SharedObject rest =
           share(stencils.rows() > 0 ? prototype_->attr("rest")(kept, material) : py::object(py::none()));
       return std::make_unique<BoundPythonEnergy>(prototype_, std::move(rest), std::move(stencils));

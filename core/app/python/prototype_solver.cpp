@@ -99,8 +99,8 @@ class SolverProblem {
 
   /// Ends the solve, whatever it has reported.
   void expire() { *alive_ = false; }
-  /// The same, and returns the results of the levels that ended. Raises ValueError if none has, or one has
-  /// begun and not ended.
+  /// Ends the solve and returns the results of the levels that ended. Raises ValueError if none has, or one
+  /// has begun and not ended.
   std::vector<LevelResult> finish() {
     expire();
     if (under_way_)

@@ -28,8 +28,8 @@ void write_runs_report(const std::vector<std::filesystem::path>& folders, const 
 /// run has nothing to show.
 std::string viewer_page(const RunData& run);
 
-/// The same of one state x (n×3) [m] of a level, with obstacles. `pressure` is LevelModel::contact_pressure;
-/// empty, the page has no colours of contact.
+/// A page with nothing but the 3D view of one state x (n×3) [m] of a level, with obstacles. `pressure` is
+/// LevelModel::contact_pressure; empty, the page has no colours of contact.
 std::string viewer_page(const std::string& title, const Level& level, const Positions& x,
                         const std::vector<TriangleMesh>& obstacles, const Eigen::VectorXd& pressure = {});
 

@@ -109,7 +109,7 @@ std::string rest_file(int level);
 /// short or not a run's.
 Json read_results(const std::filesystem::path& folder,
                   const std::string& remedy = "run the experiment again");
-/// The same of a complete run; null if the run is not complete, or if its results are missing or damaged.
+/// The results.json of a complete run; null if the run is not complete, or if they are missing or damaged.
 Json complete_results(const std::filesystem::path& folder);
 
 /// Reads results.json (required), iterations.csv, errors.csv and config.yaml (optional). Null values are

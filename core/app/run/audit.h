@@ -6,7 +6,8 @@ namespace drape {
 
 /// Throws std::runtime_error for a level that the scene does not have.
 void require_level(const Scene& scene, int level);
-/// The same for a state (n×3) [m] that is no state of the level: with other vertices, or not finite.
+/// Throws std::runtime_error for x (n×3) [m] that is no state of the level: with other vertices, or not
+/// finite.
 void require_state(const Scene& scene, int level, const Positions& x);
 
 /// The result with an outcome that does not rest on the method's word: one that has converged must have the

@@ -37,8 +37,8 @@ struct Checkpoint {
 std::string encode(const Checkpoint& checkpoint);
 /// The inverse of `encode`. Throws std::runtime_error for bytes that are damaged or of another format.
 Checkpoint decode(std::string_view bytes);
-/// The same without header and checksum, for untrusted bytes. Every value that is read is valid for its type;
-/// require_fitting checks it against an experiment.
+/// The checkpoint's bytes without header and checksum, and back, for untrusted bytes. Every value that is
+/// read is valid for its type; require_fitting checks it against an experiment.
 std::string encode_body(const Checkpoint& checkpoint);
 Checkpoint decode_body(std::string_view bytes);
 

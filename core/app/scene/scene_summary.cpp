@@ -45,7 +45,7 @@ double median(Eigen::VectorXd values) {
   return *middle;
 }
 
-/// The same at rest.
+/// Lengths of a level's edges in its rest shape [m].
 Eigen::VectorXd rest_lengths(const Level& level) {
   Eigen::VectorXd lengths(level.topology.edges.rows());
   for (int e = 0; e < lengths.size(); ++e) lengths[e] = rest_length(level.rest, level.topology, e);

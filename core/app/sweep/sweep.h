@@ -67,7 +67,7 @@ struct SweepOptions {
 std::optional<Sweep> read_sweep(const std::filesystem::path& file, const Registry& registry,
                                 ConfigErrors& errors, std::optional<int> most_levels = std::nullopt);
 
-/// The same from a map that has been read already.
+/// Validates a sweep whose file has been read already.
 std::optional<Sweep> read_sweep(ConfigNode source, const Registry& registry, ConfigErrors& errors,
                                 std::optional<int> most_levels = std::nullopt);
 

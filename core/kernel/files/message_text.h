@@ -11,7 +11,7 @@ namespace drape {
 /// bytes that are not UTF-8 appear as `\xNN`. A long text loses its middle.
 std::string printable(std::string_view text, std::size_t most_bytes = 2000);
 
-/// The same for every line of a text.
+/// A text of several lines, each safe for a message.
 std::string printable_lines(std::string_view text);
 
 /// The index of the first byte that is not UTF-8, or a control character but tabs and line ends; or npos.
@@ -26,7 +26,7 @@ std::string three_digits(double value);
 /// An exception as a sentence: file system errors name the file, lack of memory suggests a remedy.
 std::string reason_of(const std::exception& error);
 
-/// The same of the exception that is being handled, whatever it is: plugins throw anything.
+/// The exception that is being handled as a sentence, whatever it is: plugins throw anything.
 std::string message_in_flight();
 
 /// What `call` returns. The message of a runtime_error that it throws, and of what is no std::exception,

@@ -172,7 +172,7 @@ class ContactModel {
   virtual ~ContactModel() = default;
   /// Null when there is nothing to collide with: no contact code runs then.
   virtual std::unique_ptr<BoundContact> bind(const Level& level, const Material& material) const = 0;
-  /// The same under another load. A model whose binding is costly shares what did not change with `before`,
+  /// Binds under another load. A model whose binding is costly shares what did not change with `before`,
   /// which a model of the same plugin was bound to on this level.
   virtual std::unique_ptr<BoundContact> rebind(const Level& level, const Material& material,
                                                [[maybe_unused]] const BoundContact& before) const {

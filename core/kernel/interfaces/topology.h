@@ -76,7 +76,7 @@ struct Topology {
   /// Builds all of the above in linear time. `triangles` must be manifold (see check_mesh); throws
   /// std::runtime_error on an index out of range, a repeated one or an edge with more than two triangles.
   static Topology of(const Triangles& triangles, int vertex_count);
-  /// The same of triangles that need not be manifold, as an obstacle's.
+  /// For triangles that need not be manifold, as an obstacle's.
   static Topology of_any(const Triangles& triangles, int vertex_count);
 
   /// The corner of a triangle that lies opposite one of its edges, 0 … 2.

@@ -45,7 +45,7 @@ std::string fault_of(const fs::path& library) {
     return "it is no shared library (ELF); take it out of the folder or build it again";
   if (size < sizeof header || size < header.e_shoff + std::uintmax_t{header.e_shnum} * header.e_shentsize)
     return "the file is cut short at " + std::to_string(size) +
-           " bytes, its headers tell of more; build or copy it again";
+           " bytes, its headers ask for more; build or copy it again";
   return "";
 }
 

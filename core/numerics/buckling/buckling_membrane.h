@@ -21,7 +21,7 @@ struct PrincipalDerivatives {
   T log_step(const T& t2, const T& s) const {
     return -(first2 + s * t2) / (first2 + t2 * (second2 + 2.0 * s));
   }
-  /// The same with t1 = t2 = t.
+  /// Newton's step in ln t where t1 = t2 = t.
   T both_log_step(const T& t, const T& s) const {
     return -(first2 + s * t) / (first2 + t * (second2 + mixed + 2.0 * s));
   }

@@ -126,7 +126,7 @@ class MovingPairs {
   }
 };
 
-/// The same for the pairs of one kind.
+/// Calls visit(moving, indices, size) for packs of the pairs of one kind that have no offset.
 template <PairKind kind, class Visit>
 void for_each_pack_of(const ContactPair* pairs, int count, const LinearMotion& motion, const Visit& visit) {
   PairLanes<native_pack_width> lanes;

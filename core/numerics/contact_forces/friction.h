@@ -51,8 +51,8 @@ class LaggedFriction final : public BoundEnergy {
   /// Each contact's tangential displacement at x. Its length is limited to the friction smoothing distance:
   /// the next step then starts with the same friction forces.
   TangentialDisplacements tangential_displacements(const Positions& x) const;
-  /// The same without the limit, relative to obstacles that have moved: every contact subtracts the
-  /// tangential part of the motion of the point that it touches. With entries for vertices.
+  /// Tangential displacements without that limit, relative to obstacles that have moved: every contact
+  /// subtracts the tangential part of the motion of the point that it touches. With entries for vertices.
   TangentialDisplacements advected_tangential_displacements(const Positions& x,
                                                             const ObstacleMotion& motion) const;
 

@@ -155,7 +155,7 @@ class PackedElements {
     return total(sums);
   }
 
-  /// The same where the body writes to its elements' vertices.
+  /// As sum(), for a body that writes to its elements' vertices.
   template <class Body>
   double sum_scattered(const Body& body) const {
     Sums sums;

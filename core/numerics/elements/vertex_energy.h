@@ -102,7 +102,7 @@ class VertexEnergy final : public BoundEnergy {
   Eigen::MatrixXd rest_;
 };
 
-/// The same energy as constant forces, if it is linear in positions; itself where it is not finite.
+/// An energy that is linear in positions, as constant forces; itself where it is not finite.
 inline std::unique_ptr<BoundEnergy> as_linear(std::unique_ptr<BoundEnergy> energy, const Level& level) {
   Positions g = Positions::Zero(level.vertex_count(), 3);
   const double constant = energy->add_gradient(Positions::Zero(level.vertex_count(), 3), g);

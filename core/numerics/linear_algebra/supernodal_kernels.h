@@ -70,8 +70,8 @@ template <class Scalar>
 void factorise_columns_below(const RowPanel<Scalar>& a, const RowPanel<Scalar>& diagonal, int row, int begin,
                              int column);
 
-/// The same for the row panel with the diagonal block. The diagonal receives reciprocals; entries above it
-/// are undefined. Returns false if a pivot is not positive.
+/// Left-looking Cholesky of these columns in the row panel with their diagonal block. The diagonal receives
+/// reciprocals; entries above it are undefined. Returns false if a pivot is not positive.
 template <class Scalar>
 bool factorise_columns_diagonal(const RowPanel<Scalar>& diagonal, int row, int begin, int column);
 

@@ -170,7 +170,7 @@ std::vector<std::string> check_mesh(const TriangleMesh& mesh) {
   const int count = static_cast<int>(mesh.vertices.rows());
   if (std::string fault = crowded_vertex(mesh.triangles, count); !fault.empty()) return {std::move(fault)};
   const Lines coordinates = check_coordinates(mesh.vertices);
-  const bool is_sound = coordinates.empty();  // elsewise no shape can be computed
+  const bool is_sound = coordinates.empty();  // else no shape can be computed
   lines.insert(lines.end(), coordinates.begin(), coordinates.end());
 
   MeshFaults faults = MeshFaults::of_elements(mesh);

@@ -21,8 +21,8 @@ std::string lower_extension(const std::filesystem::path& path);
 /// refused. Throws std::runtime_error with "file:line: fault" (in binary parts: the element).
 TriangleMesh read_mesh(const std::filesystem::path& path);
 
-/// The same of the surface of an obstacle: without texture coordinates, whose numbers need not be finite, and
-/// with triangles that repeat a vertex in place of faces with one or two corners.
+/// Reads the surface of an obstacle: without texture coordinates, whose numbers need not be finite, and with
+/// triangles that repeat a vertex in place of faces with one or two corners.
 TriangleMesh read_surface(const std::filesystem::path& path);
 
 /// The number of lines between vertices (`l` of an OBJ, elements `edge` of a PLY) that a mesh file has beside

@@ -12,7 +12,7 @@ namespace drape {
 /// Returns a sentence that says what jumps, by how much and where, and what to do; or nothing. States whose
 /// energy is not finite are passed over.
 std::string jump_of(const BoundEnergy& energy, const Level& level);
-/// The same on the checked level.
+/// Looks for jumps on the level on which derivatives are checked.
 std::string jump_of(const Energy& energy, const Material& material);
 
 }  // namespace drape

@@ -24,9 +24,9 @@ class StretchLimited {
   virtual double limit() const = 0;  ///< s [1]
   /// Triangles that violate the limit at x (σ₁ ≥ s, or NaN), by rising index.
   virtual std::vector<StretchedTriangle> violations(const Positions& x) const = 0;
-  /// The same limit, with its own stretch_limit and max_step, restricted to the triangles that `excluded`
-  /// does not flag (one entry a triangle of the level). Safe refinement uses it as long as some triangles
-  /// violate the limit.
+  /// An energy with this limit and a stretch_limit and max_step of its own, restricted to the triangles that
+  /// `excluded` does not flag (one entry a triangle of the level). Safe refinement uses it as long as some
+  /// triangles violate the limit.
   virtual std::unique_ptr<BoundEnergy> restricted(const std::vector<char>& excluded) const = 0;
 };
 

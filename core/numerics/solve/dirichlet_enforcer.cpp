@@ -9,22 +9,22 @@ namespace drape {
 
 namespace {
 
-/// A doubling helps only if it leaves less than this fraction of the distance …
+/// A doubling helps only if it leaves less than this fraction of the distance.
 constexpr double max_remaining = 0.95;
-/// … and gains more than this fraction of the patch's width. Against contact or a strain limit every doubling
-/// gains a little, and the target is never reached.
+/// It must also gain more than this fraction of the patch's width: against contact or a strain limit every
+/// doubling gains a little, and the target is never reached.
 constexpr double min_gain = 1e-4;
-/// Idle doublings after which targets count as infeasible, once the penalty exceeds what the cloth can hold …
+/// Idle doublings after which targets count as infeasible, once the penalty exceeds what the cloth can hold.
 constexpr int max_idle_doublings = 4;
-/// … by this factor over the membrane's stiffness.
+/// What the cloth can hold, over the membrane's stiffness.
 constexpr double excess_stiffness = 10;
 /// Smallest initial penalty, as a fraction of the membrane's stiffness: on fine meshes vertices have little
 /// mass.
 constexpr double min_initial_stiffness = 0.1;
 
-/// A move by less than this fraction of the way gains nothing …
+/// A move by less than this fraction of the way gains nothing.
 constexpr double min_move = 5e-3;
-/// … and after so many of them in a row the penalty takes over.
+/// After so many idle moves in a row the penalty takes over.
 constexpr int max_idle_moves = 4;
 /// Below this gap, as a fraction of the bounding box diagonal, pins move on only by their penalty: each move
 /// takes most of a gap, and gaps far below this one leave the line search no descent.

@@ -10,12 +10,12 @@ namespace drape {
 namespace {
 
 /// At equilibrium, an increment that advances by less than this fraction of its remainder is blocked. An
-/// obstacle advances by about its gap at a time, so a very long motion counts as blocked too …
+/// obstacle advances by about its gap at a time, so a very long motion counts as blocked too.
 constexpr double blocked_increment = 1e-3;
-/// … and infeasible after so many blocked attempts in a row, …
+/// Blocked attempts in a row after which a load is infeasible.
 constexpr int max_blocked_increments = 20;
-/// … or at once below this gap, as a fraction of the bounding box diagonal: cloth between two surfaces that
-/// close cannot widen its gaps.
+/// A blocked attempt below this gap, as a fraction of the bounding box diagonal, makes the load infeasible at
+/// once: cloth between two surfaces that close cannot widen its gaps.
 constexpr double min_gap = 1e-7;
 /// Extrapolate at most four times the last increment.
 constexpr double max_trust = 4;

@@ -16,9 +16,9 @@ namespace {
 
 /// The Dirichlet penalty doubles when the force residual falls to this multiple of the tolerance.
 constexpr double near_equilibrium = 10;
-/// Pins that were stopped move on after a full step once forces are within this multiple of the load …
+/// Pins that were stopped move on after a full step once forces are within this multiple of the load.
 constexpr double relaxed_residual = 1;
-/// … and after every so many steps of an increment in any case.
+/// They move on after so many steps of an increment in any case.
 constexpr int max_steps_between_moves = 5;
 /// Force residual below which contacts count as carrying the load and no more.
 constexpr double balanced = 1;

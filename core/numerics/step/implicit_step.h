@@ -22,7 +22,7 @@ class ImplicitStep {
   /// 1/(2h²) ‖x − x^t‖²_M there [J].
   double inertia() const { return inertia_; }
 
-  /// The same at another x, for the h of the last evaluation [J].
+  /// The inertia at another x, for the h of the last evaluation [J].
   double inertia_at(const Positions& x, const Eigen::VectorXd& masses) const;
   /// Norm of the step's gradient over the free vertices at another x [N], whose ∇F(x) is `gradient`.
   double gradient_norm_at(const Positions& x, const Positions& gradient, const Iterate& iterate) const;

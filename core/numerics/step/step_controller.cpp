@@ -12,11 +12,12 @@ namespace {
 constexpr double short_step = 0.25;
 /// Steps that leave a force residual above this count as stalled.
 constexpr double stall_residual = 1e3;
-/// After so many of them in a row …
+/// After so many stalled steps in a row h is shortened.
 constexpr int max_stall_count = 20;
-/// … that have left more than this part of the residual, since steps that carry the cloth on are no stall, …
+/// But only if they have left more than this part of the residual: steps that carry the cloth on are no
+/// stall.
 constexpr double stall_remainder = 0.5;
-/// … h is divided by this.
+/// h is divided by this after a stall.
 constexpr double back_off = 16;
 /// h grows again after max_stall_count steps without a stall, or once forces are of the load's size.
 constexpr double recovered_residual = 10;

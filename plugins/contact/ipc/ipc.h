@@ -26,7 +26,7 @@ class Ipc final : public ContactModel {
 
   /// Reads and validates the obstacles. Throws RefusedParameters naming all invalid ones.
   explicit Ipc(const Parameters& parameters) : Ipc(parameters, nullptr) {}
-  /// The same with the meshes, cages and trees of `before` where they are equal.
+  /// Takes the meshes, cages and trees of `before` where they are equal.
   Ipc(const Parameters& parameters, const Ipc& before) : Ipc(parameters, &before) {}
 
   std::unique_ptr<BoundContact> bind(const Level& level, const Material& material) const override;

@@ -22,7 +22,7 @@ double drag(ActiveContacts& contacts, const BoundContact& model, const Positions
   return (gradient_of(*collisions_at(model, x), x) - all).col(0).sum();
 }
 
-/// The same on a cloth at x once its obstacles have moved.
+/// Force along x on a cloth at x with friction, less its barrier's, once its obstacles have moved [N].
 double drag_between(const std::shared_ptr<const BoundContact>& before,
                     const std::shared_ptr<const BoundContact>& after, const Positions& x) {
   ActiveContacts contacts({before});

@@ -51,7 +51,7 @@ class ShapesCandidates final : public CollisionCandidates {
   }
 
  private:
-  /// Those of the vertex candidates within d̂ at x.
+  /// Contacts of the vertex candidates that are within d̂ at x.
   std::vector<VertexContact> vertex_contacts(const Positions& x) const {
     const std::vector<SolidPair>& pairs = candidates_.vertices;
     const auto find = [&](int begin, int end, std::vector<VertexContact>& contacts) {

@@ -52,7 +52,7 @@ class Finder {
         x0_(x0),
         x1_(x1) {}
 
-  /// Those of the triangles, ascending, that may come within d̂.
+  /// Which of the triangles `among` may come within d̂, ascending.
   std::vector<int> triangles_near(const std::vector<int>& among) const {
     const auto test = [&](int begin, int end, std::vector<int>& near) {
       for (int i = begin; i < end; ++i)
@@ -61,7 +61,7 @@ class Finder {
     return parallel_collect<int>(static_cast<int>(among.size()), grain, test);
   }
 
-  /// The same of all, found in a tree of their boxes.
+  /// Which of all triangles may come within d̂, found in a tree of their boxes.
   std::vector<int> triangles_near(const BoxTree& all) const {
     std::vector<int> near;
     all.visit_near(

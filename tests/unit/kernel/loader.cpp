@@ -125,7 +125,7 @@ TEST_CASE("a plugin cut short at any length is refused, and ends no process") {
   CHECK(error_of_bytes(whole) == "");
   CHECK(error_of_bytes(whole.substr(0, whole.size() - 1)) ==
         "the file is cut short at " + std::to_string(whole.size() - 1) +
-            " bytes, its headers tell of more; build or copy it again");
+            " bytes, its headers ask for more; build or copy it again");
   std::vector<std::size_t> lengths;
   for (std::size_t k = 0; k < 1024; k += 61) lengths.push_back(k);
   for (std::size_t k = 1024; k < whole.size(); k += whole.size() / 150) lengths.push_back(k);
