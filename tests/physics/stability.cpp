@@ -42,18 +42,19 @@ $)",
 }
 
 /// A strip on its edge, clamped at one end, under a fraction of the weight at which it buckles sideways
-/// (Timoshenko), Γ = ρ g d L³ / D = 12.854 (1 − ν) √(2 (1 + ν)).
+/// (Timoshenko), Γ = ρ g d L³ / D = 12.854 (1 − ν) √(2 (1 + ν)). Theory is for a line that does not bend in
+/// its plane: at a hundred times its height and this membrane the strip carries 0.996 of the load.
 std::string edge_strip(double fraction) {
-  const int cells = 160, across = 4;
+  const int cells = 200, across = 2;
   const double cell = 1 / (cells - 0.5), nu = 0.25, thickness = 1e-3;
   const double critical = 12.854 * (1 - nu) * std::sqrt(2 * (1 + nu));
   return experiment(
-      R"(cloth: {shape: rectangle, size: [$, $], triangulation: criss_cross, columns: $, rows: $}
-material: {density: 1000, thickness: $, membrane_modulus: 1e10, bending_modulus: $, poisson_ratio: $}
+      R"(cloth: {shape: rectangle, size: [$, $], triangulation: equilateral, vertices: $}
+material: {density: 1000, thickness: $, membrane_modulus: 4e10, bending_modulus: $, poisson_ratio: $}
 pins: [{region: box, lower: [-1, -1, -1], upper: [$, 1, 1]}]
 energies: [neo_hookean, midedge_bending, {type: gravity, acceleration: [0, $, 0]}]
 $)",
-      cells * cell, across * cell, cells + 1, across + 1, thickness,
+      cells * cell, across * cell, (cells + 1) * (across + 1), thickness,
       12 * (1 - nu * nu) / std::pow(thickness, 3), nu, 1.01 * cell, -fraction * critical / 1000 / thickness,
       newton_to(1e-5, 2000));
 }
@@ -69,13 +70,12 @@ TEST_CASE(
   struct Buckling {
     std::string name;
     Made yaml;
-    double margin, eigenvalue;  // beyond it [1/s²], solved to rounding
+    double eigenvalue;  // beyond it [1/s²], solved to rounding
   };
-  // Timoshenko's strip is a line; 2 % are those of a fortieth of its length (woven.cpp).
-  for (const auto& [name, yaml, margin, eigenvalue] : {Buckling{"Euler's column", column, 0.01, 0.02686},
-                                                       {"a pushed plate", pushed_plate, 0.01, 2.335},
-                                                       {"a strip on its edge", edge_strip, 0.04, 0.9962}})
-    for (const double fraction : {1 - margin, 1 + margin}) {
+  for (const auto& [name, yaml, eigenvalue] : {Buckling{"Euler's column", column, 0.02686},
+                                               {"a pushed plate", pushed_plate, 2.335},
+                                               {"a strip on its edge", edge_strip, 0.811}})
+    for (const double fraction : {0.99, 1.01}) {
       INFO(name << ", " << fraction);
       const Solved s = converged(solve_yaml(yaml(fraction)));
       const double deflection = largest_entry(s.x().col(2));
