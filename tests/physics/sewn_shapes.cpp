@@ -115,27 +115,8 @@ TEST_CASE("A cushion of two squares that share their texture coordinates is the 
 
 TEST_CASE("The apex of a disc without a sector has the sector's angle as its defect, sewn or in space") {
   constexpr int n = 24;
-  const double removed = GENERATE(0.3, 1.0, 2.5), all = 2 * M_PI - removed;
-  const double sine = std::sin(all / (2 * n)) / std::sin(M_PI / n);  // of the cone's half angle
-  const auto ring = [&](double slant) {
-    return Eigen::Vector2d(slant * sine, -slant * std::sqrt(1 - sine * sine));
-  };
-  TriangleMesh cone = faceted(n, {{0, 0}, ring(0.05), ring(0.1), ring(0.15)});
-  TriangleMesh dart = cone;
-  dart.uv.resize(cone.triangles.rows(), 6);
-  for (Eigen::Index t = 0; t < dart.uv.rows(); ++t) {
-    const auto v = dart.triangles.row(t);
-    bool last = false, first = false;
-    for (const int own : v)
-      last = last || (own > 0 && (own - 1) % n == n - 1), first = first || (own > 0 && (own - 1) % n == 0);
-    for (int k = 0; k < 3; ++k) {
-      const int spoke = v[k] == 0 ? 0 : (v[k] - 1) % n;
-      const double angle = all / n * (last && first && spoke == 0 ? n : spoke),
-                   slant = v[k] == 0 ? 0 : 0.05 * (1 + (v[k] - 1) / n);
-      dart.uv.block<1, 2>(t, 2 * k) << slant * std::cos(angle), slant * std::sin(angle);
-    }
-  }
-  dart.sewing = Sewing{};
+  const double removed = GENERATE(0.3, 1.0, 2.5);
+  const TriangleMesh cone = faceted_cone(n, removed, 0.05), dart = as_sector(cone, n, removed, 0.05);
   const Level space = Level::of(0, cone), sewn = Level::of(0, dart);
   for (const Level* level : {&space, &sewn}) {
     double around = 0;

@@ -1,7 +1,10 @@
 // Cloth of flat pieces, solved: where its pieces lie in their plane says nothing, and what it makes is what
 // the surface in space makes.
 
+#include "core/numerics/elements/dihedral_angle.h"
+#include "core/numerics/elements/rest_hinge.h"
 #include "core/numerics/mesh_files/io.h"
+#include "tests/support/faceted.h"
 #include "tests/support/sewn.h"
 #include "tests/support/strip.h"
 
@@ -46,6 +49,41 @@ TEST_CASE(
     placed.uv *= 1000;
     CHECK(difference(sewn, at_rest(placed, "rest: uv, uv_unit: mm", hung())) < 1e-9);
   }
+}
+
+TEST_CASE(
+    "A cone that is sewn from a disc without a sector sags under its weight as the cone in space does") {
+  // Both resist every fold, also those with which the cone in space is given.
+  std::string keys = hung();
+  const std::string folds =
+      "{type: formula, per: hinge, constants: {k: {value: 1e-4, unit: J}}, energy: "
+      "\"k*length^2/area*theta^2\"}";
+  keys.replace(keys.find("hinge"), 5, folds);
+  const int n = GENERATE(12, 24);
+  const TriangleMesh cone = faceted_cone(n, 1, 0.1);
+  const Solved space = at_rest(cone, "", keys),
+               sewn = at_rest(as_sector(cone, n, 1, 0.1), "rest: uv, uv_unit: m", keys);
+  CHECK(difference(space, sewn) < 1e-9);
+  const Eigen::VectorXd sag = space.rest().col(2) - space.x().col(2);
+  CHECK(sag.maxCoeff() > 0.001);
+  row("Largest sag [m], and of the apex", sag.maxCoeff(), sag[0]);
+}
+
+TEST_CASE(
+    "A cone of plane pieces that are sewn at its angles sags as the cone in space, which rests so, does") {
+  constexpr int n = 12;
+  const TriangleMesh cone = faceted_cone(n, 1, 0.1);
+  const Level level = Level::of(0, cone);
+  const auto spoke =
+      std::ranges::find_if(level.hinge_edges, [&](int e) { return level.topology.edges(e, 0) == 0; });
+  const int hinge = static_cast<int>(spoke - level.hinge_edges.begin());
+  const double fold = DihedralAngle<double>(rest_vectors(level, hinge).data()).angle();
+  REQUIRE(std::abs(fold) > 0.1);
+  const Solved space = at_rest(cone, "", hung()),
+               sewn = at_rest(as_facets(cone, n, fold),
+                              filled("rest: uv, uv_unit: m, seams: {angle: $}", fold * 180 / M_PI), hung());
+  CHECK(difference(space, sewn) < 1e-9);
+  CHECK((space.x() - space.rest()).cwiseAbs().maxCoeff() > 0.001);
 }
 
 TEST_CASE(

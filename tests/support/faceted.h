@@ -54,3 +54,30 @@ inline drape::TriangleMesh as_facets(drape::TriangleMesh mesh, int n, double ang
   mesh.sewing = drape::Sewing{1, angle, 1};
   return mesh;
 }
+
+/// The cone of a regular polygon without a sector of this angle: n plane faces between an apex and three
+/// rings, whose spokes are `step` apart.
+inline drape::TriangleMesh faceted_cone(int n, double removed, double step) {
+  const double sine = std::sin((2 * M_PI - removed) / (2 * n)) / std::sin(M_PI / n);  // of its half angle
+  const Eigen::Vector2d ring(step * sine, -step * std::sqrt(1 - sine * sine));
+  return faceted(n, {{0, 0}, ring, 2 * ring, 3 * ring});
+}
+
+/// Such a cone as one flat piece, sewn along its first spoke.
+inline drape::TriangleMesh as_sector(drape::TriangleMesh cone, int n, double removed, double step) {
+  cone.uv.resize(cone.triangles.rows(), 6);
+  for (Eigen::Index t = 0; t < cone.uv.rows(); ++t) {
+    const auto v = cone.triangles.row(t);
+    bool last = false, first = false;
+    for (const int own : v)
+      last = last || (own > 0 && (own - 1) % n == n - 1), first = first || (own > 0 && (own - 1) % n == 0);
+    for (int k = 0; k < 3; ++k) {
+      const int spoke = v[k] == 0 ? 0 : (v[k] - 1) % n;
+      const double angle = (2 * M_PI - removed) / n * (last && first && spoke == 0 ? n : spoke),
+                   slant = v[k] == 0 ? 0 : step * (1 + (v[k] - 1) / n);
+      cone.uv.block<1, 2>(t, 2 * k) << slant * std::cos(angle), slant * std::sin(angle);
+    }
+  }
+  cone.sewing = drape::Sewing{};
+  return cone;
+}
