@@ -39,10 +39,14 @@ class LoadStepper {
 
   /// Whether increments remain.
   bool loading() const { return load_stepping_ && !load_stepping_->finished(); }
-  /// Whether the next increment begins without equilibrium. The remainder of an increment waits for
-  /// equilibrium: each partial increment shrinks gaps tenfold, and a step widens them only twofold.
-  bool advances_at_once() const {
-    return loading() && !load_stepping_->equilibrates() && load_stepping_->complete();
+  /// Whether the next increment begins without equilibrium, after a step of that length. The remainder of an
+  /// increment waits for equilibrium: each partial increment shrinks gaps tenfold, and a step widens them
+  /// only twofold. Where increments make room, the next waits for steps that contact does not shorten, but
+  /// not long.
+  bool advances_at_once(double step_length) const {
+    const bool follows = step_length == 1 || steps() % max_steps_between_advances == 0;
+    return loading() && !load_stepping_->equilibrates() && load_stepping_->complete() &&
+           (follows || !makes_room());
   }
   /// Whether an equilibrium is that of a whole increment, which is to be solved to equilibrium.
   bool ends_increment() const {
@@ -56,6 +60,8 @@ class LoadStepper {
   }
   /// How many times the force tolerance is enough for an equilibrium of the current increment [1].
   double slack() const { return load_stepping_ ? load_stepping_->slack() : 1; }
+  /// Whether the current increment only makes room for the next, as before the last one of a dressing.
+  bool makes_room() const { return slack() > 1; }
   /// Stores how far load stepping has come.
   void store_progress(LevelResult& result) const;
 
@@ -70,6 +76,8 @@ class LoadStepper {
   void report_increment();
 
  private:
+  static constexpr int max_steps_between_advances = 5;
+
   double trust_factor() const;
   double extrapolate();
   StepLimit advance_alone();

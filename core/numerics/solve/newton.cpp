@@ -152,7 +152,8 @@ class Newton {
       if (at_equilibrium && (!load_.loading() || load_.ends_increment()) && leave_saddle()) continue;
       if (saddle_exit_.is_stopped()) return End{Outcome::cancelled, "stopped on request"};
       if (at_equilibrium && !load_.loading()) return end_at_equilibrium(in_tolerance);
-      if (load_.loading() && !dirichlet_.active() && (at_equilibrium || load_.advances_at_once())) {
+      if (load_.loading() && !dirichlet_.active() &&
+          (at_equilibrium || load_.advances_at_once(step_.step_length()))) {
         advance_increment(at_equilibrium);
         if (load_.blocked()) return End{Outcome::infeasible, load_.blocked_text()};
       }
@@ -166,9 +167,9 @@ class Newton {
   }
 
   /// Raises the stiffness of barriers that carry too much, once the forces nearly balance: before, contacts
-  /// carry the motion's impacts.
+  /// carry the motion's impacts. In increments that make room, motion is slow, and what presses is the load.
   void follow_contact_forces() {
-    if (!(iterate_.force_residual() < balanced)) return;
+    if (!(iterate_.force_residual() < balanced) && !load_.makes_room()) return;
     if (!f_.contacts().raise_stiffness(iterate_.x(), f_.model().material().mean_membrane_modulus())) return;
     start_over();
   }
