@@ -1,4 +1,5 @@
-// Garments that are dressed: killed in each phase, on any number of threads, and refused in a sentence.
+// Garments that are dressed: killed in each phase, on any number of threads, symmetric, narrow, and refused
+// in a sentence.
 
 #include "core/app/report/run_data.h"
 #include "tests/configs/resuming.h"
@@ -22,6 +23,27 @@ constexpr const char* cloth =
     "energies: [neo_hookean, hinge, gravity]\n";
 
 TubeDress small_tube() { return {.columns = 8, .rows = 5, .facets = 24}; }
+
+/// A tube of four panels around an upright cylinder, each of `width` and the mirror image of its neighbours.
+std::string mirrored_pattern(double width) {
+  const std::string w = std::to_string(width), top = std::to_string(0.9 * width);
+  const std::string left = "vertices: {a: [0, 0], b: [" + w + ", 0], c: [" + top +
+                           ", 0.2], d: [0, 0.18]}, edges: {hem: [a, b], side: [b, c], top: [c, d], middle: "
+                           "[d, a]}}\n",
+                    right = "vertices: {a: [0, 0], b: [-" + w + ", 0], c: [-" + top +
+                            ", 0.2], d: [0, 0.18]}, edges: {hem: [b, a], middle: [a, d], top: [d, c], side: "
+                            "[c, b]}}\n",
+                    front = "{translation: [0, -0.2, -0.1], rotation: [90, 0, 0], ",
+                    back = "{translation: [0, 0.2, -0.1], rotation: [90, 0, 180], ";
+  return "properties: {units_in_meter: 1, up: z}\npattern:\n  panels:\n    front_left: " + front + left +
+         "    front_right: " + front + right + "    back_left: " + back + right + "    back_right: " + back +
+         left +
+         "  stitches:\n    front: [front_left.middle, front_right.middle]\n    back: [back_left.middle, "
+         "back_right.middle]\n    left: [front_left.side, back_left.side]\n    right: [front_right.side, "
+         "back_right.side]\n";
+}
+
+const std::string of_pattern = "{shape: pattern, file: tube.yaml, edge_length: 0.03}";
 
 std::string refused(const TubeDress& tube, const std::string& more = cloth) {
   const Scratch folder;
@@ -63,6 +85,107 @@ TEST_CASE("A dressing that is killed in each phase resumes to the same bits") {
   }
 }
 
+TEST_CASE("A dressing that is killed by the system in each phase resumes to the same bits") {
+  const Scratch folder;
+  TubeDress tube;
+  tube.columns = 24, tube.rows = 18;
+  tube.write(folder, held);
+  const std::string run = "run e.yaml -j 1 --no-report -q --checkpoint 0 --out ";
+  drape_ends(run + "whole", folder);
+  const auto times_in = [&](const std::string& out) {
+    const Csv rows(folder / (out + "/iterations.csv"));
+    std::vector<double> times;
+    for (std::size_t k = 0; k < rows.size(); ++k) times.push_back(rows.number(k, "time").value());
+    return times;
+  };
+  const std::vector<double> whole = times_in("whole");
+  for (const double begun : {0, 10, 40}) {  // growth, sewing, weight
+    INFO(begun);
+    const auto first = std::ranges::count_if(whole, [&](double time) { return time <= begun; });
+    DrapeAtWork command(run + "part", folder);
+    wait_for_lines(command, folder / "part/iterations.csv", static_cast<int>(first) + 2);
+    REQUIRE(command.ended_by(SIGKILL).exit_code == 128 + SIGKILL);
+    CHECK(times_in("part").size() < whole.size());
+    drape_ends("run --resume part --no-report -q -j 1", folder);
+    check_equal(folder / "part", folder / "whole");
+    std::filesystem::remove_all(folder / "part");
+  }
+}
+
+TEST_CASE("A garment that is narrower than its body is sewn without a struggle") {
+  TubeDress narrow = small_tube();
+  narrow.width = 0.22;
+  const Scratch folder;
+  narrow.write(folder, cloth);
+  Solved s{experiment_in(folder / "e.yaml"), nullptr, {}};
+  s.scene = scene_of(s.experiment);
+  run_method(s);
+  INFO(s.levels[0].message);
+  CHECK(s.levels[0].outcome == Outcome::converged);
+  CHECK(s.levels[0].iterations < 200);  // 685 where increments do not wait for a cloth that contact holds up
+}
+
+TEST_CASE("A garment that is too tight for its body is refused once it is sewn, by panel and seam") {
+  TubeDress narrow = small_tube();
+  narrow.width = 0.22;  // half of the tube, which the body stretches by some 43 %
+  const Scratch folder;
+  narrow.write(folder, cloth);
+  folder.write("tube.yaml", mirrored_pattern(0.12));
+  const auto message = [&](const Overrides& overrides) {
+    Solved s{experiment_in(folder / "e.yaml", overrides), nullptr, {}};
+    s.scene = scene_of(s.experiment);
+    run_method(s);
+    REQUIRE(s.levels[0].outcome == Outcome::infeasible);
+    CHECK(s.scene->load_stepping->phase() == "sewing");
+    return s.levels[0].message;
+  };
+  const std::string stretched =
+      ", is stretched by more than (3|4)[0-9](\\.[0-9])? %, and 20 % is allowed; .*";
+  CHECK_THAT(message({{"dress.largest_stretch", "0.2"}}),
+             Catch::Matches("the garment is too tight for its body: sewn, a tenth of piece (front|back)" +
+                            stretched));
+  CHECK_THAT(
+      message({{"dress.largest_stretch", "0.2"}, {"cloth", of_pattern}}),
+      Catch::Matches(".*tube.yaml:[4-7]:[0-9]+: the garment is too tight for its body: sewn, a tenth of "
+                     "panel [a-z_]+, by its seam [a-z]+ \\(.*tube.yaml:(9|10|11|12):[0-9]+\\)" +
+                     stretched));
+}
+
+TEST_CASE("A symmetric garment has symmetric energies at the start of its dressing") {
+  const Scratch folder;
+  TubeDress tube = small_tube();
+  tube.write(folder, cloth);
+  folder.write("tube.yaml", mirrored_pattern(0.16));
+  const Experiment experiment = experiment_in(folder / "e.yaml", {{"cloth", of_pattern}});
+  const auto scene = scene_of(experiment);
+  const Positions& x = scene->starts[0];
+  const Eigen::RowVector3d mirror(-1, 1, 1);
+  const auto mirrored = [&](const Eigen::RowVector3d& p) -> Eigen::RowVector3d {
+    return p.cwiseProduct(mirror);
+  };
+  std::vector<int> other;  // vertex, on the other side
+  for (const auto& p : x.rowwise()) {
+    Eigen::Index nearest = 0;
+    CHECK((x.rowwise() - mirrored(p)).rowwise().norm().minCoeff(&nearest) < 1e-12);
+    other.push_back(static_cast<int>(nearest));
+  }
+  // Moved by a smooth field that has no symmetry, and by its mirror image.
+  Positions moved = x, image = x;
+  for (int v = 0; v < x.rows(); ++v)
+    moved.row(v) += 2e-3 * Eigen::RowVector3d(std::sin(9 * x(v, 0) + 4 * x(v, 2)), std::cos(7 * x(v, 1)),
+                                              std::sin(8 * x(v, 0) - 5 * x(v, 1)));
+  for (int v = 0; v < x.rows(); ++v) image.row(v) = mirrored(moved.row(other[v]));
+  REQUIRE((moved - image).norm() > 1e-3);
+  scene->load_stepping->begin(0, true);
+  for (const auto& model : {scene->load_stepping->model(0), scene->models[0]}) {
+    const auto one = model->energy_parts(moved), two = model->energy_parts(image);
+    for (std::size_t k = 0; k < one.size(); ++k) {
+      INFO(one[k].first);
+      CHECK(two[k].second == Approx(one[k].second).epsilon(1e-9).margin(1e-15));
+    }
+  }
+}
+
 TEST_CASE("A pin holds a garment that would fall where the sewing has left it") {
   TubeDress loose = small_tube();
   loose.width = 0.4;
@@ -81,6 +204,19 @@ TEST_CASE("A pin holds a garment that would fall where the sewing has left it") 
     CHECK(std::hypot(d.target.x(), d.target.y()) > loose.radius);
     CHECK(std::abs(d.target.y()) < 0.7 * loose.apart);  // not where it was placed
   }
+}
+
+TEST_CASE("A dressing starts from the noise of its seed") {
+  const Scratch folder;
+  small_tube().write(folder, cloth);
+  const auto start = [&](const std::string& keys) {
+    return scene_of(experiment_in(folder / "e.yaml", {{"start", keys}}))->starts[0];
+  };
+  const Positions plain = start("{}"), one = start("{perturbation: 1e-3, seed: 1}"),
+                  two = start("{perturbation: 1e-3, seed: 2}");
+  CHECK((one - plain).cwiseAbs().maxCoeff() > 1e-4);
+  CHECK((one - plain).cwiseAbs().maxCoeff() < 3e-3);
+  CHECK((one - two).cwiseAbs().maxCoeff() > 1e-4);
 }
 
 TEST_CASE("A dressing has the same bits on any number of threads") {

@@ -62,6 +62,11 @@ void DressParameters::declare(Declaration<DressParameters>& d) {
   d.add("sewing", &DressParameters::sewing,
         "increments in which the pieces go from the shape that they were placed in to their own")
       .between(1, 500);
+  d.add("largest_stretch", &DressParameters::largest_stretch,
+        "a garment is too tight, and refused, if more than a tenth of the area of one of its pieces is "
+        "stretched beyond this once it is sewn; 0.5 is by half")
+      .unit("1")
+      .between(0.01, 10);
   d.add("placed", &DressParameters::placed,
         "weight of the placed shape's metric in the pieces' rest shape; the phases set it, from 0.99 to 0")
       .unit("1")
@@ -75,6 +80,8 @@ void apply_dress(ConfigNode& experiment, ConfigErrors& errors) {
   for (std::size_t i = 0; i < experiment.entries.size(); ++i) {
     if (experiment.entries[i].first != "dress") continue;
     ConfigNode dress = experiment.entries[i].second.as_map("body");
+    for (auto& [key, value] : dress.entries)
+      if (key == "type") key = "body";  // of a shorthand that set_path has made a map
     const ConfigNode* written = dress.find("body");
     if (!written || written->scalar.empty()) return;
     const ConfigNode file = *written;

@@ -19,6 +19,7 @@ struct DressParameters : FileCoordinates {
   Eigen::Vector3d rotate{0, 0, 0}, translate{0, 0, 0};
   std::string obstacle;  ///< the body's name among the obstacles; empty without dressing
   int growth = 10, sewing = 30;
+  double largest_stretch = 0.5;  ///< of a sewn garment, as Tightness::stretch
   double placed = 0, loads = 1;  ///< which the phases' schedule changes
 
   bool is_asked() const { return !obstacle.empty(); }

@@ -5,10 +5,12 @@
 #include <map>
 #include <set>
 
+#include "core/app/scene/garment_place.h"
 #include "core/app/scene/load_schedule.h"
 #include "core/app/scene/scene_summary.h"
 #include "core/kernel/files/message_text.h"
 #include "core/numerics/dressing/implicit_smoothing.h"
+#include "core/numerics/dressing/tightness.h"
 
 namespace drape {
 
@@ -18,15 +20,18 @@ namespace {
 constexpr double smoothings[] = {1, 0.3, 2, 4};
 constexpr double contractions[] = {0.009, 0.018, 0.028, 0.05};
 
-/// The pieces of the cloth's triangles that a start's intersections name, with how often.
-std::map<std::string, int> pieces_in(const std::vector<Intersection>& found, const TriangleMesh& cloth) {
+/// A body that fits stretches the placed pieces, which are much longer than they are sewn, by less than a
+/// hundredth while it grows.
+constexpr double largest_placed_stretch = 0.1;
+
+/// The triangles of the cloth that a start's intersections name.
+std::vector<int> triangles_in(const std::vector<Intersection>& found) {
   const std::string triangle = "cloth triangle ";
-  std::map<std::string, int> pieces;
+  std::vector<int> triangles;
   for (const Intersection& pair : found)
     for (const std::string* name : {&pair.first, &pair.second})
-      if (name->starts_with(triangle))
-        ++pieces[cloth.piece_names.at(cloth.piece.at(std::stoul(name->substr(triangle.size()))))];
-  return pieces;
+      if (name->starts_with(triangle)) triangles.push_back(std::stoi(name->substr(triangle.size())));
+  return triangles;
 }
 
 std::vector<Intersection> intersections_of(const LevelModel& model, const Positions& x) {
@@ -43,14 +48,36 @@ TriangleMesh body_of(const Experiment& e, const LevelModel& model) {
   return obstacles_of(model.contacts()).at(index);
 }
 
-/// The error of the best start that was tried.
-std::string refusal(const std::vector<Intersection>& found, const TriangleMesh& cloth) {
-  const std::map<std::string, int> pieces = pieces_in(found, cloth);
-  const auto most = std::ranges::max_element(pieces, {}, [](const auto& piece) { return piece.second; });
-  const std::string piece = most == pieces.end() ? "the garment" : "piece " + most->first;
-  return "no start is free of intersections: of all that were tried, the best still has " +
-         std::to_string(found.size()) + (found.size() == 1 ? " pair" : " pairs") + ", most of " + piece +
-         ": " + to_string(found[0]) + "; place the pieces around the body, not through it";
+/// The error of the best start that was tried, at the panel of most of its intersections.
+ConfigError refusal(const Experiment& e, const std::vector<Intersection>& found, const Level& level) {
+  std::map<int, std::vector<int>> pieces;  // the triangles that intersect
+  for (const int t : triangles_in(found)) pieces[level.rest.piece.at(t)].push_back(t);
+  ConfigError error{e.location_of("dress"), ""};
+  std::string piece = "the garment";
+  if (!pieces.empty()) {
+    const auto most = std::ranges::max_element(pieces, {}, [](const auto& own) { return own.second.size(); });
+    const GarmentPlace place = place_in_garment(e.parameters.cloth, level, most->second[0]);
+    piece = place.text;
+    if (place.where) error.where = *place.where;
+  }
+  error.message = "no start is free of intersections: of all that were tried, the best still has " +
+                  std::to_string(found.size()) + (found.size() == 1 ? " pair" : " pairs") + ", most of " +
+                  piece + ": " + to_string(found[0]) + "; " +
+                  (touches_itself(found) ? "place its pieces where they do not cross one another"
+                                         : "place the pieces around the body, not through it");
+  return error;
+}
+
+/// A garment whose tightest piece is stretched beyond what is allowed; `when` says when it was measured.
+std::string too_tight(const ClothParameters& cloth, const Level& level, const Positions& x, double allowed,
+                      const std::string& when) {
+  const Tightness tightest = tightest_piece(level, x);
+  if (tightest.stretch <= allowed) return "";
+  const auto percent = [](double part) { return three_digits(100 * part) + " %"; };
+  const GarmentPlace place = place_in_garment(cloth, level, tightest.triangle);
+  return (place.where ? place.where->text() + ": " : "") + "the garment is too tight for its body: " + when +
+         ", a tenth of " + place.text + ", is stretched by more than " + percent(tightest.stretch) +
+         ", and " + percent(allowed) + " is allowed; ";
 }
 
 }  // namespace
@@ -67,7 +94,7 @@ void find_dressing_start(const Experiment& e, Scene& scene, ConfigErrors& errors
   };
   if (!body.intersects(own)) return refuse("nowhere near");
   std::vector<Positions> shapes;
-  for (const double t : smoothings) shapes.push_back(smoothed(level.rest.triangles, scene.placed[0], t));
+  for (const double t : smoothings) shapes.push_back(smoothed(level.rest.triangles, scene.starts[0], t));
   const auto take = [&](double contraction, std::size_t shape) {
     scene.dressing = DressingStart{contraction, smoothings[shape], {shapes[shape]}};
     for (const ProlongationMatrix& linear : scene.hierarchy.linear)
@@ -93,7 +120,22 @@ void find_dressing_start(const Experiment& e, Scene& scene, ConfigErrors& errors
       if (least.empty() || found.size() < least.size()) least = std::move(found);
     }
   }
-  errors.push_back({where, refusal(least, level.rest)});
+  errors.push_back(refusal(e, least, level));
+}
+
+std::string too_tight_as_placed(const ClothParameters& cloth, const Level& placed, const Positions& x) {
+  const std::string fault = too_tight(cloth, placed, x, largest_placed_stretch,
+                                      "as it was placed, before it is sewn to its smaller size");
+  return fault.empty() ? "" : fault + "is it for another body, or placed around another part of it?";
+}
+
+std::string too_tight_as_sewn(const ClothParameters& cloth, const DressParameters& dress, const Level& level,
+                              const Positions& x) {
+  const std::string fault = too_tight(cloth, level, x, dress.largest_stretch, "sewn");
+  return fault.empty() ? ""
+                       : fault +
+                             "take a larger size or a smaller body, or raise \"dress.largest_stretch\" for a "
+                             "cloth that stretches so far";
 }
 
 }  // namespace drape

@@ -3,9 +3,11 @@
 #include <stdexcept>
 
 #include "core/app/scene/boundary_conditions.h"
+#include "core/app/scene/dressing.h"
 #include "core/app/scene/load_schedule.h"
 #include "core/kernel/files/message_text.h"
 #include "core/numerics/model/stretch_limit.h"
+#include "core/numerics/solve/load_stepper.h"
 
 namespace drape {
 
@@ -87,10 +89,13 @@ void check_on_levels(const Experiment& e, const Scene& scene, const LoadSchedule
 /// level's model is made when it is asked for.
 class ScheduleStepping final : public LoadStepping {
  public:
-  ScheduleStepping(LoadSchedule schedule, const Scene& scene, const DressParameters& dress)
+  /// Refers to the scene.
+  ScheduleStepping(LoadSchedule schedule, const Experiment& experiment, const Scene& scene)
       : schedule_(std::move(schedule)),
-        dress_(dress),
-        has_sewn_pins_(dress.is_asked() && !schedule_.first()->parameters->pins.empty()),
+        cloth_(experiment.parameters.cloth),
+        coarsest_(scene.hierarchy.levels[0]),
+        dress_(experiment.parameters.dress),
+        has_sewn_pins_(dress_.is_asked() && !schedule_.first()->parameters->pins.empty()),
         first_start_(scene.starts[0]),
         load_(schedule_.first()) {
     for (const auto& model : scene.models) levels_.push_back({load_, load_, model});
@@ -138,6 +143,7 @@ class ScheduleStepping final : public LoadStepping {
   }
 
   StepLimit advance(int level, const Positions& x) override {
+    if (dress_.is_asked()) refuse_if_too_tight(x);
     if (complete()) ++increment_;
     StepLimit limit{0, {}};
     double part = 1;
@@ -197,6 +203,17 @@ class ScheduleStepping final : public LoadStepping {
     return {};
   }
 
+  /// Throws LoadRefused for a garment at x that is too tight for its body, as it grows, or once it is sewn.
+  void refuse_if_too_tight(const Positions& x) const {
+    if (increment_ == 0 || increment_ > dress_.growth + dress_.sewing) return;
+    std::string fault;
+    if (increment_ <= dress_.growth)
+      fault = too_tight_as_placed(cloth_, *load_->rests->level(0), x);
+    else if (increment_ == dress_.growth + dress_.sewing && complete())
+      fault = too_tight_as_sewn(cloth_, dress_, coarsest_, x);
+    if (!fault.empty()) throw LoadRefused(fault);
+  }
+
   /// The load of a garment that was sewn at these positions of the coarsest level.
   static std::shared_ptr<const LoadState> with_sewn_at(const LoadState& load, const Positions& sewn) {
     LoadState own = load;
@@ -212,6 +229,8 @@ class ScheduleStepping final : public LoadStepping {
   }
 
   const LoadSchedule schedule_;
+  const ClothParameters cloth_;
+  const Level& coarsest_;
   const DressParameters dress_;
   const bool has_sewn_pins_;     // the dressing decides where pins hold
   const Positions first_start_;  // of the coarsest level [m]
@@ -228,7 +247,7 @@ std::unique_ptr<LoadStepping> load_stepping_of(const Experiment& e, const Scene&
   const std::size_t before = errors.size();
   check_on_levels(e, scene, schedule, errors);
   if (errors.size() > before) return nullptr;
-  return std::make_unique<ScheduleStepping>(std::move(schedule), scene, e.parameters.dress);
+  return std::make_unique<ScheduleStepping>(std::move(schedule), e, scene);
 }
 
 }  // namespace drape

@@ -39,7 +39,7 @@ void LoadStepper::store_progress(LevelResult& result) const {
   if (load_stepping_) result.load_stepping = load_stepping_->state();
 }
 
-bool LoadStepper::blocked() const { return s_.blocked_increments >= max_blocked_increments; }
+bool LoadStepper::blocked() const { return !blocked_text_.empty(); }
 
 void LoadStepper::advance(bool at_equilibrium) {
   const LevelResult& result = iterate_.result();
@@ -52,7 +52,13 @@ void LoadStepper::advance(bool at_equilibrium) {
   // If the predictor gains no more than the last time, the obstacles advance without it.
   if ((begins || !load_stepping_->complete()) && applied < 1 &&
       applied * (1 - s_.response.fraction) <= s_.response.fraction) {
-    const StepLimit limit = advance_alone();
+    StepLimit limit;
+    try {
+      limit = advance_alone();
+    } catch (const LoadRefused& refused) {
+      blocked_text_ = refused.what();
+      return;
+    }
     iterate_.set_limited_by(limit.by);
     limit_text_ = iterate_.limit_text();  // the pins' move that follows has a limit of its own
     applied += limit.fraction * (1 - applied);
@@ -66,7 +72,7 @@ void LoadStepper::advance(bool at_equilibrium) {
   s_.blocked_increments = at_equilibrium && applied < blocked_increment
                               ? (closed ? max_blocked_increments : s_.blocked_increments + 1)
                               : 0;
-  if (!blocked()) return;
+  if (s_.blocked_increments < max_blocked_increments) return;
   blocked_text_ = "the increment to pseudo-time " + three_digits(load_stepping_->time()) +
                   " cannot be completed" + limit_text_;
   if (closed)

@@ -1,12 +1,18 @@
 #pragma once
 
 #include <optional>
+#include <stdexcept>
 #include <string>
 
 #include "core/numerics/solve/dirichlet_enforcer.h"
 #include "core/numerics/step/iterate.h"
 
 namespace drape {
+
+/// Thrown by LoadStepping::advance where no load may follow, with the reason: the level is infeasible.
+struct LoadRefused : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
 
 /// When the current increment began.
 struct IncrementStart {
@@ -68,9 +74,9 @@ class LoadStepper {
   /// Begins the next increment or continues the current one, as far as limits and contact allow. Does not
   /// evaluate the iterate.
   void advance(bool at_equilibrium);
-  /// Whether the current increment cannot be completed.
+  /// Whether the current increment cannot be completed, or the next not begin.
   bool blocked() const;
-  /// Why it cannot.
+  /// Why.
   const std::string& blocked_text() const { return blocked_text_; }
   /// Reports the current increment to the observer; does nothing without a schedule.
   void report_increment();

@@ -2,6 +2,7 @@
 
 #include "core/numerics/dressing/implicit_smoothing.h"
 #include "core/numerics/dressing/intermediate_rest.h"
+#include "core/numerics/dressing/tightness.h"
 #include "core/numerics/elements/stretch.h"
 #include "core/numerics/patterns/generate.h"
 #include "tests/support/sewn.h"
@@ -74,4 +75,22 @@ TEST_CASE("Rest shapes between two have the mean of their metrics, and turn over
     }
     CHECK(difference < 1e-12);
   }
+}
+
+TEST_CASE(
+    "The tightest piece is that of which a tenth is stretched most, and not one with a corner that is") {
+  TriangleMesh two = grid({2, 1}, 21, 11, Diagonals::criss_cross);
+  two = as_piece(two);
+  two.piece_names = {"left", "right"};
+  for (Eigen::Index t = 0; t < two.triangles.rows(); ++t)
+    two.piece[t] = two.vertices(two.triangles.row(t), 0).mean() > 1 ? 1 : 0;
+  const Level level = Level::of(0, two);
+  Positions x = two.vertices;
+  x(0, 0) -= 5;                       // a corner of the left piece
+  for (int v = 0; v < x.rows(); ++v)  // a fifth of the right piece, by half
+    if (two.vertices(v, 0) > 1.8) x(v, 0) += 0.5 * (two.vertices(v, 0) - 1.8);
+  const Tightness tightest = tightest_piece(level, x);
+  CHECK(tightest.piece == 1);
+  CHECK(tightest.stretch == Approx(0.5).epsilon(1e-9));
+  CHECK(two.piece[tightest.triangle] == 1);
 }
