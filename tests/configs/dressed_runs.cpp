@@ -43,7 +43,9 @@ std::string mirrored_pattern(double width) {
          "back_right.side]\n";
 }
 
-const std::string of_pattern = "{shape: pattern, file: tube.yaml, edge_length: 0.03}";
+std::string of_pattern(const Scratch& folder) {
+  return "{shape: pattern, file: " + (folder / "tube.yaml").string() + ", edge_length: 0.03}";
+}
 
 std::string refused(const TubeDress& tube, const std::string& more = cloth) {
   const Scratch folder;
@@ -145,7 +147,7 @@ TEST_CASE("A garment that is too tight for its body is refused once it is sewn, 
              Catch::Matches("the garment is too tight for its body: sewn, a tenth of piece (front|back)" +
                             stretched));
   CHECK_THAT(
-      message({{"dress.largest_stretch", "0.2"}, {"cloth", of_pattern}}),
+      message({{"dress.largest_stretch", "0.2"}, {"cloth", of_pattern(folder)}}),
       Catch::Matches(".*tube.yaml:[4-7]:[0-9]+: the garment is too tight for its body: sewn, a tenth of "
                      "panel [a-z_]+, by its seam [a-z]+ \\(.*tube.yaml:(9|10|11|12):[0-9]+\\)" +
                      stretched));
@@ -156,7 +158,7 @@ TEST_CASE("A symmetric garment has symmetric energies at the start of its dressi
   TubeDress tube = small_tube();
   tube.write(folder, cloth);
   folder.write("tube.yaml", mirrored_pattern(0.16));
-  const Experiment experiment = experiment_in(folder / "e.yaml", {{"cloth", of_pattern}});
+  const Experiment experiment = experiment_in(folder / "e.yaml", {{"cloth", of_pattern(folder)}});
   const auto scene = scene_of(experiment);
   const Positions& x = scene->starts[0];
   const Eigen::RowVector3d mirror(-1, 1, 1);

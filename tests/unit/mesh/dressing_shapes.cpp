@@ -82,8 +82,9 @@ TEST_CASE(
   TriangleMesh two = grid({2, 1}, 21, 11, Diagonals::criss_cross);
   two = as_piece(two);
   two.piece_names = {"left", "right"};
+  two.piece.resize(two.triangles.rows());
   for (Eigen::Index t = 0; t < two.triangles.rows(); ++t)
-    two.piece[t] = two.vertices(two.triangles.row(t), 0).mean() > 1 ? 1 : 0;
+    two.piece[t] = two.vertices(two.triangles(t, 0), 0) + two.vertices(two.triangles(t, 2), 0) > 2 ? 1 : 0;
   const Level level = Level::of(0, two);
   Positions x = two.vertices;
   x(0, 0) -= 5;                       // a corner of the left piece
