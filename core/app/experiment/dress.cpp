@@ -1,8 +1,10 @@
 #include "core/app/experiment/dress.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "core/app/experiment/experiment.h"
+#include "core/app/experiment/read_experiment.h"
 #include "core/kernel/plugin/placement.h"
 
 namespace drape {
@@ -16,6 +18,9 @@ constexpr const char* body_name = "body";
 /// The weight of the placed metric at the start, where a triangle without area still rests as one with some,
 /// and in the last increment of sewing but one.
 constexpr double first_weight = 0.99, least_weight = 1e-4;
+/// A strain limit that limits nothing, where it begins, and the increments in which it comes down.
+constexpr double loosest_limit = 100;
+constexpr int limit_increments = 12;
 
 ConfigNode list_of(const std::vector<double>& values) {
   ConfigNode list;
@@ -115,7 +120,7 @@ void apply_dress(ConfigNode& experiment, ConfigErrors& errors) {
 
 void make_dressing_schedule(Experiment& e, ConfigErrors& errors) {
   ExperimentParameters& p = e.parameters;
-  const DressParameters& dress = p.dress;
+  DressParameters& dress = p.dress;
   if (!dress.is_asked()) return;
   const auto refuse = [&](const std::string& key, const std::string& why) {
     errors.push_back({e.location_of(key), "\"dress\" " + why});
@@ -127,12 +132,10 @@ void make_dressing_schedule(Experiment& e, ConfigErrors& errors) {
         "schedule",
         "makes the schedule itself; leave \"schedule\" out, and move what is dressed in a second experiment "
         "that begins \"--from\" the first");
-  for (const NamedEnergy& energy : e.energies)
-    if (energy.energy && energy.energy->role() == EnergyRole::limit)
-      refuse("energies",
-             "stretches the cloth on the way beyond what " + energy.name + " allows; leave it out");
   if (!errors.empty()) return;
-  const double grown = dress.growth, sewn = grown + dress.sewing, whole = sewn + 1;
+  const auto is_limit = [](const NamedEnergy& energy) { return energy.energy->role() == EnergyRole::limit; };
+  dress.tightening = std::ranges::any_of(e.energies, is_limit) ? limit_increments : 0;
+  const double grown = dress.growth, sewn = grown + dress.sewing, whole = sewn + dress.tightening + 1;
   const std::string body = "obstacles." + dress.obstacle;
   KeyMaker keys(e);
   keys.add(body + ".contraction", {0}, {0});
@@ -146,6 +149,21 @@ void make_dressing_schedule(Experiment& e, ConfigErrors& errors) {
   keys.add("dress.placed", times, weights);
   keys.add("dress.loads", {0, whole}, {0, 1}, KeyInterpolation::step);
   if (p.friction > 0) keys.add("friction", {0, whole}, {0, p.friction}, KeyInterpolation::step);
+  for (std::size_t k = 0; k < e.energies.size(); ++k) {
+    if (!is_limit(e.energies[k])) continue;
+    const PluginParameters own = parameters_of(e, LoadPart::energies, k);
+    const double limit = *DeclaredNumbers::find(own.entry->schema, own.values.get(), {"limit"})
+                              .value()
+                              .at(own.values.get(), 0);
+    std::vector<double> limit_times = {0}, limits = {loosest_limit};  // geometric above 1
+    for (int i = 0; i <= dress.tightening; ++i) {
+      limit_times.push_back(sewn + i);
+      limits.push_back(1 + (loosest_limit - 1) *
+                               std::pow((limit - 1) / (loosest_limit - 1), double(i) / dress.tightening));
+    }
+    limits.back() = limit;
+    keys.add("energies." + std::to_string(k) + ".limit", limit_times, limits);
+  }
   p.schedule.steps = static_cast<int>(whole);
 }
 
@@ -153,7 +171,8 @@ std::string dressing_phase(const DressParameters& dress, int increment) {
   if (increment == 0) return "start";
   if (increment <= dress.growth) return "growth";
   if (increment <= dress.growth + dress.sewing) return "sewing";
-  return increment == dress.growth + dress.sewing + 1 ? "weight" : "";
+  if (increment <= dress.growth + dress.sewing + dress.tightening) return "limit";
+  return increment == dress.growth + dress.sewing + dress.tightening + 1 ? "weight" : "";
 }
 
 }  // namespace drape

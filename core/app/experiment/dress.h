@@ -20,6 +20,7 @@ struct DressParameters : FileCoordinates {
   std::string obstacle;  ///< the body's name among the obstacles; empty without dressing
   int growth = 10, sewing = 30;
   double largest_stretch = 0.5;  ///< of a sewn garment, as Tightness::stretch
+  int tightening = 0;            ///< increments in which strain limits come down; the schedule sets it
   double placed = 0, loads = 1;  ///< which the phases' schedule changes
 
   bool is_asked() const { return !obstacle.empty(); }
@@ -30,11 +31,12 @@ struct DressParameters : FileCoordinates {
 void apply_dress(ConfigNode& experiment, ConfigErrors& errors);
 
 /// Makes the phases the schedule of an experiment that asks for `dress`, in increments of one unit of
-/// pseudo-time: growth, sewing, then one with loads and friction. Its first key is the body's contraction,
-/// whose values a scene finds. Appends errors for what does not go with `dress`.
+/// pseudo-time: growth, sewing, the tightening of strain limits if there are any, then one with loads and
+/// friction. Its first key is the body's contraction, whose values a scene finds. Appends errors for what
+/// does not go with `dress`.
 void make_dressing_schedule(Experiment& experiment, ConfigErrors& errors);
 
-/// The phase that an increment of that schedule belongs to: "start", "growth", "sewing", "weight".
+/// The phase that an increment of that schedule belongs to: "start", "growth", "sewing", "limit", "weight".
 std::string dressing_phase(const DressParameters& dress, int increment);
 
 }  // namespace drape
