@@ -32,11 +32,14 @@ export class Scene {
     this.cloth = Scene.material(false);
     this.painted = Scene.material(true);
     this.solid = Scene.material(false);
+    // Seams are drawn in front of the cloth that they are in.
+    for (const material of [this.cloth, this.painted]) Object.assign(material, {polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1});
     this.solid.uniforms.front.value.set(.45, .47, .5);
     this.solid.uniforms.back.value.set(.45, .47, .5);
     // What lies on an obstacle is drawn in front of it, without speckles.
-    Object.assign(this.solid, {polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1});
+    Object.assign(this.solid, {polygonOffset: true, polygonOffsetFactor: 2, polygonOffsetUnits: 2});
     this.lines = new THREE.LineBasicMaterial({color: 0xb3261e, visible: false});
+    this.seams = new THREE.LineBasicMaterial({color: 0x3a2d22});
     this.lookAt([0, 0, 0], 1);
     new ResizeObserver(() => this.layOut()).observe(canvas.parentElement);
     canvas.addEventListener('webglcontextrestored', () => this.draw());
@@ -90,10 +93,15 @@ export class Scene {
   }
 
   /// Whether obstacles stand back by some per cent of the scene: a smooth surface lies within its mesh, which rests on them.
-  setBack(on) { this.solid.polygonOffsetUnits = on ? 3000 : 1; }
+  setBack(on) { this.solid.polygonOffsetUnits = on ? 3000 : 2; }
   /// Shows arrows along warp.
   setWarp(on) {
     this.lines.visible = on;
+    this.draw();
+  }
+  /// Shows seams as lines.
+  setSeams(on) {
+    this.seams.visible = on;
     this.draw();
   }
 
@@ -116,6 +124,7 @@ export class Scene {
     geometry.setIndex(index);
     geometry.setAttribute('position', new THREE.BufferAttribute(x, 3));
     geometry.computeVertexNormals();
+    geometry.computeBoundingSphere();
     mesh.userData.x = x;
     view.scene.add(mesh);
     return mesh;
@@ -137,6 +146,8 @@ export class Scene {
     if (!shape) return;
     if (!view.mesh) {
       view.mesh = this.add(view, shape, this.cloth);
+      view.flat = shape.flat && view.mesh.geometry.boundingSphere;
+      if (shape.seams) view.mesh.add(new THREE.LineSegments(new THREE.BufferGeometry().setAttribute('position', view.mesh.geometry.attributes.position).setIndex(shape.seams), this.seams));
       if (shape.warp) view.mesh.add(new THREE.LineSegments(arrows(shape.x, shape.warp, .06 * this.home.radius), this.lines));
     }
     if (shape.tints) view.mesh.geometry.setAttribute('tint', new THREE.BufferAttribute(shape.tints, 3, true));
@@ -229,15 +240,8 @@ export class Scene {
   /// In `ratio`² pixels for each of the page's.
   render(ratio) {
     if (ratio !== this.renderer.getPixelRatio()) this.renderer.setPixelRatio(ratio);
-    const {target, azimuth, elevation} = this.view, camera = this.camera, r = this.home.radius;
-    const distance = this.view.distance * Math.max(1, this.panel.height / this.panel.width);  // the whole fits a narrow panel too
-    camera.position.set(target[0] + distance * Math.cos(elevation) * Math.cos(azimuth),
-      target[1] + distance * Math.cos(elevation) * Math.sin(azimuth), target[2] + distance * Math.sin(elevation));
-    camera.lookAt(...target);
+    const camera = this.camera;
     camera.aspect = this.panel.width / this.panel.height;
-    camera.near = Math.max(distance - 8 * r, distance / 40);  // nearer ends would leave too few depths between layers of cloth
-    camera.far = distance + 12 * r;
-    camera.updateProjectionMatrix();
     this.renderer.setClearColor(getComputedStyle(this.canvas.parentElement).backgroundColor);
     const whole = [0, 0, this.panel.width * this.columns, this.panel.height * this.rows];
     this.renderer.setScissor(...whole);
@@ -248,7 +252,26 @@ export class Scene {
       const place = [x, row * this.panel.height, this.panel.width, this.panel.height];
       this.renderer.setScissor(...place);
       this.renderer.setViewport(...place);
+      this.aim(view.flat);
       this.renderer.render(view.scene, camera);
     });
+  }
+  /// Points the camera; at flat pieces, within a sphere, from the front, moved and zoomed alike.
+  aim(flat) {
+    let {target, azimuth, elevation, distance} = this.view, r = this.home.radius;
+    distance *= Math.max(1, this.panel.height / this.panel.width);  // the whole fits a narrow panel too
+    if (flat) {
+      const s = flat.radius / r, [x, y, z] = target.map((v, k) => s * (v - this.home.target[k]));
+      const right = y * Math.cos(azimuth) - x * Math.sin(azimuth), up = z * Math.cos(elevation) - (x * Math.cos(azimuth) + y * Math.sin(azimuth)) * Math.sin(elevation);
+      target = [flat.center.x + right, flat.center.y, flat.center.z + up];
+      [azimuth, elevation, distance, r] = [-Math.PI / 2, 0, s * distance, flat.radius];
+    }
+    const camera = this.camera;
+    camera.position.set(target[0] + distance * Math.cos(elevation) * Math.cos(azimuth),
+      target[1] + distance * Math.cos(elevation) * Math.sin(azimuth), target[2] + distance * Math.sin(elevation));
+    camera.lookAt(...target);
+    camera.near = Math.max(distance - 8 * r, distance / 40);  // nearer ends would leave too few depths between layers of cloth
+    camera.far = distance + 12 * r;
+    camera.updateProjectionMatrix();
   }
 }

@@ -85,7 +85,7 @@ function table(all) {
   const measure = ranking(all.measures), keys = all.keys.filter(key => key !== 'run'), state = {medians: all.seeds.length > 1, table: {}};
   const names = all.columns.filter(name => name !== 'pass' && (name !== 'sweep' || keys.includes(name))), frame = h('div');
   const few = ['run', ...keys, 'seed', 'method', 'status', 'converged', 'machine', 'preview_seconds', 'seconds', 'cpu_seconds', 'iterations',
-    'preview_' + measure, 'error_' + measure, 'energy_released', 'intersections'];
+    'preview_' + measure, 'error_' + measure, 'energy_released', 'intersections', 'force_residual'];
   if (keys.length) few.shift();  // the keys tell the runs apart
   const draw = () => {
     const columns = columnsOf(state.medians ? [...names.slice(0, names.indexOf('method') + 1), 'converged', ...names.slice(names.indexOf('method') + 1)] : names, few, all.of);

@@ -36,6 +36,8 @@ export class View {
         tick('smooth surface', false, on => { this.smooth = on; this.scene.setBack(on); this.show(this.stop); }, 'viewer-smooth'),
         tick('x-ray', false, on => this.scene.setXray(on), 'viewer-xray'),
         view.levels.some(level => level.warp) ? tick('warp (red arrows)', false, on => this.scene.setWarp(on), 'viewer-warp') : '',
+        view.levels.some(level => level.seams) ? [tick('seams', true, on => this.scene.setSeams(on), 'viewer-seams'),
+          tick('flat pieces', false, on => { this.flat = on; this.listPanels(); this.show(this.stop); }, 'viewer-flat')] : '',
         button('viewer-reset', 'Reset', () => this.scene.resetView()), button('viewer-png', 'PNG', () => this.savePicture())),
       this.legend,
       fold('Keys and precision', h('p', {class: 'note', id: 'viewer-keys'}, 'All panels share a camera. Drag to turn, with Shift or two fingers to pan; the wheel zooms ' +
@@ -93,13 +95,14 @@ export class View {
         name => { this.fieldName = name; this.listFields(); this.show(this.stop); }, 'viewer-field'));
     }
     // Strain and pressure in units that people know.
-    const field = this.field(), [shown, unit] = !field ? [] : field.name === 'stretch' ? [v => 100 * (v - 1), '% strain'] : field.unit === 'Pa' ? [v => v / 1e3, 'kPa'] : [v => v, field.unit];
+    const field = this.field(), pressure = field?.unit === 'Pa';
+    const [shown, unit] = !field ? [] : field.name === 'stretch' ? [v => 100 * (v - 1), '% strain'] : pressure ? [v => v / 1e3, 'kPa'] : [v => v, field.unit];
     const text = v => String(Number(shown(v).toPrecision(3))).replace('-', '−');
     this.legend.hidden = !field;
     if (!field) return;
     const bar = h('i');
     bar.style.background = gradient(field.map);
-    this.legend.replaceChildren(text(field.low), bar, text(field.high) + (unit === '1' ? '' : ' ' + unit), h('span', {}, field.note));
+    this.legend.replaceChildren(text(field.low), bar, text(field.high) + (unit === '1' ? '' : ' ' + unit) + (pressure ? ` (${digits(field.high / 133.322, 3)} mmHg)` : ''), h('span', {}, field.note));
   }
 
   levelName(level) { return level + (this.data.levels.length > 1 ? ` of ${this.data.levels.length - 1}` : ''); }
@@ -120,7 +123,7 @@ export class View {
 
   listPanels() {
     this.shown = this.data.methods.filter(m => !this.hidden.has(m.name) && !(this.live && !m.levels.length)).flatMap(m =>
-      this.beside && m.levels.length > 1 ? [{name: m.name}, {name: m.name, end: true}] : [{name: m.name}]);
+      this.beside && m.levels.length > 1 ? [{name: m.name}, {name: m.name, end: true}] : [{name: m.name}]).flatMap(panel => this.flat ? [panel, {...panel, flat: true}] : panel);
     this.labels.replaceChildren(...this.shown.map(() => h('div')));
     this.scene.setViews(this.shown.length);
     this.panels = [];
@@ -148,15 +151,26 @@ export class View {
     return {level, state: level.states[Math.round(share * (level.states.length - 1))]};
   }
 
-  async panel({name, end}, stop, field) {
+  async panel({name, end, flat}, stop, field) {
     const method = this.data.methods.find(m => m.name === name);
     const found = this.stateAt(method, end ? this.stops[this.stops.length - 1] : stop);
     if (!found) return {method, end, shape: null, obstacles: await this.obstaclesOf({})};
     const entry = this.data.levels[found.level.level], block = field && found.state.fields[field.name];
+    const tinted = block ? this.block('scalars', block, scalars).then(values => paint(values, field)) : null;
+    if (flat) return {method, end, found, flat, shape: {...await this.flatPieces(entry.flat, await tinted), flat}, obstacles: []};
     const [obstacles, index, x, tints] = await Promise.all([this.obstaclesOf(found.state), this.index(entry),
       this.block('x', found.state.x, bytes => positions(bytes, entry.vertices)),
-      block ? this.block('scalars', block, scalars).then(values => paint(values, field)) : null]);
-    return {method, end, found, shape: {...this.smooth && surface({index, x, tints}, block ?? '') || {index, x, tints}, warp: entry.warp}, obstacles};
+      tinted]);
+    return {method, end, found, shape: {...this.smooth && surface({index, x, tints}, block ?? '') || {index, x, tints}, warp: entry.warp, seams: !this.smooth && entry.seams}, obstacles};
+  }
+  /// The pieces of a level as they are cut, with the colours of its vertices.
+  async flatPieces(flat, tints) {
+    const [index, x] = await Promise.all([this.index(flat), this.block('flat', flat.x, b => positions(b, flat.vertices))]);
+    if (!tints) return {index, x, tints};
+    const all = new tints.constructor(3 * flat.vertices);
+    all.set(tints);
+    flat.copies.forEach((v, k) => all.set(tints.subarray(3 * v, 3 * v + 3), tints.length + 3 * k));
+    return {index, x, tints: all};
   }
 
   /// Shows a stop once its data are loaded; a later call supersedes it.
@@ -201,7 +215,7 @@ export class View {
 
   /// Points the camera at the cloth's bounding box.
   aim(panels) {
-    const shapes = panels.filter(panel => panel.shape).map(({shape}) => shape.x), box = new THREE.Box3(), point = new THREE.Vector3();
+    const shapes = panels.filter(panel => panel.shape && !panel.flat).map(({shape}) => shape.x), box = new THREE.Box3(), point = new THREE.Vector3();
     shapes.forEach(x => box.union(new THREE.Box3().setFromArray(x)));
     if (box.isEmpty()) return;
     const centre = box.getCenter(new THREE.Vector3());
@@ -212,13 +226,13 @@ export class View {
     this.aimed = true;
   }
 
-  label(box, {method, end, found}) {
+  label(box, {method, end, found, flat}) {
     const {iteration = null, seconds = null, total = null} = found ? found.state : {}, running = found && found.level.status === 'running';
     const text = !found ? 'not reached yet' : [`level ${this.levelName(found.level.level)}` + (running ? ', running' : ''),
       ...(total !== null ? [`after ${digits(total, 2)} s`] : [iteration === null ? null : `${iteration} iterations`, seconds === null ? null : `${digits(seconds, 3)} s`])]
       .filter(part => part).join(', ');
     const name = end ? 'end' : found && method.levels.length > 1 && found.level === method.levels[0] && found.state === found.level.states.at(-1) ? 'preview' : '';
-    box.replaceChildren(h('b', {}, method.name + (name && ', ' + name)), h('span', {}, text));
+    box.replaceChildren(h('b', {}, method.name + (name && ', ' + name)), h('span', {}, flat ? 'flat pieces' : text));
   }
 
   play(on) {
@@ -290,7 +304,7 @@ export class View {
     return {
       level: stop ? stop.level : -1, stop: this.stop, stops: this.stops.length, playing: !!this.plays, field: this.fieldName,
       camera: this.scene && {...this.scene.view},
-      panels: this.panels.map(({method, end, found, shape, obstacles}) => ({method: method.name, end: !!end, level: found ? found.level.level : -1,
+      panels: this.panels.map(({method, end, found, shape, obstacles, flat}) => ({method: method.name, end: !!end, flat: !!flat, level: found ? found.level.level : -1,
         vertices: shape ? shape.x.length / 3 : 0,
         sum: shape ? shape.x.reduce((a, b) => a + Math.abs(b), 0) : 0, tints: shape && shape.tints ? sum(shape.tints) : null,
         obstacles: obstacles.map(({x}) => sum(x))})),

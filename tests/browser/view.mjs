@@ -3,7 +3,7 @@ import assert from 'node:assert/strict';
 import fs from 'node:fs';
 import path from 'node:path';
 import {changeResults, edited, folder, openReport, report} from './contact_report.mjs';
-import {checkWhole, downloaded, drawnShare, newPage, onFirstScreen, openPage, screens, test, textOf, until} from './support.mjs';
+import {checkWhole, downloaded, drawnShare, newPage, onFirstScreen, openPage, run, screens, source, test, textOf, until} from './support.mjs';
 
 test('opens without a complaint or a request, on the preview beside its end', async () => {
   const {page, heard, state} = await openPage(report);
@@ -104,6 +104,21 @@ test('the progression plays, snapshots between the levels included', async () =>
   await page.locator('#viewer-stop').fill('1');
   await until('a snapshot', async () => (await state()).stop === 1 && (await state()).panels[0].level === 0);
   assert.match(await textOf(page, '#viewer-labels'), /7 iterations, 0.700 s/);
+});
+
+test('sewn cloth has its seams as lines, and its flat pieces beside it in the same colours', async () => {
+  await run(folder, 'run', path.join(source, 'configs/cushion.yaml'), '--levels', '1', '--method', 'pcs', '--out', 'cushion', '--quiet', '--threads', '1');
+  const {page, state} = await openReport('cushion');
+  const [draped] = (await state()).panels, picture = async () => (await downloaded(page, '#viewer-png')).bytes;
+  const sewn = await picture();
+  await page.locator('#viewer-seams').uncheck();
+  assert.notDeepEqual(await picture(), sewn);
+  await page.locator('#viewer-flat').check();
+  await until('two panels', async () => (await state()).panels.length === 2);
+  assert.deepEqual((await state()).panels.map(p => p.flat), [false, true]);
+  assert.ok((await state()).panels[1].vertices > draped.vertices);  // those of seams stand twice
+  await page.locator('#viewer-field').selectOption('stretch_warp');
+  await until('colours', async () => (await state()).panels.every(p => p.tints > 0));
 });
 
 test('keys and pointer turn all views together', async () => {

@@ -10,6 +10,7 @@
 #include "core/app/cli/config_arguments.h"
 #include "core/app/experiment/exit_codes.h"
 #include "core/app/report/compare.h"
+#include "core/app/report/data_set.h"
 #include "core/app/report/pictures.h"
 #include "core/app/report/report.h"
 #include "core/app/report/run_collection.h"
@@ -55,7 +56,20 @@ void add_picture_width(CLI::App& command, std::optional<int>& width, const std::
           std::to_string(least_picture_width) + " to " + std::to_string(greatest_picture_width) + " pixels"));
 }
 
+/// Writes a sweep's garments. Exits with 1 unless all pass.
+int export_sweep(const std::string& folder, const fs::path& to, const ExportOptions& options) {
+  if (to.has_extension() || options.level || options.frames || options.as_read || !options.method.empty())
+    throw std::runtime_error(
+        "of a sweep, --to is a folder, and the finest level of every run is exported to it");
+  const RunTable table = export_data_set(folder, to, options);
+  std::cout << "written: "
+            << std::ranges::count_if(table.rows, [](const TableRow& row) { return row.contains("mesh"); })
+            << " of " << table.rows.size() << " to " << printable((to / "index.csv").string()) << "\n";
+  return table.all_pass() ? exit_done : exit_not_converged;
+}
+
 int export_states(const std::string& folder, const fs::path& file, const ExportOptions& options) {
+  if (is_sweep(folder)) return export_sweep(folder, file, options);
   const Folders files = export_run(folder, file, options);
   std::cout << "written: " << printable(files.front().string());
   if (files.size() > 1) std::cout << " to " << printable(files.back().string());
@@ -161,14 +175,16 @@ void add_export_command(Commands& commands) {
     bool rest = false;
   };
   const auto o = std::make_shared<Options>();
-  CLI::App& command = commands.add("export", "write states of a run as glTF, OBJ, PLY, VTP or PNG",
-                                   "drape export results/sphere --to sphere.glb --frames", [o] {
-                                     return (o->rest ? export_rest : export_states)(o->folder, o->file, *o);
-                                   });
-  command.add_option("folder", o->folder, "results folder")->required();
-  add_option(command, "-o,--to FILE", o->file,
-             "file to write: .glb has every level as a scene, with the obstacles; .obj, .ply and .vtp "
-             "have the finest level's cloth; .png is a picture of the finest level")
+  CLI::App& command =
+      commands.add("export", "write states of a run as glTF, OBJ, PLY, VTP or PNG, a sweep's as a data set",
+                   "drape export results/sphere --to sphere.glb --frames",
+                   [o] { return (o->rest ? export_rest : export_states)(o->folder, o->file, *o); });
+  command.add_option("folder", o->folder, "results folder, or a sweep's")->required();
+  add_option(
+      command, "-o,--to FILE", o->file,
+      "file to write: .glb has every level as a scene, with the obstacles; .obj, .ply and .vtp "
+      "have the finest level's cloth; .png is a picture of the finest level; of a sweep a folder of OBJ "
+      "with JSON")
       ->required();
   add_option(command, "--method NAME", o->method, "method (default: pcs, or the only one that was run)");
   add_option(command, "--level N", o->level, "this level only")->check(number_of_at_least(0));

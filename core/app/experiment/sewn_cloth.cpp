@@ -151,8 +151,7 @@ std::string sewing_text(const Level& coarsest) {
   const TriangleMesh& cloth = coarsest.rest;
   if (!cloth.sewing) return "";
   double seams = 0, least = 1;
-  for (int e = 0; e < coarsest.topology.edges.rows(); ++e) {
-    if (!is_seam(cloth, coarsest.topology, e)) continue;
+  for (const int e : seam_edges(cloth, coarsest.topology)) {
     const RestSide a = rest_side(cloth, coarsest.topology, e, 0),
                    b = rest_side(cloth, coarsest.topology, e, 1);
     const double one = (a.to - a.from).norm(), other = (b.to - b.from).norm();

@@ -144,6 +144,7 @@ std::optional<SurfacePoint> RayScene::hit(RTCSceneTy* scene, const Ray& ray) con
       surfaces_[query.hit.geomID].point(static_cast<int>(query.hit.primID), query.hit.u, query.hit.v, ray);
   point.surface = query.hit.geomID == 0 ? Seen::Surface::cloth : Seen::Surface::obstacle;
   point.distance = query.ray.tfar;
+  point.triangle = static_cast<int>(query.hit.primID);
   return point;
 }
 

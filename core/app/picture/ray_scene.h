@@ -29,6 +29,7 @@ struct Seen {
 /// Where a ray first meets a surface.
 struct SurfacePoint : Seen {
   float distance = 0;  ///< along the ray
+  int triangle = 0;    ///< of its mesh
   Eigen::Vector3f face_normal = Eigen::Vector3f::Zero();
   /// Where rays to lights start: off the smooth surface that the normals suggest.
   Eigen::Vector3f light_origin = Eigen::Vector3f::Zero();

@@ -18,8 +18,8 @@ namespace {
 constexpr int split = 2;  // samples along the side of a pixel
 // Weights, along a row or a column, of the samples around a pixel's middle: a tent.
 constexpr float tent[2 * split] = {0.125f, 0.375f, 0.375f, 0.125f};
-constexpr float edge_width = 1e-3f;  // of the picture's height
-constexpr float edge_opacity = 0.5f;
+constexpr float edge_width = 1e-3f, seam_width = 2.2e-3f;  // of the picture's height
+constexpr float edge_opacity = 0.5f, seam_opacity = 0.75f;
 constexpr float outline_width = 3e-3f;       // of the picture's height
 constexpr float least_outline_width = 1.5f;  // [pixels]
 constexpr float softness = 0.5f;             // half the width over which the line fades out [pixels]
@@ -131,11 +131,15 @@ class Painting {
   float share(const SurfacePoint& point, const Ray& ray) const {
     float taken = 0;
     if (point.surface != Seen::Surface::cloth) return 1;
-    if (drawing_.edges) {  // lines along the triangle's, with soft borders
-      const float half_width = std::max(edge_width * samples_.rows(), 0.6f * split) / 2, soft = 0.25f * split;
-      const float distance = point.edge_distance.minCoeff() / sample_size(point.distance);
-      taken = edge_opacity * std::clamp((half_width + soft - distance) / (2 * soft), 0.0f, 1.0f);
-    }
+    // What a line with soft borders takes, at a distance from its middle in space.
+    const auto line = [&](float distance, float width, float opacity) {
+      const float half_width = std::max(width * samples_.rows(), 0.6f * split) / 2, soft = 0.25f * split;
+      distance /= sample_size(point.distance);
+      taken = std::max(taken, opacity * std::clamp((half_width + soft - distance) / (2 * soft), 0.0f, 1.0f));
+    };
+    if (drawing_.edges) line(point.edge_distance.minCoeff(), edge_width, edge_opacity);
+    for (int k = 0; k < 3 && !drawing_.seams.empty(); ++k)
+      if (drawing_.seams[point.triangle] >> k & 1) line(point.edge_distance[k], seam_width, seam_opacity);
     if (drawing_.xray)
       if (const auto behind = scene_.nearest_obstacle(ray)) taken = std::max(taken, show_through(*behind));
     return 1 - taken;

@@ -36,7 +36,10 @@ struct Camera {
 /// Contents of a picture. Triangles with a vertex that is not finite are skipped.
 struct Drawing {
   const TriangleMesh& mesh;
-  bool edges = false;                               ///< thin lines along the triangles' edges
+  bool edges = false;  ///< thin lines along the triangles' edges
+  /// Broader lines along seams: of each triangle the sum of 2^k over its sides opposite corners k that are;
+  /// or empty.
+  std::vector<unsigned char> seams = {};
   bool xray = false;                                ///< cloth in front of an obstacle lets it show faintly
   std::vector<const TriangleMesh*> obstacles = {};  ///< dark
   std::optional<double> floor = {};                 ///< height of a floor that shows shadows only [m]

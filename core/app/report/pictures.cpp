@@ -8,6 +8,7 @@
 #include "core/kernel/files/file.h"
 #include "core/kernel/files/message_text.h"
 #include "core/kernel/files/string_utils.h"
+#include "core/numerics/mesh/seams.h"
 
 namespace drape {
 
@@ -41,6 +42,15 @@ std::optional<TriangleMesh> mesh_or_note(const RunData& run, const std::string& 
   }
 }
 
+/// Drawing::seams of a mesh.
+std::vector<unsigned char> seam_sides(const TriangleMesh& rest) {
+  const Topology topology = Topology::of(rest.triangles, static_cast<int>(rest.vertices.rows()));
+  std::vector<unsigned char> sides(rest.triangles.rows(), 0);
+  for (const int e : seam_edges(rest, topology))
+    for (const int t : topology.edge_triangles.row(e)) sides[t] |= 1 << topology.corner_opposite(e, t);
+  return sides;
+}
+
 /// Keeps a method's name as it is: a run accepts only names of files, and distinct methods need distinct
 /// pictures. Only an edited results.json can have anything else.
 std::string file_part(std::string name) {
@@ -61,6 +71,12 @@ PictureScene::PictureScene(const RunData& run, std::vector<std::string>& notes, 
     for (const LevelRecord& level : method.levels)
       if (auto mesh = mesh_or_note(run, level.mesh, notes))
         all.push_back(&states_.emplace(&level, *mesh).first->second.vertices);
+  std::vector<std::string> unread;  // rest shapes, which the 3D view notes
+  for (int level = 0; level <= run.finest_level(); ++level) {
+    const auto rest = mesh_or_note(run, rest_file(level), unread);
+    if (!rest || !rest->sewing) break;
+    seams_.emplace(rest->triangles.rows(), seam_sides(*rest));
+  }
   Eigen::AlignedBox3d box;
   for (const Positions* x : all) box.extend(bounding_box(*x));
   std::list<Positions> near;
@@ -84,6 +100,8 @@ Image PictureScene::draw(const TriangleMesh& cloth, bool xray) const {
                   .edges = edges_ && cloth.vertices.rows() <= most_vertices_with_edges,
                   .xray = xray,
                   .floor = floor_};
+  if (const auto seams = seams_.find(cloth.triangles.rows()); seams != seams_.end())
+    drawing.seams = seams->second;
   for (const TriangleMesh& obstacle : obstacles_) drawing.obstacles.push_back(&obstacle);
   return render(drawing, camera_, width_, height_of(width_), cancelled_);
 }

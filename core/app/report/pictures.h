@@ -43,6 +43,7 @@ class PictureScene {
 
  private:
   std::map<const LevelRecord*, TriangleMesh> states_;
+  std::map<Eigen::Index, std::vector<unsigned char>> seams_;  // of each level, by its number of triangles
   std::vector<TriangleMesh> obstacles_;
   Camera camera_;
   std::optional<double> floor_;  // height below everything

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <map>
 
-#include "core/app/view/garment_fields.h"
 #include "core/app/view/view_document.h"
 #include "core/kernel/files/message_text.h"
 #include "core/kernel/plugin/parameters.h"
@@ -21,9 +20,9 @@ struct State {
 };
 using States = std::map<const LevelRecord*, State>;  // the final state of each level that can be shown
 
-/// The fields of garments, and those that metrics of pairs declare colours of.
+/// The fields that metrics of pairs declare colours of.
 std::vector<FieldKind> declared_fields(const RunData& run) {
-  std::vector<FieldKind> kinds = garment_fields();
+  std::vector<FieldKind> kinds;
   for (const DeclaredMetric& metric : run.metrics)
     for (const MetricColours& colours : metric.declaration.colours) {
       const std::string label = colours.label + (colours.other_field.empty() ? " from the finest level" : "");
@@ -67,10 +66,7 @@ States read_states(const RunData& run, const std::vector<Level>& levels, const V
         if (state.x.rows() != levels[level.level].vertex_count()) continue;
         state.fields = document.fields(level.level, state.x);
         for (const VertexField& field : read_ply_fields(run.folder / level.mesh))
-          if (field.name == "contact_pressure")
-            add_contact_pressure(state.fields, field.values);
-          else if (std::ranges::count(garment_fields(), field.name, &FieldKind::name) > 0)
-            state.fields.emplace(field.name, field.values);
+          if (field.name == "contact_pressure") add_contact_pressure(state.fields, field.values);
         try {
           add_declared(run, method, level.level, state);
         } catch (const std::exception& damaged) {
@@ -94,7 +90,7 @@ Json states_json(const RunData& run, const LevelRecord& level, const State& last
   } catch (const std::exception& error) {
     notes.push_back("3D viewer: " + reason_of(error));
   }
-  const std::size_t bytes_of_state = last.x.rows() * (6 + surface_fields().size());
+  const std::size_t bytes_of_state = last.x.rows() * (6 + last.fields.size());
   const std::size_t count = snapshots.count() > 0 ? snapshots.count() - 1 : 0,
                     shown = std::min(count, bytes / bytes_of_state);
   for (std::size_t k = 0; k < shown; ++k) {

@@ -285,12 +285,14 @@ std::vector<fs::path> export_run(const fs::path& folder, const fs::path& file, c
     if (!options.uv_unit.empty()) convert_uv(mesh, options.uv_unit);
     return mesh;
   };
+  const auto fields = [&] {
+    return options.as_read ? VertexFields() : read_ply_fields(run.folder / level.mesh);
+  };
   write_file(file,
-             extension == ".glb" ? gltf_of(run, method, levels, options.frames)
-             : extension == ".vtp"
-                 ? vtp_text(cloth_mesh(run, level), read_ply_fields(run.folder / level.mesh))
+             extension == ".glb"   ? gltf_of(run, method, levels, options.frames)
+             : extension == ".vtp" ? vtp_text(cloth_mesh(run, level), fields())
              : extension == ".obj" ? obj_text(mesh())
-                                   : ply_bytes(mesh()),
+                                   : ply_bytes(mesh(), fields()),
              options.existing());
   return {file};
 }

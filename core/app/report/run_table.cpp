@@ -162,6 +162,7 @@ TableRow row_of(const RunData& run, const MethodRecord& method) {
   row["stability"] = member_of(member_of(last.json, "stability"), "verdict");
   row["lowest_eigenvalue"] = json_of(last.of("stability.lowest_eigenvalue"));
   row["curvature_ratio"] = json_of(last.of("stability.curvature_ratio"));
+  row["force_residual"] = json_of(last.of("force_residual"));
   row["vertices"] = count_of(last.of("vertices"));
   row["steps"] = count_of(method.cost("steps"));
   row["iterations"] = count_of(method.cost("iterations"));
@@ -205,9 +206,9 @@ RunTable table_of(const RunCollection& collection) {
   table.columns = {"sweep", "run"};
   table.keys = varied_keys(collection);
   table.columns.insert(table.columns.end(), table.keys.begin(), table.keys.end());
-  for (const char* column :
-       {"seed", "method", "pass", "status", "stability", "vertices", "steps", "iterations", "shortened_steps",
-        "seconds", "cpu_seconds", "machine", "energy_released", "smallest_gap", "intersections"})
+  for (const char* column : {"seed", "method", "pass", "status", "stability", "vertices", "steps",
+                             "iterations", "shortened_steps", "seconds", "cpu_seconds", "machine",
+                             "energy_released", "smallest_gap", "intersections", "force_residual"})
     table.columns.emplace_back(column);
   const std::vector<DeclaredMetric> metrics = collection.metrics();
   for (const MetricScope scope : {MetricScope::state, MetricScope::pair})

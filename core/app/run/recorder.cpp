@@ -50,6 +50,19 @@ std::vector<std::pair<const char*, std::string>> cells_of(const IterationRow& ro
           {"time", number_cell(row.time, 9)}};
 }
 
+/// The message of a level, and where a garment that is not at rest is farthest from it.
+std::string message_of(const LevelResult& r, const LevelModel& model) {
+  const std::vector<std::string>& pieces = model.level().rest.piece_names;
+  if (pieces.empty() || has_converged(r.outcome) || !r.x.allFinite()) return r.message;
+  Positions force;
+  model.energy_gradient(r.x, force);
+  Eigen::Index vertex = 0;
+  for (Eigen::Index i = 0; i < force.rows(); ++i)
+    if (model.fixed()[i]) force.row(i).setZero();
+  force.rowwise().squaredNorm().maxCoeff(&vertex);
+  return r.message + "; the largest force is at " + garment_place(model.level(), static_cast<int>(vertex));
+}
+
 /// What runs, and where.
 Json program_and_machine() {
   return {{"version", std::string("drape ") + version()},
@@ -216,7 +229,7 @@ Json Recorder::state_entry(const LevelResult& r, const Cost& cost) {
           {"vertices", level.vertex_count()},
           {"triangles", level.triangle_count()},
           {"status", to_string(apart ? r.outcome : Outcome::infeasible)},
-          {"message", apart ? r.message : "the state has intersections; log.jsonl names them"},
+          {"message", apart ? message_of(r, model) : "the state has intersections; log.jsonl names them"},
           {"steps", r.steps},
           {"iterations", r.iterations},
           {"from_initial_state", r.from_initial_state},

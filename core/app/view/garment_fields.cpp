@@ -4,6 +4,7 @@
 #include <cmath>
 #include <optional>
 
+#include "core/kernel/files/string_utils.h"
 #include "core/numerics/elements/green_strain.h"
 
 namespace drape {
@@ -54,6 +55,15 @@ VertexFields garment_fields_at(const Level& level, const Positions& x,
   return {{"stretch_warp", percent(warp)},
           {"stretch_weft", percent(weft)},
           {"ease", 1000 * obstacle_distance(x, obstacles, ease_range)}};
+}
+
+std::string garment_place(const Level& level, int vertex) {
+  const TriangleMesh& cloth = level.rest;
+  if (cloth.piece_names.empty()) return "";
+  std::vector<std::string> pieces;
+  for (const int t : level.topology.vertex_triangles.row(vertex))
+    add_new(pieces, cloth.piece_names[cloth.piece[t]]);
+  return pieces.size() == 1 ? "piece " + pieces[0] : "the seam of " + joined(pieces, ", ", " and ");
 }
 
 Json garment_pieces(const Level& level, const VertexFields& fields, const Eigen::VectorXd& pressure) {

@@ -13,6 +13,10 @@ const std::vector<FieldKind>& garment_fields();
 VertexFields garment_fields_at(const Level& level, const Positions& x,
                                const std::vector<TriangleMesh>& obstacles);
 
+/// "piece front", or "the seam of front and sleeve_left": where a vertex lies in a cloth of flat pieces; ""
+/// in another cloth.
+std::string garment_place(const Level& level, int vertex);
+
 /// Means over each piece of the cloth, and the largest stretches: an entry for each, with its name.
 /// `pressure` is LevelModel::contact_pressure, or empty.
 Json garment_pieces(const Level& level, const VertexFields& fields, const Eigen::VectorXd& pressure);

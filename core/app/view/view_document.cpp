@@ -10,9 +10,12 @@
 #include <set>
 #include <stdexcept>
 
+#include "core/app/view/garment_fields.h"
 #include "core/kernel/files/file.h"
 #include "core/numerics/elements/green_strain.h"
 #include "core/numerics/elements/vertex_fields.h"
+#include "core/numerics/mesh/seams.h"
+#include "core/numerics/mesh/texture_coordinates.h"
 #include "core/numerics/mesh_files/base64.h"
 
 namespace drape {
@@ -47,6 +50,8 @@ ViewDocument::ViewDocument(const std::vector<Level>& levels, const Obstacles& ob
       obstacles_(obstacles),
       keep_(std::move(keep)),
       kinds_(surface_fields()) {
+  if (levels.front().rest.sewing)
+    kinds_.insert(kinds_.end(), garment_fields().begin(), garment_fields().end());
   kinds_.insert(kinds_.end(), further.begin(), further.end());
   for (const Level& level : levels_) {
     const std::string name = "l" + std::to_string(level.index);
@@ -54,6 +59,7 @@ ViewDocument::ViewDocument(const std::vector<Level>& levels, const Obstacles& ob
     level_entries_.push_back(
         {{"vertices", level.vertex_count()}, {"triangles", level.triangle_count()}, {"block", name}});
     if (level.rest.warp.rows() > 0) level_entries_.back()["warp"] = warp_arrows(level);
+    if (level.rest.sewing) add_sewing(level, level_entries_.back());
   }
   for (std::size_t k = 0; k < obstacles_.size(); ++k) {
     const std::string name = "obstacle" + std::to_string(k);
@@ -66,11 +72,33 @@ ViewDocument::ViewDocument(const std::vector<Level>& levels, const Obstacles& ob
   }
 }
 
+/// Adds the seams, as ends of edges, and the flat pieces: their vertices are those of the level, then others,
+/// `copies`, where a seam or a dart divides one.
+void ViewDocument::add_sewing(const Level& level, Json& entry) {
+  for (const int e : seam_edges(level.rest, level.topology))
+    for (int k = 0; k < 2; ++k) entry["seams"].push_back(level.topology.edges(e, k));
+  const UvVertices flat = laid_out(level.rest);
+  const std::string name = entry["block"].get<std::string>() + "-flat";
+  Positions x = Positions::Zero(flat.uv.rows(), 3);
+  x.col(0) = flat.uv.col(0), x.col(2) = flat.uv.col(1);
+  keep_(name, encode_triangles(flat.triangles));
+  keep_(name + "-x", encode_positions(x));
+  entry["flat"] = {
+      {"block", name},
+      {"x", name + "-x"},
+      {"vertices", x.rows()},
+      {"triangles", flat.triangles.rows()},
+      {"copies", std::vector<int>(flat.vertex.begin() + level.vertex_count(), flat.vertex.end())}};
+}
+
 SurfaceFields ViewDocument::fields(int level, const Positions& x, const Obstacles* moved) const {
   const Level& l = levels_[level];
   SurfaceFields all = {{"mean_curvature", mean_curvature(x, l.rest.triangles, l.hinges)},
                        {"stretch", largest_stretch(l, x)}};
   if (with_gaps_) all.emplace("gap", contact_gap(l, x, moved ? *moved : obstacles_, gap_range_));
+  if (l.rest.sewing)
+    for (VertexField& field : garment_fields_at(l, x, moved ? *moved : obstacles_))
+      all.emplace(field.name, std::move(field.values));
   return all;
 }
 

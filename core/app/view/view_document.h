@@ -40,6 +40,8 @@ class ViewDocument {
   Json document(const std::string& title, Json methods) const;
 
  private:
+  void add_sewing(const Level& level, Json& entry);
+
   const std::vector<Level>& levels_;
   bool with_gaps_;
   double gap_range_;  // the range of displayed gaps: a fraction of the rest shape's diagonal [m]

@@ -29,4 +29,11 @@ bool is_seam(const TriangleMesh& mesh, const Topology& topology, int edge) {
          along.cross(a.corner - a.from).z() * along.cross(b.corner - a.from).z() > 0;
 }
 
+std::vector<int> seam_edges(const TriangleMesh& mesh, const Topology& topology) {
+  std::vector<int> seams;
+  for (int e = 0; mesh.sewing && e < topology.edges.rows(); ++e)
+    if (is_seam(mesh, topology, e)) seams.push_back(e);
+  return seams;
+}
+
 }  // namespace drape

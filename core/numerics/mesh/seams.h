@@ -19,4 +19,7 @@ double rest_length(const TriangleMesh& mesh, const Topology& topology, int edge)
 /// side of it, as those of a cushion's two halves may that share their texture coordinates.
 bool is_seam(const TriangleMesh& mesh, const Topology& topology, int edge);
 
+/// The edges that are seams of a cloth of flat pieces; none of another cloth.
+std::vector<int> seam_edges(const TriangleMesh& mesh, const Topology& topology);
+
 }  // namespace drape

@@ -1,6 +1,7 @@
 #include "core/numerics/mesh/texture_coordinates.h"
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 #include <numeric>
 
@@ -71,6 +72,30 @@ UvVertices split_at_seams(const TriangleMesh& mesh) {
   split.uv.resize(static_cast<Eigen::Index>(uv.size()), 2);
   for (std::size_t i = 0; i < uv.size(); ++i) split.uv.row(static_cast<Eigen::Index>(i)) = uv[i];
   return split;
+}
+
+UvVertices laid_out(TriangleMesh cloth) {
+  std::vector<Eigen::AlignedBox2d> boxes(cloth.piece_names.size());
+  cloth.uv *= cloth.sewing->uv_length;
+  for (Eigen::Index t = 0; t < cloth.uv.rows(); ++t)
+    for (int k = 0; k < 3; ++k) boxes[cloth.piece[t]].extend(cloth.uv.block<1, 2>(t, 2 * k).transpose());
+  double area = 0, widest = 0;
+  for (const Eigen::AlignedBox2d& box : boxes)
+    area += box.sizes().prod(), widest = std::max(widest, box.sizes()[0]);
+  const double width = std::max(widest, 1.2 * std::sqrt(area)), apart = 0.04 * width;
+  std::vector<Eigen::RowVector2d> shifts;
+  Eigen::RowVector2d corner(0, 0);  // upper left one of the next piece
+  double height = 0;                // of this row
+  for (const Eigen::AlignedBox2d& box : boxes) {
+    if (corner[0] > 0 && corner[0] + box.sizes()[0] > width)
+      corner = {0, corner[1] - height - apart}, height = 0;
+    shifts.push_back(corner - Eigen::RowVector2d(box.min()[0], box.max()[1]));
+    corner[0] += box.sizes()[0] + apart;
+    height = std::max(height, box.sizes()[1]);
+  }
+  for (Eigen::Index t = 0; t < cloth.uv.rows(); ++t)
+    for (int k = 0; k < 3; ++k) cloth.uv.block<1, 2>(t, 2 * k) += shifts[cloth.piece[t]];
+  return split_at_seams(cloth);
 }
 
 std::optional<PlanarUv> PlanarUv::of(const TriangleMesh& mesh) {

@@ -25,6 +25,10 @@ struct UvVertices {
 };
 UvVertices split_at_seams(const TriangleMesh& mesh);
 
+/// The same of flat pieces that lie side by side in rows, in about a square, each with its size and direction
+/// [m].
+UvVertices laid_out(TriangleMesh cloth);
+
 /// Texture coordinates for a flat mesh that has none of its own: coordinates in its plane over the longer
 /// side of its box there, so from 0 to 1 and without distortion. Seen from the mesh's front, v points up:
 /// along z, or along y where the plane is nearer to horizontal.

@@ -1,0 +1,118 @@
+#include "core/app/report/data_set.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <regex>
+#include <set>
+#include <stdexcept>
+
+#include "core/app/experiment/describe.h"
+#include "core/app/report/report.h"
+#include "core/kernel/files/file.h"
+#include "core/kernel/files/number_text.h"
+#include "core/kernel/plugin/parameters.h"
+#include "core/numerics/mesh_files/io.h"
+#include "core/numerics/mesh_files/io_formats.h"
+
+namespace drape {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Names of the files of a data set.
+class FileNames {
+ public:
+  explicit FileNames(const RunCollection& collection) : collection_(collection) {}
+
+  /// After the variation, without the endings of files in it; then the seed and the method where there are
+  /// several.
+  std::string of(const RunRecord& run, const std::string& method) {
+    const std::string whole = run.folder.parent_path().filename().string();
+    std::string more;
+    if (std::ranges::count(collection_.runs, run.name, &RunRecord::name) > 1)
+      more += "," + run.folder.filename().string();
+    if (run.data->methods.size() > 1) more += "," + method;
+    const std::string name =
+        std::regex_replace(whole, std::regex(R"(\.[A-Za-z]\w*(?=,|$))"), std::string()) + more;
+    return taken_.insert(name).second ? name : whole + more;
+  }
+
+ private:
+  const RunCollection& collection_;
+  std::set<std::string> taken_;
+};
+
+/// The obstacles that a data set has, by their texts.
+class ObstacleFiles {
+ public:
+  ObstacleFiles(fs::path folder, Existing existing) : folder_(std::move(folder)), existing_(existing) {}
+
+  Json names_of(const RunData& run) {
+    Json all = Json::array();
+    for (const ObstacleRecord& obstacle : run.obstacles) {
+      std::string text = obj_text(run.mesh(obstacle.mesh));
+      const std::string next = "obstacle_" + std::to_string(names_.size()) + ".obj";
+      const auto [file, is_new] = names_.try_emplace(std::move(text), next);
+      if (is_new) write_file(folder_ / next, file->first, existing_);
+      all.push_back(file->second);
+    }
+    return all;
+  }
+
+ private:
+  const fs::path folder_;
+  const Existing existing_;
+  std::map<std::string, std::string> names_;
+};
+
+/// What belongs to the OBJ of a method's end.
+Json description_of(const RunData& run, const LevelRecord& end, const TableRow& row) {
+  Json all = row;
+  all["pieces"] = member_of(end.values.json, "pieces");
+  all["experiment"] = json_value(run.config);
+  all["fields"] = Json::object();
+  for (const VertexField& field : read_ply_fields(run.folder / end.mesh)) {
+    Json& values = all["fields"][field.name] = Json::array();
+    for (const double value : field.values)
+      values.push_back(std::isfinite(value) ? Json(parse_number(general_text(value, 6)).value()) : Json());
+  }
+  return all;
+}
+
+}  // namespace
+
+RunTable export_data_set(const fs::path& sweep, const fs::path& folder, const ExportOptions& options) {
+  if (!options.overwrite && fs::exists(folder) && !fs::is_empty(folder))
+    refuse_path(folder, "exists already; name another folder, or write into it with --overwrite");
+  make_folder(folder);
+  const RunCollection collection = read_runs({sweep});
+  RunTable table = table_of(collection);
+  table.columns.insert(table.columns.begin() + 2, "mesh");
+  FileNames names(collection);
+  ObstacleFiles obstacles(folder, options.existing());
+  std::size_t next = 0;
+  for (const RunRecord& run : collection.runs) {
+    if (!run.data) ++next;
+    for (std::size_t m = 0; run.data && m < run.data->methods.size(); ++m) {
+      const MethodRecord& method = run.data->methods[m];
+      TableRow& row = table.rows[next++];
+      const std::vector<const LevelRecord*> levels = method.recorded_levels();
+      if (row["pass"] != true || levels.empty()) continue;
+      const std::string name = names.of(run, method.name);
+      ExportOptions own = options;
+      own.method = method.name;
+      export_run(run.folder, folder / (name + ".obj"), own);
+      row["mesh"] = name + ".obj";
+      Json description = description_of(*run.data, *levels.back(), row);
+      description["obstacles"] = obstacles.names_of(*run.data);
+      write_file(folder / (name + ".json"), json_text(description) + "\n", options.existing());
+    }
+  }
+  write_file(folder / "index.csv", table_text(table, {}, TableFormat::csv), options.existing());
+  write_runs_report({sweep}, folder / "index.html");
+  return table;
+}
+
+}  // namespace drape
