@@ -3,7 +3,10 @@
 import csv
 import os
 import re
+import shutil
+import subprocess
 import sys
+import tempfile
 
 import numpy
 import pytest
@@ -51,6 +54,11 @@ def check_latex(text):
     plain = re.sub(r"\\[&%$#_{}]", "", text)
     assert plain.count("{") == plain.count("}") and plain.count("$") % 2 == 0
     assert not re.search(r"[%#_^]", re.sub(r"\$[^$]*\$", "", plain))
+    if shutil.which("kpsewhich") and not subprocess.run(["kpsewhich", "booktabs.sty"], stdout=subprocess.DEVNULL).returncode:
+        page = "\n".join([r"\documentclass[landscape]{article}", r"\usepackage{booktabs}", r"\begin{document}", text, r"\end{document}", ""])
+        with tempfile.TemporaryDirectory() as folder:
+            made = subprocess.run(["pdflatex", "-halt-on-error", "-output-directory", folder], input=page, capture_output=True, text=True)
+        assert made.returncode == 0, made.stdout
 
 
 def rows_of(file):
