@@ -78,7 +78,7 @@ function curves(run, method, cost, y) {
 function distances(run) {
   const levels = Object.values(run.results.methods).flatMap(method => method.levels || []), recorded = !levels.length || levels.some(level => level.snapshots);
   const plot = distancePlot('distance', 'How soon a method comes near: each point is a state on the way, the larger ones are ends of levels. Lower and further left is better.', 360,
-    {measures: run.measures, rows: run.errors, absent: recorded ? 'errors.csv is missing or empty: a run writes it once all its methods have ended.' : 'No states were recorded in this run (snapshots: 0).'},
+    {measures: run.measures, rows: run.errors, absent: run.results.measured === false ? 'Not measured yet: drape report of the run’s folder does.' : recorded ? 'errors.csv is missing or empty: a run writes it once all its methods have ended.' : 'No states were recorded in this run (snapshots: 0).'},
     (cost, y) => run.order.map((name, k) => ({label: name, ...methodLook(run.styles, name), width: k ? 1.8 : 2.6, points: curves(run, name, cost, y)})));
   plot.draw();
   const {reference = {}} = run.results;

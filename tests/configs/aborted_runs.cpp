@@ -25,7 +25,7 @@ struct FailingExperiment : Scratch {
   }
   /// The methods' results of a run in which some fail.
   nlohmann::json methods(const std::string& options) const {
-    with("run e.yaml --out out --overwrite --no-report " + options);
+    with("run e.yaml --out out --overwrite --no-report --measure " + options);
     const nlohmann::json all = results_in(path / "out");
     CHECK(all["complete"] == true);
     return all["methods"];
@@ -55,7 +55,7 @@ TEST_CASE("A method that throws has failed, with level and cause, and the others
   for (const auto& [throws, cause] : causes) {
     INFO(throws);
     const FailingExperiment folder("level: 1, throws: " + throws);
-    CHECK_THAT(folder.with("run e.yaml --out out --method all --no-report").err,
+    CHECK_THAT(folder.with("run e.yaml --out out --method all --no-report --measure").err,
                Contains("odd       level 1/1 failed       " + cause + "\n"));
     const nlohmann::json all = results_in(folder / "out");
     CHECK(all["complete"] == true);
@@ -141,7 +141,7 @@ TEST_CASE("A folder that is deleted during a run aborts it with its own code, an
     INFO(gone);
     const FailingExperiment folder("level: 1, command: rm -r " + gone);
     const std::string said =
-        folder.with("run e.yaml --out out --method all -q --no-report", drape::exit_aborted).err;
+        folder.with("run e.yaml --out out --method all -q --no-report --measure", drape::exit_aborted).err;
     check_error(said, "cannot write out/levels/odd_l1.ply: No such file or directory");
     CHECK_THAT(said, Contains("; the run is aborted. "));
     CHECK(fs::exists(folder / "out") == (gone != "out"));
@@ -153,14 +153,14 @@ TEST_CASE("A folder that is deleted during a run aborts it with its own code, an
     CHECK_THAT(folder.with("table out --columns status").out, Contains("| converged, aborted |"));
     CHECK_THAT(all["aborted"].get<std::string>(), StartsWith("cannot write out/levels/odd_l1.ply"));
     folder.with("report out --width 90", 0);
-    folder.with("run --resume out --quiet --no-report", drape::exit_aborted);  // fails at the same
+    folder.with("run --resume out --quiet --no-report --measure", drape::exit_aborted);  // fails at the same
   }
 }
 
 TEST_CASE("A run that has lost a file it cannot be resumed without is to be run again") {
   const FailingExperiment folder("level: 1, command: rm out/iterations.csv");
   CHECK(folder
-            .with("run e.yaml --out out --method newton,odd,pcs --checkpoint 0 --quiet --no-report",
+            .with("run e.yaml --out out --method newton,odd,pcs --checkpoint 0 --quiet --no-report --measure",
                   drape::exit_aborted)
             .err ==
         "error: cannot write out/iterations.csv: No such file or directory; the run is aborted. Once the "
@@ -171,7 +171,8 @@ TEST_CASE("A run that has lost a file it cannot be resumed without is to be run 
 TEST_CASE("A full disk aborts the run with its own code; once there is room it can be resumed") {
   const Scratch folder(small_experiment());
   const std::string arguments =
-      " run e.yaml --method all --quiet --no-report --threads 1 --set cloth.columns=24 --set cloth.rows=24 "
+      " run e.yaml --method all --quiet --no-report --measure --threads 1 --set cloth.columns=24 --set "
+      "cloth.rows=24 "
       "--set newton.max_steps=3 --set snapshots=0 --out ";
   drape_ends(arguments + "whole", folder, drape::exit_not_converged);
   // A limit on every file's size stands for the disk. It falls between what is written at the beginning and
@@ -194,7 +195,7 @@ TEST_CASE("A full disk aborts the run with its own code; once there is room it c
   CHECK(all["methods"].size() == 1);  // the others could not be written either
   for (const auto& [name, bytes] : files_in(folder / "out")) CHECK_FALSE(name.ends_with(".part"));
 
-  const std::string resume = "run --resume out --quiet --no-report --threads 1";
+  const std::string resume = "run --resume out --quiet --no-report --measure --threads 1";
   CHECK_THAT(drape_ends(resume, folder, drape::exit_not_converged).err, Catch::Matches(shortfalls));
   CHECK_FALSE(results_in(folder / "out").contains("aborted"));
   check_same_files(folder / "out", folder / "whole", {"levels/pcs_l1.ply", "levels/newton_l1.ply"});
@@ -202,7 +203,7 @@ TEST_CASE("A full disk aborts the run with its own code; once there is room it c
   // Before the first method, and where the rows of iterations.csv no longer fit.
   aborted(largest / 2, arguments + "early");
   CHECK_THAT(aborted(16 * 512,
-                     " run e.yaml --quiet --no-report --method newton --levels 1 --set snapshots=0 "
+                     " run e.yaml --quiet --no-report --measure --method newton --levels 1 --set snapshots=0 "
                      "--set newton.step_size=1e-4 --set newton.step_growth=1 --checkpoint 1e6 --out rows"),
              StartsWith("error: cannot write rows/iterations.csv: "));
 }
@@ -217,8 +218,8 @@ TEST_CASE("Standard output that is lost is an error, but for a run or a sweep, w
     CHECK(ended.exit_code == exit_code);
     CHECK(ended.err == said);
   };
-  for (const char* line : {"run e.yaml --levels 1 --quiet --no-report --out out", "run --resume out",
-                           "sweep s.yaml --quiet --out swept"})
+  for (const char* line : {"run e.yaml --levels 1 --quiet --no-report --measure --out out",
+                           "run --resume out", "sweep s.yaml --quiet --out swept"})
     check_into_full(line, drape::exit_done,
                     "warning: standard output cannot be written to; the results are not affected\n");
   CHECK(results_in(folder / "out")["complete"] == true);

@@ -45,7 +45,8 @@ TEST_CASE("a valid mesh file runs, and its results can be run again from their o
     folder.write("cloth.obj", sheet);
     run_into("first", folder, "--threads 1 --method pcs");
     fs::remove(folder / "cloth.obj");
-    drape_ends("run first/config.yaml --quiet --no-report --threads 1 --method pcs --out second", folder);
+    drape_ends("run first/config.yaml --quiet --no-report --measure --threads 1 --method pcs --out second",
+               folder);
     check_same_files(folder / "first", folder / "second",
                      {"config.yaml", "rest/l0.ply", "levels/pcs_l0.ply", "levels/pcs_l1.ply"});
   }
@@ -163,6 +164,6 @@ TEST_CASE("texture coordinates of the cloth's file reach every export, seams inc
   CHECK(most < 2e-6);
 
   // The results folder's experiment reads rest/l0.ply: the same again.
-  drape_ends("run out/config.yaml -o again -j 1 -q --no-report", folder);
+  drape_ends("run out/config.yaml -o again -j 1 -q --no-report --measure", folder);
   check_same_files(folder / "again", folder / "out", {"rest/l0.ply", "rest/l2.ply", "levels/pcs_l2.ply"});
 }

@@ -26,7 +26,7 @@ methods: {pcs: {}}
 )");
 }
 
-const std::string run_panel = "run e.yaml --quiet --no-report --threads 1 --checkpoint 0 --out ";
+const std::string run_panel = "run e.yaml --quiet --no-report --measure --threads 1 --checkpoint 0 --out ";
 
 }  // namespace
 

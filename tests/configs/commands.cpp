@@ -127,7 +127,7 @@ TEST_CASE("new writes an experiment that passes check and runs, and overwrites n
   CHECK_THAT(shown_by("check first.yaml", folder.path),
              StartsWith("first.yaml: valid. Vertices by level: 900, "));
   const std::string small = " --levels 1 --set cloth.vertices=256 --set newton.force_tolerance=1e-2";
-  shown_by("run first.yaml -q --no-report" + small, folder.path);
+  shown_by("run first.yaml -q --no-report --measure" + small, folder.path);
   CHECK(fs::exists(folder / "results/first/levels/pcs_l0.ply"));
   check_error(refused(folder, "new first"),  // the extension is added
               "first.yaml: exists already; name another file, as in drape new first_2.yaml\n");

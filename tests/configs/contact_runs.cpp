@@ -136,7 +136,7 @@ TEST_CASE("obstacle files are found beside the config, through links too; result
   folder.write("project/configs/e.yaml",
                replaced(experiment_of_tests("contact"), "obstacles: [",
                         "obstacles: [{name: slab, mesh: ../data/slab.obj, translate: [0, 0, -0.03]}, "));
-  const std::string options = " --quiet --no-report --threads 1 --method pcs --out ";
+  const std::string options = " --quiet --no-report --measure --threads 1 --method pcs --out ";
   REQUIRE(drape_with("run ../links/configs/e.yaml" + options + "first", folder / "elsewhere").exit_code == 0);
   const fs::path first = folder / "elsewhere/first", second = folder / "second";
   CHECK_THAT(text_of(first / "config.yaml"),
@@ -159,8 +159,8 @@ TEST_CASE("a result with intersections is infeasible, and the run did not succee
       replaced(small_experiment(), "levels: 2",
                "levels: 2\ncontact: {type: blind, height: -0.05}\ncheck_intersections: every_step"));
   const Ended ended =
-      drape_with("run e.yaml --out out --method all --set newton.step_size=0.02 -q --no-report", folder.path,
-                 "DRAPE_PLUGIN_PATH=" + (folders::test_plugins() / "blind").string());
+      drape_with("run e.yaml --out out --method all --set newton.step_size=0.02 -q --no-report --measure",
+                 folder.path, "DRAPE_PLUGIN_PATH=" + (folders::test_plugins() / "blind").string());
   CHECK(ended.exit_code == 1);
   for (const char* method : {"pcs", "cascadic", "newton"})
     CHECK_THAT(ended.err, Contains("error: " + std::string(method) +

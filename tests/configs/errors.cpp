@@ -165,7 +165,8 @@ TEST_CASE("the lowest of the states that have converged may be the reference, wh
   const Scratch folder(small_experiment());
   const auto run = [&](const std::string& options) {
     const Ended ended = drape_with(
-        "run e.yaml -o out --overwrite --method all -q --no-report --set reference=lowest " + options,
+        "run e.yaml -o out --overwrite --method all -q --no-report --measure --set reference=lowest " +
+            options,
         folder.path);
     REQUIRE(ended.exit_code <= 1);
     return results_in(folder / "out");

@@ -17,14 +17,15 @@ void link_to_victim(const Scratch& folder, const std::string& name, const std::s
 /// A run that was killed on its second level, in `out`.
 void kill_run(const Scratch& folder) {
   DrapeAtWork command(
-      "run e.yaml --out out --method newton --no-report -q --checkpoint 0 --set newton.step_growth=1 "
+      "run e.yaml --out out --method newton --no-report --measure -q --checkpoint 0 --set "
+      "newton.step_growth=1 "
       "--set newton.step_size=1e-4 --set newton.max_steps=60",
       folder);
   wait_for_lines(command, folder / "out/iterations.csv", 10);
   REQUIRE(command.ended_by(SIGKILL).exit_code == 128 + SIGKILL);
 }
 
-const std::string resume = "run --resume out --no-report -q";
+const std::string resume = "run --resume out --no-report --measure -q";
 
 }  // namespace
 

@@ -63,7 +63,7 @@ TEST_CASE("huge triangles beside tiny ones are refined into their strain limit, 
   copy_suite(folder);
   drape_with(
       "run hard/drape.yaml --set 'cloth={shape: file, file: hard/meshes/huge_and_tiny.off}' --out run "
-      "--no-report --set start.perturbation=1e-6 --method " +
+      "--no-report --measure --set start.perturbation=1e-6 --method " +
           solved + " " + options,
       folder.path);
   const nlohmann::json levels = results_in(folder / "run")["methods"][solved]["levels"];

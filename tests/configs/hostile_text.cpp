@@ -19,7 +19,7 @@ TEST_CASE("no command prints the control characters of a name or a file") {
       "check-energy '\x1b[2J'",
       "run --levels 1" + quoted("e") + " -o" + quoted("out"),
       "run --resume" + quoted("out"),
-      "run --levels 1 -q --no-report" + quoted("e") + " -o" + quoted("bare"),
+      "run --levels 1 -q --no-report --measure" + quoted("e") + " -o" + quoted("bare"),
       "report" + quoted("out"),
       "view" + quoted("out"),
       "table" + quoted("out"),

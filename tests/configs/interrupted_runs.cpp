@@ -66,7 +66,8 @@ TEST_CASE("SIGHUP, as of a terminal that is closed, ends a run as SIGTERM does; 
   CHECK(fs::exists(run / "out/checkpoint/state.bin"));
   CHECK(fs::exists(run / "out/report.html"));
   fs::remove_all(run / "out");
-  Command command("trap '' HUP; exec " + drape_command + " " + endless + " -q --no-report", run.path);
+  Command command("trap '' HUP; exec " + drape_command + " " + endless + " -q --no-report --measure",
+                  run.path);
   wait_for_steps(command, run / "out", 5);
   command.send(SIGHUP);
   wait_for_steps(command, run / "out", static_cast<int>(lines_in(run / "out/iterations.csv")) + 20);
@@ -75,7 +76,7 @@ TEST_CASE("SIGHUP, as of a terminal that is closed, ends a run as SIGTERM does; 
 
 TEST_CASE("A run goes on where its standard streams are closed, and where nobody reads its progress") {
   const Scratch folder(small_experiment());
-  const std::string run = drape_command + " run e.yaml --levels 1 --method pcs --no-report ";
+  const std::string run = drape_command + " run e.yaml --levels 1 --method pcs --no-report --measure ";
   REQUIRE(Command(run + "--out closed <&- >&- 2>&-", folder.path).wait().exit_code == 0);
   for (const auto& [name, bytes] : files_in(folder / "closed")) {
     INFO(name);
@@ -88,13 +89,13 @@ TEST_CASE("A run goes on where its standard streams are closed, and where nobody
 
 TEST_CASE("An interrupted run is resumed although its results.json is damaged and its config.yaml is gone") {
   const bool between_renames = GENERATE(false, true);  // of a checkpoint's save
-  EndlessRun run("--no-report --quiet --checkpoint 0");
+  EndlessRun run("--no-report --measure --quiet --checkpoint 0");
   run.command.ended_by(SIGKILL);
   run.write("out/results.json", "");
   const fs::path newest = run / "out/checkpoint/state.bin";
   if (between_renames && fs::exists(newest)) fs::rename(newest, run / "out/checkpoint/previous.bin");
   fs::remove(run / "out/config.yaml");
-  DrapeAtWork resumed("run --resume out --quiet --no-report", run);
+  DrapeAtWork resumed("run --resume out --quiet --no-report --measure", run);
   wait_for_lines(resumed, run / "out/iterations.csv", lines_in(run / "out/iterations.csv") + 4);
   CHECK(resumed.ended_by(SIGINT).exit_code == 130);
   CHECK(results_in(run / "out")["methods"]["pcs"]["status"] == "cancelled");
@@ -127,14 +128,15 @@ TEST_CASE("SIGKILL at any moment leaves complete files, sufficient for a report"
     if (level_lines != 10) continue;
     drape_ends("report out --width 90", folder);
     drape_ends(endless, folder, 2);  // still somebody's results
-    drape_ends(endless + "--overwrite --quiet --no-report --levels 1 --set newton.max_steps=3", folder, 1);
+    drape_ends(endless + "--overwrite --quiet --no-report --measure --levels 1 --set newton.max_steps=3",
+               folder, 1);
     for (const auto& [name, bytes] : files_in(folder / "out")) CHECK_FALSE(name.ends_with(".part"));
   }
   CHECK(levels_read >= 8);
 }
 
 TEST_CASE("a second signal ends a run at once; SIGINT after SIGTERM, as of a sweep, lets it save its state") {
-  EndlessRun twice, swept("--no-report");
+  EndlessRun twice, swept("--no-report --measure");
   deliver(twice.command, SIGTERM);
   const Ended at_once = twice.command.ended_by(SIGTERM);
   CHECK(at_once.exit_code == 128 + SIGTERM);

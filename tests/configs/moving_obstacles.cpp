@@ -107,7 +107,7 @@ TEST_CASE("errors are measured under the last load, whichever method was stopped
    {parameter: energies.gravity.acceleration, times: [0, 1], values: [[0, 0, -9.81], [0, 0, 9.81]]}]},
  newton: {force_tolerance: 1e-4}, reference: {method: whole, force_tolerance: 1e-6},
  methods: {whole: {type: newton}, stopped: {type: newton, newton: {max_steps: 1}}}})");
-  drape_with("run e.yaml --out out --method all --quiet --no-report", folder.path);
+  drape_with("run e.yaml --out out --method all --quiet --no-report --measure", folder.path);
   // Its own end is the reference but for the tighter tolerance.
   const drape::Csv rows(folder / "out/errors.csv");
   double last = 1;

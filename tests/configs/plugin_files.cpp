@@ -35,7 +35,7 @@ const std::string listed = "list energy --plugin ";
 
 TEST_CASE("A plugin's source is compiled, loaded and run, and kept for the next command") {
   const PluginFolder folder;
-  const Ended first = folder.with("run drape.yaml --plugin rubber.cpp -q --no-report -o results");
+  const Ended first = folder.with("run drape.yaml --plugin rubber.cpp -q --no-report --measure -o results");
   CHECK_THAT(first.err, Contains("compiling ") && Contains("rubber.cpp: "));
   CHECK(first.exit_code == 0);
   CHECK(fs::exists(folder / "results/results.json"));

@@ -84,8 +84,10 @@ TEST_CASE("a start in a ball is moved up, no further than needed, and recorded s
       Catch::Matches("start moved by \\(0, 0, 0\\.04[0-9]*\\) m; it touches nothing now\n" + shortfalls));
   const std::string config = text_of(folder / "first/config.yaml");
   CHECK_THAT(config, Contains("translate: [-0.2, -0.2, 0.10"));
-  CHECK_THAT(drape_ends("run first/config.yaml --quiet --no-report --threads 1 --out second", folder, 1).err,
-             Catch::Matches(shortfalls));
+  CHECK_THAT(
+      drape_ends("run first/config.yaml --quiet --no-report --measure --threads 1 --out second", folder, 1)
+          .err,
+      Catch::Matches(shortfalls));
   check_same_files(folder / "first", folder / "second",
                    {"config.yaml", "levels/newton_l0.ply", "levels/newton_l1.ply", "levels/newton_l2.ply"});
 
@@ -231,7 +233,8 @@ TEST_CASE("a cloth drapes over an obstacle that is no surface with one side up, 
   const Scratch folder(wild);
   folder.write("scan.obj", pyramid + faults);
   CHECK_THAT(drape_ends("check e.yaml", folder).out, Contains(said));
-  CHECK_THAT(drape_ends("run e.yaml --out out --no-report --threads 1", folder).err, Contains(said));
+  CHECK_THAT(drape_ends("run e.yaml --out out --no-report --measure --threads 1", folder).err,
+             Contains(said));
   const auto results = results_in(folder / "out");
   CHECK(results.contains("remarks") == !said.empty());
   const auto& level = results["methods"]["newton"]["levels"][0];
@@ -253,9 +256,10 @@ TEST_CASE("cages enclose a repaired obstacle, and its animation moves") {
       replaced(wild, "mesh: scan.obj", "animation: [scan.obj, higher.obj]") +
           "schedule: {steps: 3, keys: [{parameter: obstacles.scan.frame, times: [0, 1], values: [0, 1]}]}\n");
   for (const std::string name : {"caged", "moving"}) {
-    CHECK_THAT(drape_ends("run " + name + ".yaml --out " + name + " --no-report --threads 1", folder).err,
-               Contains("remark: obstacle scan: dropped 1 loose vertex, 1 doubled triangle and 1 "
-                        "triangle without area; kept 1 edge between"));
+    CHECK_THAT(
+        drape_ends("run " + name + ".yaml --out " + name + " --no-report --measure --threads 1", folder).err,
+        Contains("remark: obstacle scan: dropped 1 loose vertex, 1 doubled triangle and 1 "
+                 "triangle without area; kept 1 edge between"));
     const auto level = results_in(folder / name)["methods"]["newton"]["levels"][0];
     CHECK(level["status"] == "converged");
     CHECK(level["intersections"] == 0);

@@ -46,7 +46,7 @@ TEST_CASE("earlier results stay without --overwrite, which removes only a run's 
                                           "errors.csv.part"};
   for (const std::string& name : added) folder.write("out/" + name, "");
   if (!with_results) fs::remove(folder / "out/results.json");
-  const std::string run = "run e.yaml --out out --quiet --no-report --levels 1 --method newton";
+  const std::string run = "run e.yaml --out out --quiet --no-report --measure --levels 1 --method newton";
   check_error(refused(folder, run), "out: holds the results of another run; name another folder ");
   drape_ends(run + " --overwrite", folder);
   const auto files = files_in(folder / "out");
@@ -89,8 +89,9 @@ TEST_CASE("--overwrite removes no file that the new run reads, and may repeat a 
       mesh + ": is read by this experiment, and --overwrite would remove it; copy it, or name another ");
   run_into("out", folder, options + "--set start.file=first/rest/l0.ply");
   fs::copy(folder / "out", folder / "copy", fs::copy_options::recursive);
-  CHECK(drape_ends("run out/config.yaml --overwrite --out out --quiet --no-report " + options, folder).err ==
-        "");
+  CHECK(
+      drape_ends("run out/config.yaml --overwrite --out out --quiet --no-report --measure " + options, folder)
+          .err == "");
   check_same_files(folder / "out", folder / "copy", {"start.ply", "levels/pcs_l0.ply"});
 }
 

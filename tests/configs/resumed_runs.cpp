@@ -89,7 +89,7 @@ TEST_CASE("Damaged and missing files of an interrupted run are restored, bit for
        {"levels/cascadic_l1.ply", "levels/newton_l0.ply", "levels/pcs.pvd", "rest", "fields/pcs_l0_l2.ply"})
     fs::remove_all(folder / "out" / name);
   CHECK_THAT(
-      drape_ends("run --resume out --quiet --no-report", folder, 1).err,  // out of steps
+      drape_ends("run --resume out --quiet --no-report --measure", folder, 1).err,  // out of steps
       Catch::Matches(
           "warning: damaged or missing files were written again: rest/l0.ply, rest/l1.ply, rest/l2.ply, "
           "levels/pcs_l0.ply, levels/pcs_l2.ply, levels/cascadic_l1.ply, levels/cascadic_l1.vtp, "
@@ -106,7 +106,7 @@ TEST_CASE("Damaged snapshots are skipped in errors.csv, without other effects") 
   const Scratch folder(small_experiment());
   run_until("levels/cascadic_l0.ply", folder, experiment_in(folder / "e.yaml"));
   folder.damage("out/snapshots/pcs_l0.bin");
-  drape_ends("run --resume out --quiet --no-report", folder);
+  drape_ends("run --resume out --quiet --no-report --measure", folder);
   CHECK_THAT(text_of(folder / "out/log.jsonl"), Contains("snapshots/pcs_l0.bin: is damaged"));
   CHECK_THAT(text_of(folder / "out/errors.csv"), !Contains("\npcs,0,") && Contains("\npcs,1,"));
 }
@@ -156,17 +156,18 @@ TEST_CASE("A run whose schedule selects ever more pinned vertices resumes while 
  schedule: {steps: 4, equilibrate: true, keys: [
    {parameter: pins.0.translate, times: [0, 1], values: [[-0.2, -0.2, 0.12], [-0.2, -0.2, 0.05]]},
    {parameter: pins.0.radius, times: [0, 1], values: [0.05, 0.12]}]}})");
-  DrapeAtWork command("run e.yaml --out out --checkpoint 0 -q --no-report", folder);
+  DrapeAtWork command("run e.yaml --out out --checkpoint 0 -q --no-report --measure", folder);
   wait_for_steps(command, folder / "out", 320);
   REQUIRE(command.ended_by(SIGINT).exit_code == 130);
-  CHECK(drape_with("run --resume out -q --no-report", folder.path).exit_code != 2);
+  CHECK(drape_with("run --resume out -q --no-report --measure", folder.path).exit_code != 2);
   CHECK(is_complete(folder / "out"));
 }
 
 TEST_CASE("A run warm-starts from a saved state under changed parameters, in another folder") {
   const Scratch folder;
   interrupt_sheets(folder);
-  const std::string flow = "run --resume out --quiet --no-report --threads 1 --set newton.max_steps=4 ";
+  const std::string flow =
+      "run --resume out --quiet --no-report --measure --threads 1 --set newton.max_steps=4 ";
   const auto first_row = [&](const std::string& out) {
     const std::string text = text_of(folder / (out + "/iterations.csv"));
     return text.substr(text.find('\n') + 1, 10);

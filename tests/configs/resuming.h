@@ -64,11 +64,12 @@ inline drape::RunOptions silent(const fs::path& out) {
 
 /// A run of the sheets into a folder, with a checkpoint at every step.
 inline std::string sheets_run(const std::string& out) {
-  return "run e.yaml --method all --quiet --no-report --threads 1 --checkpoint 0 --set newton.max_steps=8 "
+  return "run e.yaml --method all --quiet --no-report --measure --threads 1 --checkpoint 0 --set "
+         "newton.max_steps=8 "
          "--set start.translate=[-0.2,-0.2,0.1015] --out " +
          out;
 }
-inline const std::string go_on = "run --resume out --quiet --no-report --threads 1 --checkpoint 0";
+inline const std::string go_on = "run --resume out --quiet --no-report --measure --threads 1 --checkpoint 0";
 
 /// Waits until the run has taken that many steps.
 inline void wait_for_steps(Command& command, const fs::path& out, int steps) {

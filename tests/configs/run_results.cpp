@@ -49,8 +49,9 @@ std::string methods_of(const std::string& methods, const std::string& options) {
   const Scratch folder(replaced(small_experiment(),
                                 "methods:\n  pcs: {}\n  cascadic: {}\n  newton: {}\nreference: newton\n",
                                 "methods: " + methods + "\n"));
-  const Ended ended = drape_with(
-      "run e.yaml --out out --levels 1 --set newton.max_steps=1 --no-report " + options, folder.path);
+  const Ended ended =
+      drape_with("run e.yaml --out out --levels 1 --set newton.max_steps=1 --no-report --measure " + options,
+                 folder.path);
   CHECK(ended.exit_code == (fs::exists(folder / "out") ? 1 : 2));
   if (ended.exit_code == 2) return ended.err;
   std::string names;
@@ -78,7 +79,7 @@ TEST_CASE("pcs runs unless methods are named, and the user learns of the others"
 TEST_CASE("a run of several methods ends with a table; -v shows every iteration, -q nothing") {
   const Scratch folder(small_experiment());
   const auto said = [&](const std::string& options) {
-    return drape_with("run e.yaml --no-report --overwrite -j 1 -o out " + options, folder.path).err;
+    return drape_with("run e.yaml --no-report --measure --overwrite -j 1 -o out " + options, folder.path).err;
   };
   const std::string both = said("--method pcs,newton");
   CHECK_THAT(
@@ -221,9 +222,9 @@ TEST_CASE("the saved config has the defaults, and reproduces itself and the mesh
                            "\n    acceleration: [0, 0, -9.81]\n", "\n  - type: stretch\n"})
     CHECK_THAT(config, Contains(line));
   const Scratch folder;
-  drape_ends(
-      "run " + (whole_run() / "config.yaml").string() + " --out out --method all --threads 1 -q --no-report",
-      folder);
+  drape_ends("run " + (whole_run() / "config.yaml").string() +
+                 " --out out --method all --threads 1 -q --no-report --measure",
+             folder);
   std::vector<std::string> names = {"config.yaml"};
   for (const auto& [name, bytes] : files_in(whole_run()))
     if (name.starts_with("levels/") && name.ends_with(".ply")) names.push_back(name);
@@ -240,7 +241,7 @@ TEST_CASE("a run takes as many threads as there are cores that it may use") {
     if (CPU_ISSET(cpu, &before)) CPU_SET(cpu, &first);
   REQUIRE(sched_setaffinity(0, sizeof first, &first) == 0);
   const Scratch folder(small_experiment());
-  const Ended ended = drape_with("run e.yaml --out out --quiet --no-report", folder.path);
+  const Ended ended = drape_with("run e.yaml --out out --quiet --no-report --measure", folder.path);
   sched_setaffinity(0, sizeof before, &before);
   REQUIRE(ended.exit_code == 0);
   const nlohmann::json machine = results_in(folder / "out")["machine"];

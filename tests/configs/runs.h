@@ -13,7 +13,8 @@ using Catch::StartsWith;
 /// Runs e.yaml without a report into the folder `out`; it must end with this exit code.
 inline Ended run_into(const std::string& out, const Scratch& folder, const std::string& options = "",
                       int exit_code = 0) {
-  return drape_ends("run e.yaml --quiet --no-report --out " + out + " " + options, folder, exit_code);
+  return drape_ends("run e.yaml --quiet --no-report --measure --out " + out + " " + options, folder,
+                    exit_code);
 }
 
 /// The results of a run, in its folder.

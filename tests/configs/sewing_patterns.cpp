@@ -76,7 +76,7 @@ TEST_CASE("a pattern in JSON is the one in YAML, whatever else its file has") {
       "\"back\"]}, \"parameters\": {}, \"parameter_order\": [], \"properties\": {\"curvature_coords\": "
       "\"relative\", "
       "\"normalize_panel_translation\": false, \"units_in_meter\": 100, \"normalized_edge_loops\": true}}\n");
-  const std::string run = "--quiet --no-report -j 1 --set newton.force_tolerance=1e9 ";
+  const std::string run = "--quiet --no-report --measure -j 1 --set newton.force_tolerance=1e9 ";
   drape_ends("run e.yaml --out a " + run, folder);
   drape_ends("run e.yaml --set cloth.file=p.json --out b " + run, folder);
   check_same_files(folder / "a", folder / "b", {"rest/l0.ply", "rest/l1.ply"});
@@ -88,7 +88,7 @@ TEST_CASE("pins select the edges of a label on every level, and the run's own co
   run_into("out", folder, "-j 1");
   const std::string config = text_of(folder / "out/config.yaml");
   CHECK_THAT(config, Contains("label_edges: [") && Contains("label: rim"));
-  drape_ends("run out/config.yaml --quiet --no-report -j 1 --out again", folder);
+  drape_ends("run out/config.yaml --quiet --no-report --measure -j 1 --out again", folder);
   check_same_files(folder / "out", folder / "again",
                    {"rest/l0.ply", "levels/pcs_l0.ply", "levels/pcs_l1.ply"});
   check_error(refused(folder, "check e.yaml --set pins.0.label=waist"),

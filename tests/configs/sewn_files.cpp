@@ -193,7 +193,7 @@ TEST_CASE("A sewn run can be run again from its own config, and goes out as its 
              Contains("16 vertices of the cloth's file were joined to others") &&
                  Contains("cloth: 2 flat pieces, 0.8 m of seams; one of the texture coordinates is 0.001 m"));
   run_into("out", folder, "-j 1");
-  drape_ends("run out/config.yaml --quiet --no-report -j 1 --out again", folder);
+  drape_ends("run out/config.yaml --quiet --no-report --measure -j 1 --out again", folder);
   check_same_files(folder / "out", folder / "again",
                    {"config.yaml", "rest/l0.ply", "levels/pcs_l0.ply", "levels/pcs_l1.ply"});
 

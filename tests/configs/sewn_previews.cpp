@@ -10,7 +10,7 @@ namespace {
 
 /// RMS distance [m] of the preview of pcs to its end, over that of cascadic; none of their states intersects.
 double preview_ratio(const Scratch& folder, const std::string& arguments) {
-  drape_ends("run " + arguments + " --method all --no-report -q -j 1 --out out", folder);
+  drape_ends("run " + arguments + " --method all --no-report --measure -q -j 1 --out out", folder);
   const nlohmann::json methods = json_in(folder / "out/results.json")["methods"];
   const auto distance = [&](const char* method) {
     for (const auto& level : methods[method]["levels"]) CHECK(level["intersections"] == 0);

@@ -44,8 +44,9 @@ TEST_CASE("every shipped experiment passes drape check as it is, and converges, 
     INFO(config);
     const Scratch folder;
     shown_by("check " + config.string(), folder.path);
-    shown_by("run " + config.string() + " --out out --threads 1 --quiet --no-report" + shrunk(config),
-             folder.path);
+    shown_by(
+        "run " + config.string() + " --out out --threads 1 --quiet --no-report --measure" + shrunk(config),
+        folder.path);
     CHECK(fs::exists(folder / "out/results.json"));
   }
 }

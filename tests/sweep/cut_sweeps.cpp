@@ -60,7 +60,7 @@ TEST_CASE("a sweep that was killed runs an experiment that has changed since fro
 TEST_CASE("a run that another process is resuming stays, and is one of the results of the next sweep") {
   const bool changes = GENERATE(false, true);
   const CutSweep folder(SIGKILL);
-  DrapeAtWork by_hand("run --resume " + slow_run + " --no-report", folder);
+  DrapeAtWork by_hand("run --resume " + slow_run + " --no-report --measure", folder);
   by_hand.wait_until("it resumes", [&] { return folder.log().find("run_resumed") != std::string::npos; });
   by_hand.send(SIGSTOP);
   folder.write(slow_run + "/notes", "mine");

@@ -29,7 +29,7 @@ TEST_CASE("a fit finds the factor that gave a drape coefficient, and resumes") {
   const std::string stiffer =
       "--set material.warp_bending=6.957e-5 --set material.weft_bending=4.281e-5 "
       "--set material.bias_bending=7.425e-5";  // three times
-  drape_ends("run e.yaml --no-report -o stiffer " + stiffer, folder);
+  drape_ends("run e.yaml --no-report --measure -o stiffer " + stiffer, folder);
   const double target =
       json_in(folder / "stiffer/results.json")["methods"]["pcs"]["levels"][0]["drape_coefficient"];
 
@@ -48,7 +48,7 @@ TEST_CASE("a fit finds the factor that gave a drape coefficient, and resumes") {
   CHECK(result["samples"][0]["factor"] == 1);
 
   // The fitted experiment is the best sample's.
-  drape_ends("run fit/fitted.yaml --no-report -o again", folder);
+  drape_ends("run fit/fitted.yaml --no-report --measure -o again", folder);
   const json again = json_in(folder / "again/results.json")["methods"]["pcs"]["levels"][0];
   CHECK(again["drape_coefficient"] == result["median"]);
 

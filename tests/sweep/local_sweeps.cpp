@@ -87,7 +87,7 @@ TEST_CASE("24 runs give the same results with one worker and with two, and are n
 
   // A run can be repeated by hand from the file beside it.
   const std::string run = "one/" + runs[23]["folder"].get<std::string>();
-  drape_ends("run " + run + ".yaml --out by_hand --method all --quiet --no-report", folder);
+  drape_ends("run " + run + ".yaml --out by_hand --method all --quiet --no-report --measure", folder);
   CHECK(text_of(folder / "by_hand/levels/pcs_l1.ply") == text_of(folder / (run + "/levels/pcs_l1.ply")));
 }
 

@@ -16,10 +16,12 @@
 #include "core/app/report/run_collection.h"
 #include "core/app/report/run_export.h"
 #include "core/app/report/run_table.h"
+#include "core/app/run/runner.h"
 #include "core/app/sweep/process.h"
 #include "core/kernel/files/file.h"
 #include "core/kernel/files/message_text.h"
 #include "core/kernel/files/string_utils.h"
+#include "core/kernel/plugin/loader.h"
 #include "core/kernel/plugin/parameters.h"
 #include "core/numerics/mesh_files/io.h"
 #include "core/numerics/mesh_files/io_formats.h"
@@ -108,10 +110,26 @@ except ImportError as error:
 sys.exit(figures.main())
 )";
 
+/// The runs, with the measures that they have left.
+RunCollection measured(const Folders& folders) {
+  Registry registry;
+  std::vector<std::string> warnings;
+  RunCollection runs = measured_runs(
+      folders,
+      [&]() -> const Registry& {
+        if (registry.of_kind(Metric::kind).empty()) load_plugins(registry, plugin_directories());
+        return registry;
+      },
+      warnings);
+  warn_of(warnings);
+  return runs;
+}
+
 /// Becomes python3, whose exit code is the command's. Throws std::runtime_error for a folder without results,
 /// and if python3 does not start.
 int make_figures(const std::string& folder, const std::string& out, const std::vector<std::string>& options) {
   require_run_or_sweep(folder);
+  measured({folder});
   const char* given = std::getenv("PYTHONPATH");
   std::string path = given ? given : "";
   // The package lies beside bin/ in the build tree, in lib/ once installed, and around the command in a
@@ -144,6 +162,7 @@ int report(const Folders& folders, fs::path page, std::optional<int> picture_wid
   if (page.empty()) page = folders.front() / "report.html";
   if (folders.size() > 1 && page == folders.front() / "report.html")
     throw std::runtime_error("several folders: name the page with --out, as in --out results/together.html");
+  measured(folders);
   if (several) {
     write_runs_report(folders, page);
   } else {
@@ -154,14 +173,14 @@ int report(const Folders& folders, fs::path page, std::optional<int> picture_wid
 }
 
 int print_comparison(const Folders& runs, const std::vector<std::string>& bounds) {
-  const RunCollection before = read_runs({runs[0]}), after = read_runs({runs[1]});
+  const RunCollection before = measured({runs[0]}), after = measured({runs[1]});
   const Comparison comparison = compare(before, after, bounds);
   std::cout << printable_lines(comparison.text);
   return comparison.broken ? exit_bound_broken : exit_done;
 }
 
 int print_table(const Folders& folders, const std::vector<std::string>& columns, const std::string& format) {
-  const RunTable table = table_of(read_runs(folders));
+  const RunTable table = table_of(measured(folders));
   const std::string text = table_text(table, columns, formats.at(format));
   std::cout << (format == "json" ? text : printable_lines(text));
   return table.all_pass() ? exit_done : exit_not_converged;

@@ -64,6 +64,9 @@ int run(RunRequest& r, const Experiment& experiment, const Scene& scene,
   const bool stopped = stop_signal() != 0 || (view && view->stop_requested());
   if (r.methods.size() > 1 && r.verbosity != Verbosity::quiet && !stopped)
     std::cerr << printable_lines(methods_text(table_of(read_runs({r.out}))));
+  if (r.verbosity != Verbosity::quiet && member_of(complete_results(r.out), "measured") == false)
+    std::cerr << "drape report " << printable(r.out.string())
+              << " measures how near the preview is to the end, and draws pictures\n";
   if (r.report)
     std::cout << "report: " << printable((r.out / "report.html").string()) << "\n";
   else
@@ -95,6 +98,7 @@ int run_config(RunRequest& r, const Registry& registry) {
 /// Resumes an interrupted run in its folder.
 int resume(RunRequest& r, const Registry& registry) {
   r.out = r.resumed;
+  r.measure = r.measure || !complete_results(r.out).is_null();  // all that a complete run can go on to
   std::vector<std::string> warnings;
   ConfigErrors errors;
   std::optional<SavedRun> saved = read_saved_run(r.out, registry, r.large_memory(), warnings, errors);
@@ -209,6 +213,11 @@ void add_run_command(Commands& commands) {
       .add_flag("--view-keep", r.keep_view, "with --view: keep serving the view after the run, until Ctrl-C")
       ->needs(show);
   command.add_flag("!--no-report", r.report, "write no report.html and pictures");
+  r.measure = false;
+  command.add_flag(
+      "--measure", r.measure,
+      "measure previews and errors and draw pictures at once; a run of one method leaves them to "
+      "the first report, table, figure or comparison that asks for them");
 }
 
 }  // namespace drape

@@ -147,15 +147,26 @@ void resume(const fs::path& folder, const py::object& on_iteration, const py::ob
   });
 }
 
+/// With the measures that runs have left.
+RunCollection measured(const fs::path& folder) {
+  std::vector<std::string> warnings;
+  RunCollection runs = without_gil([&] {
+    return measured_runs(
+        {folder}, []() -> const Registry& { return registry(); }, warnings);
+  });
+  for (const std::string& warning : warnings) warn(warning);
+  return runs;
+}
+
 void bind_results(py::module_& m) {
   m.def("_resume", &resume, py::arg("folder"), py::arg("on_iteration"), py::arg("on_level"),
         py::arg("progress"), py::arg("report"), py::arg("allow_memory"));
   m.def(
       "_table",
-      [](const fs::path& folder) { return table_text(table_of(read_runs({folder})), {}, TableFormat::json); },
+      [](const fs::path& folder) { return table_text(table_of(measured(folder)), {}, TableFormat::json); },
       py::arg("folder"), "The rows of `drape table FOLDER --format json`.");
   m.def(
-      "_summary", [](const fs::path& folder) { return json_text(table_json(read_runs({folder}))); },
+      "_summary", [](const fs::path& folder) { return json_text(table_json(measured(folder))); },
       py::arg("folder"),
       "Columns, rows, units of varied keys, and the summary of rows over starts, as JSON.");
   m.def(

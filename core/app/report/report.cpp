@@ -164,7 +164,12 @@ std::vector<std::string> write_report(const fs::path& folder, const std::functio
   const RunCollection collection = read_runs({folder});
   refuse_unwritable(folder, "copy the folder to where it can, and name the copy");
   const RunData& run = *collection.runs.front().data;
-  PictureSet set = draw_pictures(run, cancelled, picture_width);
+  PictureSet set;
+  if (cancelled && member_of(run.results, "measured") == false)
+    set.notes.push_back("The preview was not measured and no picture was drawn: drape report " +
+                        folder.string() + " does both.");
+  else
+    set = draw_pictures(run, cancelled, picture_width);
   const ReportView view = report_view(run);
   for (const std::string& note : view.notes) add_new(set.notes, note);
   const Json data = {{"kind", "run"},

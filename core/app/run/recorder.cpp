@@ -311,8 +311,9 @@ void Recorder::level_finished(const LevelResult& r) {
   exclude(watch);
 }
 
-void Recorder::run_finished(bool complete) {
+void Recorder::run_finished(bool complete, bool measured) {
   results_["complete"] = complete;
+  if (!measured) results_["measured"] = false;
   results_["ended"] = wall_clock();
   save();
   log("run_finished", {{"complete", complete}});

@@ -69,14 +69,16 @@ class Recorder : public Observer {
     s_.overhead += work.seconds;
     s_.cpu -= work.cpu_seconds;
   }
-  /// Evaluates the metrics on all finished levels and pairs of them, and writes results.json. A failed method
-  /// keeps the results of its earlier levels.
-  void method_finished(const std::vector<LevelResult>& results, const std::optional<MethodFailure>& failure);
+  /// Evaluates the metrics on all finished levels and, if `pairs`, on pairs of them, and writes results.json.
+  /// A failed method keeps the results of its earlier levels.
+  void method_finished(const std::vector<LevelResult>& results, const std::optional<MethodFailure>& failure,
+                       bool pairs);
   /// Finds the reference, if necessary by a further solve under `observer`, and measures the errors of every
   /// method's finest state and of every snapshot. After a `cancelled` run it solves nothing further. Returns
   /// false if the observer requested a stop meanwhile.
   bool measure_errors(Observer& observer, bool cancelled);
-  void run_finished(bool complete);
+  /// A run that was not `measured` has neither measured pairs nor errors yet.
+  void run_finished(bool complete, bool measured);
 
   void level_started(int level) override;
   void iteration(const IterationRow& row, const Positions& x) override;
@@ -123,6 +125,8 @@ class Recorder : public Observer {
   Json compare(int level, const Positions& x, const Positions& other, VertexFields* fields = nullptr);
   /// A coarse state, prolonged, against a finer one of its method; writes the fields on the finest level.
   Json pair_entry(const RecordedState& coarse, const RecordedState& fine);
+  /// The levels of the current method against each other, and the scene's start against them.
+  void measure_pairs(const std::vector<LevelResult>& results);
   /// All states on the finest level.
   std::vector<const RecordedState*> finest_states() const;
   /// The finest state that the experiment chooses as reference; null without one.

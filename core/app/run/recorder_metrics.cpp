@@ -76,8 +76,21 @@ Json Recorder::pair_entry(const RecordedState& coarse, const RecordedState& fine
   return row;
 }
 
+void Recorder::measure_pairs(const std::vector<LevelResult>& results) {
+  Json& consistency = method_entry()["consistency"];
+  std::vector<Json> of_start;  // the start compared with each level's state
+  for (const LevelResult& r : results)
+    of_start.push_back(&r == &results.front() ? Json() : compare(r.level, r.x, scene_.starts[r.level]));
+  for (std::size_t c = 0; c < results.size(); ++c)
+    for (std::size_t f = c + 1; f < results.size(); ++f) {  // a method may skip levels
+      consistency.push_back(pair_entry({s_.method, results[c].level, results[c].x},
+                                       {s_.method, results[f].level, results[f].x}));
+      consistency.back()["of_start"] = of_start[f];
+    }
+}
+
 void Recorder::method_finished(const std::vector<LevelResult>& results,
-                               const std::optional<MethodFailure>& failure) {
+                               const std::optional<MethodFailure>& failure, bool pairs) {
   Json& entry = method_entry();
   // A level that failed during recording may have left an entry.
   while (entry["levels"].size() > results.size()) entry["levels"].erase(entry["levels"].size() - 1);
@@ -94,15 +107,7 @@ void Recorder::method_finished(const std::vector<LevelResult>& results,
           at_dotted(state, v.name) = v.value;
   }
   write_collection(s_.method);
-  std::vector<Json> of_start;  // the start compared with each level's state
-  for (const LevelResult& r : results)
-    of_start.push_back(&r == &results.front() ? Json() : compare(r.level, r.x, scene_.starts[r.level]));
-  for (std::size_t c = 0; c < results.size(); ++c)
-    for (std::size_t f = c + 1; f < results.size(); ++f) {  // a method may skip levels
-      entry["consistency"].push_back(pair_entry({s_.method, results[c].level, results[c].x},
-                                                {s_.method, results[f].level, results[f].x}));
-      entry["consistency"].back()["of_start"] = of_start[f];
-    }
+  if (pairs) measure_pairs(results);
   if (!s_.intersection_free) worst = Outcome::infeasible;
   entry["status"] = failure ? failed : to_string(worst);
   if (failure) {

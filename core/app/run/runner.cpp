@@ -101,7 +101,7 @@ bool run(const Experiment& experiment, const Scene& scene, const RunOptions& opt
                     options.verbosity, scene.load_stepping.get(), changing);
   RunObserver observer(experiment, scene, folder, recorder, progress, options, begun);
 
-  bool cancelled = false;
+  bool cancelled = false, later = false;
   for (int m = begun.method; m < static_cast<int>(begun.methods.size()) && !cancelled; ++m) {
     const std::string& name = begun.methods[m];
     const Solver& solver = experiment.solver_of(name);
@@ -136,15 +136,18 @@ bool run(const Experiment& experiment, const Scene& scene, const RunOptions& opt
       cancelled = observer.stop_requested();
     }
     const std::vector<LevelResult>& results = observer.now().state.finished;
-    recorder.method_finished(results, failure);
     for (const LevelResult& r : results) cancelled = cancelled || r.outcome == Outcome::cancelled;
+    // The last checkpoint, from which the run can go on to measure, is that of the method's last level.
+    later = !options.measure && !cancelled && !failure && begun.methods.size() == 1 && !scene.reference &&
+            solver.can_resume();
+    recorder.method_finished(results, failure, !later);
   }
   UnrecordedObserver unrecorded(progress, observer);
-  const bool measured = recorder.measure_errors(unrecorded, cancelled);
+  const bool measured = later || recorder.measure_errors(unrecorded, cancelled);
   for (const auto& [metric, cause] : recorder.not_measured()) progress.not_measured(metric, cause);
   const bool complete = !cancelled && measured;
-  recorder.run_finished(complete);
-  if (complete) remove_checkpoints(folder.path());
+  recorder.run_finished(complete, !later);
+  if (complete && !later) remove_checkpoints(folder.path());
   if (options.report) report_on(folder, [&] { return observer.stop_requested(); });
   const bool good = recorder.all_converged();
   if (options.view)
@@ -202,6 +205,35 @@ bool resume_experiment(const Experiment& experiment, const Scene& scene, const R
       std::fprintf(stderr, "warning: %s\n", written_again_text(recorder.restored()).c_str());
     return run(experiment, scene, options, folder, recorder, checkpoint, true);
   });
+}
+
+RunCollection measured_runs(const std::vector<std::filesystem::path>& folders,
+                            const std::function<const Registry&()>& plugins,
+                            std::vector<std::string>& warnings) {
+  RunCollection runs = read_runs(folders);
+  RunOptions silently;
+  silently.verbosity = Verbosity::quiet;
+  silently.report = false;
+  bool any = false;
+  for (const RunRecord& run : runs.runs) {
+    if (!run.data || member_of(run.data->results, "measured") != false) continue;
+    any = true;
+    std::string cause;
+    try {
+      ConfigErrors errors;
+      std::optional<SavedRun> saved =
+          read_saved_run(run.folder, plugins(), LargeMemory::allowed, warnings, errors);
+      if (!errors.empty())
+        cause = errors.front().message;
+      else if (saved->interrupted)
+        resume_experiment(saved->experiment, *saved->scene, silently, std::move(*saved->interrupted));
+    } catch (const std::exception& error) {
+      cause = reason_of(error);
+    }
+    if (!cause.empty())
+      warnings.push_back("what the run in " + run.folder.string() + " left to measure is missing: " + cause);
+  }
+  return any ? read_runs(folders) : runs;
 }
 
 }  // namespace drape

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "core/app/report/run_collection.h"
 #include "core/app/run/progress.h"
 #include "core/app/run/saved_run.h"
 #include "core/app/scene/scene.h"
@@ -20,10 +21,13 @@ struct RunOptions {
   bool overwrite = false;                     ///< replace the results of an earlier run in `out`
   Verbosity verbosity = Verbosity::progress;  ///< what standard error shows
   bool report = true;                         ///< write report.html and its pictures at the end
-  double checkpoint = 5;                      ///< checkpoint interval [s]; 0 saves at every step
-  int first_level = 0;                        ///< first level of every method
-  std::string warm_started_from;              ///< origin of a warm start, in words; empty without one
-  std::function<bool()> stop;                 ///< polled after every step; may be empty
+  /// Measure pairs of states and errors at once. Otherwise a run with nothing to compare with, of one method
+  /// and no reference, leaves them and its pictures to measured_runs.
+  bool measure = true;
+  double checkpoint = 5;          ///< checkpoint interval [s]; 0 saves at every step
+  int first_level = 0;            ///< first level of every method
+  std::string warm_started_from;  ///< origin of a warm start, in words; empty without one
+  std::function<bool()> stop;     ///< polled after every step; may be empty
   std::function<void(const std::string&)> method_started;  ///< called as a method begins; may be empty
   Observer* observer = nullptr;  ///< sees every event after it is recorded; may be null
   LiveView* view = nullptr;      ///< shows the run and may stop it; may be null
@@ -46,5 +50,12 @@ bool run_experiment(const Experiment& experiment, const Scene& scene, const RunO
 /// used. Throws std::runtime_error, before it writes, if the checkpoint does not fit; RunAborted after that.
 bool resume_experiment(const Experiment& experiment, const Scene& scene, const RunOptions& options,
                        InterruptedRun interrupted);
+
+/// Reads runs and sweeps, as read_runs, after measuring what runs of one method have left: once, since the
+/// results are stored. `plugins` is called if there is such a run. One that cannot be measured, as in a
+/// folder that is not writable, appends a warning.
+RunCollection measured_runs(const std::vector<std::filesystem::path>& folders,
+                            const std::function<const Registry&()>& plugins,
+                            std::vector<std::string>& warnings);
 
 }  // namespace drape

@@ -141,7 +141,8 @@ std::vector<FileFingerprint> fingerprints_of_files(const ConfigNode& saved, cons
 
 bool is_complete(const fs::path& folder) {
   if (!has_checkpoint(folder)) return member_of(read_results(folder), "complete") == true;
-  return !complete_results(folder).is_null();  // damaged ones are written again from the checkpoint
+  const Json results = complete_results(folder);  // damaged ones are written again from the checkpoint
+  return !results.is_null() && member_of(results, "measured") != false;
 }
 
 InterruptedRun interrupted_run(RunFolder run, std::vector<std::string>& warnings) {

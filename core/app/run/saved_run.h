@@ -23,7 +23,7 @@ std::vector<std::filesystem::path> files_of(const ConfigNode& saved);
 std::vector<FileFingerprint> fingerprints_of_files(const ConfigNode& saved,
                                                    const std::filesystem::path& folder);
 
-/// Whether the run in the folder is complete.
+/// Whether the run in the folder is complete, and has measured what there is to measure.
 bool is_complete(const std::filesystem::path& folder);
 
 /// An interrupted run to be resumed: its folder, locked, with the checkpoint to resume it from.

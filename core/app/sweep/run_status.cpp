@@ -86,8 +86,13 @@ std::vector<std::string> command(const RunFiles& files, const SweepOptions& opti
   const std::string folder = std::filesystem::absolute(files.folder);  // may begin with "-"
   const std::string config = std::filesystem::absolute(files.config());
   // The sweep has checked the memory.
-  std::vector<std::string> all = {own_program(),    "run",       "--quiet",
-                                  "--allow-memory", "--threads", std::to_string(options.threads)};
+  std::vector<std::string> all = {own_program(),
+                                  "run",
+                                  "--quiet",
+                                  "--allow-memory",
+                                  "--measure",
+                                  "--threads",
+                                  std::to_string(options.threads)};
   if (!options.report) all.emplace_back("--no-report");
   if (resumes)
     all.insert(all.end(), {"--resume", folder});

@@ -89,8 +89,8 @@ TEST_CASE("grain: a run's files have it, and its own config.yaml does not turn i
         "grain_regions: [{lower: [0, 0, -1], upper: [0.5, 1, 1], grain: 40}]}"}) {
     INFO(cloth);
     folder.write("own.yaml", cloth_experiment(cloth, "pins: [{point: [0, 0, 0]}]\nnewton: {max_steps: 1}\n"));
-    drape_with("run own.yaml --out out --overwrite --quiet --no-report", folder.path);
-    drape_with("run out/config.yaml --out again --overwrite --quiet --no-report", folder.path);
+    drape_with("run own.yaml --out out --overwrite --quiet --no-report --measure", folder.path);
+    drape_with("run out/config.yaml --out again --overwrite --quiet --no-report --measure", folder.path);
     for (const std::string level : {"/rest/l0.ply", "/rest/l1.ply"}) {
       const TriangleMesh rest = read_mesh(folder / ("out" + level));
       CHECK(rest.warp.rows() == rest.triangles.rows());
