@@ -19,6 +19,22 @@ function arrows(x, warp, length) {
   return new THREE.BufferGeometry().setFromPoints(points);
 }
 
+/// The ground below a view: nothing but the shadow that `map` holds, as it is seen from above, with soft borders.
+function ground() {
+  const material = new THREE.ShaderMaterial({transparent: true, depthWrite: false, uniforms: {map: {value: null}},
+    vertexShader: 'varying vec2 place; void main() { place = uv; gl_Position = projectionMatrix * modelViewMatrix * vec4(position, 1.0); }',
+    fragmentShader: `
+      uniform sampler2D map;
+      varying vec2 place;
+      void main() {
+        float dark = 0.0;
+        for (int i = -4; i <= 4; ++i)
+          for (int j = -4; j <= 4; ++j) dark += texture2D(map, place + 0.008 * vec2(float(i), float(j))).r;
+        gl_FragColor = vec4(0.0, 0.0, 0.0, 0.3 * dark / 81.0);
+      }`});
+  return new THREE.Mesh(new THREE.PlaneGeometry(1, 1), material);
+}
+
 export class Scene {
   /// Throws without WebGL.
   constructor(canvas, labels) {
@@ -38,6 +54,8 @@ export class Scene {
     this.solid.uniforms.back.value.set(.45, .47, .5);
     // What lies on an obstacle is drawn in front of it, without speckles.
     Object.assign(this.solid, {polygonOffset: true, polygonOffsetFactor: 2, polygonOffsetUnits: 2});
+    this.shade = new THREE.MeshBasicMaterial({color: 0xffffff, side: THREE.DoubleSide});
+    this.sun = new THREE.OrthographicCamera();
     this.lines = new THREE.LineBasicMaterial({color: 0xb3261e, visible: false});
     this.seams = new THREE.LineBasicMaterial({color: 0x3a2d22});
     this.lookAt([0, 0, 0], 1);
@@ -107,8 +125,8 @@ export class Scene {
 
   /// Sets the number of views.
   setViews(count) {
-    while (this.views.length < count) this.views.push({scene: new THREE.Scene(), mesh: null, obstacles: []});
-    this.views.length = count;
+    while (this.views.length < count) this.views.push({scene: new THREE.Scene(), mesh: null, obstacles: [], ground: ground(), shadow: new THREE.WebGLRenderTarget(256, 256)});
+    for (const {shadow} of this.views.splice(count)) shadow.dispose();
     this.layOut();
   }
   /// Shows obstacles in a view.
@@ -218,6 +236,33 @@ export class Scene {
     this.draw();
   }
 
+  /// Lays the ground below what a view has near its cloth, with the shadow of light from above, if that has changed.
+  cast(view) {
+    const meshes = view.flat ? [] : [view.mesh, ...view.obstacles].filter(mesh => mesh), shapes = meshes.map(mesh => mesh.userData.x), {target: [x, y, z], radius: r} = this.home;
+    if (view.cast?.length === shapes.length && shapes.every((shape, k) => shape === view.cast[k])) return;
+    view.cast = shapes;
+    let floor = Infinity;
+    for (const shape of shapes)
+      for (let i = 0; i < shape.length; i += 3)
+        if (Math.hypot(shape[i] - x, shape[i + 1] - y, shape[i + 2] - z) < 1.5 * r) floor = Math.min(floor, shape[i + 2]);
+    view.scene.remove(view.ground);
+    if (!isFinite(floor)) return;
+    Object.assign(this.sun, {left: -2 * r, right: 2 * r, top: 2 * r, bottom: -2 * r, near: 0, far: 20 * r});
+    this.sun.position.set(x, y, floor + 10 * r);
+    this.sun.updateProjectionMatrix();
+    view.scene.overrideMaterial = this.shade;
+    this.renderer.setRenderTarget(view.shadow);
+    this.renderer.setClearColor(0);
+    this.renderer.clear();
+    this.renderer.render(view.scene, this.sun);
+    this.renderer.setRenderTarget(null);
+    view.scene.overrideMaterial = null;
+    view.ground.material.uniforms.map.value = view.shadow.texture;
+    view.ground.scale.set(4 * r, 4 * r, 1);
+    view.ground.position.set(x, y, floor - .002 * r);
+    view.scene.add(view.ground);
+  }
+
   /// The picture as a PNG file.
   async picture() {
     this.render(2);
@@ -242,6 +287,7 @@ export class Scene {
     if (ratio !== this.renderer.getPixelRatio()) this.renderer.setPixelRatio(ratio);
     const camera = this.camera;
     camera.aspect = this.panel.width / this.panel.height;
+    this.views.forEach(view => this.cast(view));
     this.renderer.setClearColor(getComputedStyle(this.canvas.parentElement).backgroundColor);
     const whole = [0, 0, this.panel.width * this.columns, this.panel.height * this.rows];
     this.renderer.setScissor(...whole);
