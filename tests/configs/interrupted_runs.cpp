@@ -152,7 +152,7 @@ TEST_CASE("a second signal ends a run at once while metrics and the report are m
   const Scratch folder(small_experiment());
   // A metric of neighbourhoods of thousands of vertices each, which takes seconds.
   DrapeAtWork command(
-      "run e.yaml --out out --method newton --threads 1 --levels 2 --set cloth.columns=75 --set "
+      "run e.yaml --measure --out out --method newton --threads 1 --levels 2 --set cloth.columns=75 --set "
       "cloth.rows=75 --set 'metrics=[{type: curvature_consistency, rings: 50}]' "
       "--set snapshots=0 --set newton.max_steps=2 --set newton.force_tolerance=1e9",
       folder);

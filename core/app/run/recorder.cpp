@@ -6,6 +6,7 @@
 #include "core/app/experiment/declared_metrics.h"
 #include "core/app/files/json_file.h"
 #include "core/app/files/machine.h"
+#include "core/app/report/run_data.h"
 #include "core/app/run/recorder_files.h"
 #include "core/app/view/garment_fields.h"
 #include "core/kernel/files/file.h"
@@ -115,8 +116,9 @@ Recorder::Recorder(const RunFolder& folder, const Experiment& experiment, const 
   results_ = parse_json(std::exchange(s_.results, ""));
   const Json now = program_and_machine(),
              before = results_.contains("resumed") ? results_["resumed"].back() : results_;
+  const bool solved = !complete_results(folder.path()).is_null();  // only measures are left
   for (const auto& [key, value] : now.items())
-    if (member_of(before, key) != value) {
+    if (!solved && member_of(before, key) != value) {
       results_["resumed"].push_back(now);
       break;
     }
