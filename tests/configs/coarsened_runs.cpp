@@ -3,6 +3,8 @@
 #include "core/numerics/mesh_files/io.h"
 #include "core/numerics/patterns/generate.h"
 #include "tests/configs/resuming.h"
+#include "tests/support/solve.h"
+#include "tests/support/tube_dress.h"
 
 using namespace drape;
 
@@ -56,4 +58,60 @@ TEST_CASE("check prints the levels under the cloth's mesh") {
   CHECK_THAT(drape_ends("check e.yaml", folder).out,
              Catch::Contains(", 400\n") && Catch::Contains("level 0 under the cloth's mesh: ") &&
                  Catch::Contains(" edges, smallest angle "));
+}
+
+TEST_CASE("The number of coarser levels follows from the vertices that the coarsest one should have") {
+  const Scratch folder;
+  write_panel(folder);
+  const auto levels = [&](const std::string& hierarchy) {
+    const Experiment e = experiment_in(folder / "e.yaml", {{"hierarchy", hierarchy}});
+    return std::pair(e.parameters.hierarchy.coarsen, e.parameters.levels);
+  };
+  CHECK(levels("{coarsest: 100}") == std::pair(1, 1));
+  CHECK(levels("{coarsest: 25}") == std::pair(2, 1));
+  CHECK(levels("{coarsest: 390}") == std::pair(0, 1));
+  CHECK(levels("{coarsest: 100, coarsen: 1}") == std::pair(1, 1));
+  CHECK_THROWS_WITH(levels("{coarsest: 100, coarsen: 2}"),
+                    Catch::Contains("asks for 2 coarser levels by \"coarsen\", and for 1 by \"coarsest\""));
+}
+
+TEST_CASE("A refined cushion has levels below it, although few vertices make its panels touch") {
+  const Scratch folder;
+  const fs::path config = folders::source() / "configs/cushion.yaml";
+  write_mesh(folder / "cushion.obj", scene_of(experiment_in(config))->hierarchy.levels[2].rest);
+  Solved s{experiment_in(config, {{"cloth.file", (folder / "cushion.obj").string()},
+                                  {"levels", "1"},
+                                  {"hierarchy", "{coarsen: 2}"}}),
+           nullptr,
+           {}};
+  s.scene = scene_of(s.experiment);
+  run_method(s, "pcs");
+  REQUIRE(s.levels.size() == 3);
+  for (const LevelResult& level : s.levels) {
+    INFO(level.message);
+    CHECK(level.message.empty());
+    CHECK(level.outcome == Outcome::converged);
+    for (const auto& contact : s.scene->models[level.level]->contacts())
+      CHECK(contact->intersections(level.x).empty());
+  }
+}
+
+TEST_CASE("A garment with levels below it is dressed on the coarsest, and each finer one starts from it") {
+  const Scratch folder;
+  TubeDress tube;
+  tube.write(folder,
+             "hierarchy: {coarsen: 1}\n"
+             "pins: [{region: box, lower: [-1, -1, 0.099], upper: [1, -0.01, 1]}]\n"
+             "material: {density: 300, thickness: 5e-4, membrane_modulus: 4e5, bending_modulus: 1e5}\n"
+             "energies: [neo_hookean, hinge, gravity]\n");
+  Solved s{experiment_in(folder / "e.yaml", {{"methods", "{pcs: {}}"}}), nullptr, {}};
+  s.scene = scene_of(s.experiment);
+  run_method(s);
+  REQUIRE(s.levels.size() == 2);
+  for (const LevelResult& level : s.levels) {
+    INFO(level.message);
+    CHECK(level.message.empty());
+    CHECK(level.outcome == Outcome::converged);
+    CHECK(level.from_initial_state == (level.level == 0));
+  }
 }

@@ -222,6 +222,19 @@ TEST_CASE("A dressing starts from the noise of its seed") {
   CHECK((one - two).cwiseAbs().maxCoeff() > 1e-4);
 }
 
+TEST_CASE("A garment that is dressed on a finer level alone is held where the sewing has left it") {
+  const Scratch folder;
+  small_tube().write(folder, held);
+  Solved s{experiment_in(folder / "e.yaml", {{"levels", "2"}}), nullptr, {}};
+  s.scene = scene_of(s.experiment);
+  run_method(s);
+  REQUIRE(s.levels.size() == 1);
+  INFO(s.levels[0].message);
+  CHECK(s.levels[0].outcome == Outcome::converged);
+  for (const DirichletVertex& d : s.model().dirichlet())
+    CHECK(std::abs(d.target.y()) < 0.7 * TubeDress().apart);  // not where it was placed
+}
+
 TEST_CASE("A dressing has the same bits on any number of threads") {
   const Scratch folder;
   small_tube().write(folder, cloth);

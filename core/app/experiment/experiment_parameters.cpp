@@ -259,6 +259,10 @@ void HierarchyParameters::declare(Declaration<HierarchyParameters>& d) {
        "number of levels that are coarser than the cloth's mesh, whose vertices they share; each has about a "
        "quarter of the next one's")
       .between(0, 8);
+  d.add("coarsest", &HierarchyParameters::coarsest,
+        "in place of `coarsen`: about how many vertices the coarsest level has, within a factor of 2; 0: as "
+        "`coarsen` says")
+      .between(0, bounds::most_vertices);
   d.add("multigrid", &HierarchyParameters::multigrid,
         "whether meshes below the coarsest level are made for `linear_solver: multigrid`, down to 2,000 "
         "vertices; nothing is solved on them");

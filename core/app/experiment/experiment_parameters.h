@@ -199,7 +199,7 @@ enum class IntersectionCheck { every_level, every_step };
 
 /// Levels below the cloth's own mesh.
 struct HierarchyParameters {
-  int coarsen = 0;
+  int coarsen = 0, coarsest = 0;
   bool multigrid = false;
   static void declare(Declaration<HierarchyParameters>& d);
 };

@@ -1,5 +1,9 @@
+#include <algorithm>
+#include <cmath>
 #include <set>
+#include <utility>
 
+#include "core/app/experiment/cloth.h"
 #include "core/app/experiment/declared_metrics.h"
 #include "core/app/experiment/read_experiment.h"
 #include "core/app/files/yaml_file.h"
@@ -42,14 +46,32 @@ std::string label_of(const ConfigNode& node) {
   return name && name->kind == ConfigNode::Kind::scalar ? name->scalar : node.plugin_name();
 }
 
+/// Sets `coarsen` by the number of vertices that the coarsest level should have.
+void set_coarsen(Experiment& e, ConfigErrors& errors) {
+  HierarchyParameters& hierarchy = e.parameters.hierarchy;
+  if (hierarchy.coarsest == 0) return;
+  const int asked = std::exchange(hierarchy.coarsen, 0);
+  const std::vector<double> vertices = estimated_vertices(e.parameters);
+  if (vertices.empty()) return;  // checked_cloth reports what is wrong
+  hierarchy.coarsen =
+      std::clamp(static_cast<int>(std::lround(std::log2(vertices[0] / hierarchy.coarsest) / 2)), 0, 8);
+  if (asked > 0 && asked != hierarchy.coarsen)
+    errors.push_back({e.location_of("hierarchy"), "\"hierarchy\" asks for " + std::to_string(asked) +
+                                                      " coarser levels by \"coarsen\", and for " +
+                                                      std::to_string(hierarchy.coarsen) +
+                                                      " by \"coarsest\"; give one of them"});
+  set_path(e.resolved, "hierarchy.coarsen", ConfigNode::of(hierarchy.coarsen));
+}
+
 void make_refiner(Experiment& e, ConfigErrors& errors) {
+  set_coarsen(e, errors);
   ConfigNode& node = e.parameters.refiner;
   const HierarchyParameters& hierarchy = e.parameters.hierarchy;
-  const bool coarsens = hierarchy.coarsen > 0 || hierarchy.multigrid;
+  const bool coarsens = hierarchy.coarsen > 0 || hierarchy.multigrid || hierarchy.coarsest > 0;
   // Flat pieces are refined at edge midpoints.
   if (node.kind == ConfigNode::Kind::null)
     node = ConfigNode::of(coarsens ? "coarsen" : e.parameters.cloth.is_sewn() ? "midpoint" : default_refiner);
-  if (hierarchy.coarsen > 0 && !e.source.find("levels")) {
+  if ((hierarchy.coarsen > 0 || hierarchy.coarsest > 0) && !e.source.find("levels")) {
     e.parameters.levels = 1;
     set_path(e.resolved, "levels", ConfigNode::of(e.parameters.levels));
   }

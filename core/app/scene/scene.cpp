@@ -12,6 +12,7 @@
 #include "core/app/scene/scene_summary.h"
 #include "core/kernel/files/message_text.h"
 #include "core/kernel/files/number_text.h"
+#include "core/numerics/dressing/implicit_smoothing.h"
 #include "core/numerics/mesh/check.h"
 #include "core/numerics/mesh/same_entries.h"
 #include "core/numerics/mesh/unjoined_borders.h"
@@ -86,6 +87,21 @@ Positions make_start(const Positions& rest, const Positions& shape, const StartP
     x.row(i) = s.transformed(shape.row(i), across).transpose();
   }
   return x;
+}
+
+/// The start of a level. Where so few vertices make panels cut through each other that the cloth's own mesh
+/// keeps apart, the level below it starts smoothed, with pinned vertices in their places, by as little as
+/// leaves nothing that intersects.
+Positions uncrossed_start(const LevelModel& model, Positions start) {
+  const auto is_free = [&](const Positions& x) {
+    return std::ranges::all_of(model.contacts(),
+                               [&](const auto& contact) { return contact->intersections(x).empty(); });
+  };
+  if (model.level().cloth_vertices.empty() || is_free(start)) return start;
+  for (const double time : {0.03, 0.1, 0.3, 1.0, 2.0, 4.0})
+    if (const Positions x = smoothed(model.level().rest.triangles, start, time, model.fixed()); is_free(x))
+      return x;
+  return start;
 }
 
 /// The state in the file that the experiment's `reference` names: a mesh, or the reference.ply of a run's
@@ -240,8 +256,10 @@ std::unique_ptr<Scene> build_scene(const Experiment& e, ConfigErrors& errors, La
       errors.push_back({e.location_of("energies"), message_in_flight()});
       return nullptr;
     }
-    if (intersecting == IntersectingStart::refused && !p.dress.is_asked())
+    if (intersecting == IntersectingStart::refused && !p.dress.is_asked()) {
+      scene->starts.back() = uncrossed_start(*scene->models.back(), std::move(scene->starts.back()));
       refuse_intersecting_start(e, *scene->models.back(), scene->starts.back(), errors);
+    }
     if (!errors.empty()) return nullptr;
   }
   scene->following = following_vertices(e, *scene, errors);

@@ -85,6 +85,15 @@ void check_on_levels(const Experiment& e, const Scene& scene, const LoadSchedule
   }
 }
 
+/// Of the positions of a level's vertices, those of level 0, which are among them.
+Positions at_coarsest(const Hierarchy& hierarchy, const Positions& x, int level) {
+  const Level& coarsest = hierarchy.levels[0];
+  Positions own(coarsest.vertex_count(), 3);
+  for (int v = 0; v < coarsest.vertex_count(); ++v)
+    own.row(v) = x.row(hierarchy.levels[level].own_vertex(coarsest.cloth_vertex(v)));
+  return own;
+}
+
 /// Load stepping along a scene's schedule: how far it has come, and the load and model of each level. A
 /// level's model is made when it is asked for.
 class ScheduleStepping final : public LoadStepping {
@@ -97,6 +106,7 @@ class ScheduleStepping final : public LoadStepping {
         dress_(experiment.parameters.dress),
         has_sewn_pins_(dress_.is_asked() && !schedule_.first()->parameters->pins.empty()),
         first_start_(scene.starts[0]),
+        hierarchy_(scene.hierarchy),
         load_(schedule_.first()) {
     for (const auto& model : scene.models) levels_.push_back({load_, load_, model});
   }
@@ -192,7 +202,7 @@ class ScheduleStepping final : public LoadStepping {
     if (fraction < 1 && values == load_->values) return {0, {}};  // less than the numbers can express
     std::shared_ptr<const LoadState> next = load_at(std::move(values));
     if (has_sewn_pins_ && next->parameters->dress.loads > 0 && load_->parameters->dress.loads == 0)
-      next = with_sewn_at(*next, x);
+      next = with_sewn_at(*next, at_coarsest(hierarchy_, x, level));
     const std::shared_ptr<const LevelModel> now = model(level);
     std::shared_ptr<const LevelModel> then = schedule_.model(*next, level, *now);
     if (std::string refused = strain_limit_violations(then->limits(), x, 1); !refused.empty())
@@ -234,6 +244,7 @@ class ScheduleStepping final : public LoadStepping {
   const DressParameters dress_;
   const bool has_sewn_pins_;     // the dressing decides where pins hold
   const Positions first_start_;  // of the coarsest level [m]
+  const Hierarchy& hierarchy_;
   int increment_ = 0;
   std::shared_ptr<const LoadState> load_;
   std::vector<LoadedLevel> levels_;

@@ -22,16 +22,22 @@ class Laplacian {
 
   void add_edge(int i, int j, double weight) {
     add(i, i, weight), add(j, j, weight), add(std::min(i, j), std::max(i, j), -weight);
+    edges_.push_back({i, j, weight});
   }
 
-  /// (M + L)⁻¹ M x.
-  Positions solve(const Positions& x) const {
+  /// (M + L)⁻¹ M x, with the rows of x whose flag in `fixed` is set as they are.
+  Positions solve(const Positions& x, const std::vector<char>& fixed) const {
     BlockCholesky factor;
-    factor.analyse(matrix_.pattern, std::vector<char>(mass_.size(), 0));
-    Positions solution;
-    if (!factor.factorise(matrix_, Eigen::VectorXd::Zero(mass_.size())) ||
-        !factor.solve(mass_.asDiagonal() * x, solution))
+    factor.analyse(matrix_.pattern, fixed);
+    Positions right = mass_.asDiagonal() * x, solution;
+    for (const auto& [i, j, weight] : edges_) {
+      if (fixed[i]) right.row(j) += weight * x.row(i);
+      if (fixed[j]) right.row(i) += weight * x.row(j);
+    }
+    if (!factor.factorise(matrix_, Eigen::VectorXd::Zero(mass_.size())) || !factor.solve(right, solution))
       throw std::runtime_error("the surface cannot be smoothed: its coordinates are too large or too small");
+    for (Eigen::Index i = 0; i < x.rows(); ++i)
+      if (fixed[i]) solution.row(i) = x.row(i);
     return solution;
   }
 
@@ -41,8 +47,14 @@ class Laplacian {
     for (int c = 0; c < 3; ++c) block[4 * c] += value;
   }
 
+  struct Edge {
+    int i, j;
+    double weight;
+  };
+
   BlockMatrix matrix_;
   const Eigen::VectorXd& mass_;
+  std::vector<Edge> edges_;
 };
 
 }  // namespace
@@ -81,15 +93,16 @@ Positions contracted(const TriangleMesh& mesh, double time) {
       system.add_edge(mesh.triangles(t, k), mesh.triangles(t, (k + 1) % 3),
                       time * (sine > 0 ? cotangent : least_cotangent) / 2);
     }
-  return system.solve(x);
+  return system.solve(x, std::vector<char>(x.rows(), 0));
 }
 
-Positions smoothed(const Triangles& triangles, const Positions& x, double time) {
+Positions smoothed(const Triangles& triangles, const Positions& x, double time,
+                   const std::vector<char>& fixed) {
   const Eigen::VectorXd ones = Eigen::VectorXd::Ones(x.rows());
   Laplacian system(triangles, ones);
   const Topology topology = Topology::of(triangles, static_cast<int>(x.rows()));
   for (const auto& edge : topology.edges.rowwise()) system.add_edge(edge[0], edge[1], time);
-  return system.solve(x);
+  return system.solve(x, fixed.empty() ? std::vector<char>(x.rows(), 0) : fixed);
 }
 
 }  // namespace drape

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <vector>
+
 #include "core/kernel/interfaces/triangle_mesh.h"
 
 namespace drape {
@@ -14,7 +16,8 @@ double surface_area(const TriangleMesh& mesh);
 Positions contracted(const TriangleMesh& mesh, double time);
 
 /// (I + time L)⁻¹ x, L the graph's Laplacian: long edges share their length with their neighbours. n×3 [m];
-/// `time` [1].
-Positions smoothed(const Triangles& triangles, const Positions& x, double time);
+/// `time` [1]. Vertices with a flag in `fixed`, which has n or none, stay.
+Positions smoothed(const Triangles& triangles, const Positions& x, double time,
+                   const std::vector<char>& fixed = {});
 
 }  // namespace drape

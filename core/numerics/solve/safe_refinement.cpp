@@ -8,6 +8,7 @@
 
 #include "core/numerics/elements/stretch_penalty.h"
 #include "core/numerics/model/stretch_limit.h"
+#include "core/numerics/solve/lift_off_folds.h"
 #include "core/numerics/solve/newton.h"
 
 namespace drape {
@@ -188,7 +189,15 @@ LevelResult refine_safely(const Problem& problem, int level, const Positions& x,
   bool is_feasible = model.contacts().empty() && model.limits().empty();
   if (!is_feasible) {
     refined.x = problem.hierarchy.midpoints[level] * x;
-    if (!problem.hierarchy.splits(level) && !is_intersection_free(model, refined.x)) {
+    if (problem.hierarchy.splits(level)) {
+      // the surface has not moved
+    } else if (std::optional<Positions> lifted = lifted_off_folds(model, refined.x);
+               lifted && left_behind(model.level(), *lifted, refined.x) == 0) {
+      if (refined.x != *lifted) {
+        refined.x = target = std::move(*lifted);
+        model.set_dirichlet(target);
+      }
+    } else {
       refined.x = problem.starts[level + 1];
       goal = target;
       if (!is_intersection_free(model, refined.x)) {  // under a schedule obstacles have moved
