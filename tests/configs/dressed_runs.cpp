@@ -290,4 +290,12 @@ TEST_CASE("What cannot be dressed is refused in a sentence") {
       refused(small_tube(), std::string(cloth) +
                                 "schedule: {keys: [{parameter: friction, times: [0, 1], values: [0, 1]}]}\n"),
       Catch::Contains("\"dress\" makes the schedule itself"));
+  for (const std::string key : {"placed", "loads"}) {  // which only that schedule sets
+    const Scratch folder;
+    small_tube().write(folder, cloth);
+    folder.write("e.yaml", replaced(text_of(folder / "e.yaml"), "dress: body.obj",
+                                    "dress: {body: body.obj, " + key + ": 0.5}"));
+    CHECK_THAT(refusal_of([&] { experiment_in(folder / "e.yaml"); }),
+               Catch::Contains("unknown key \"" + key + "\" in dress"));
+  }
 }

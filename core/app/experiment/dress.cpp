@@ -72,13 +72,20 @@ void DressParameters::declare(Declaration<DressParameters>& d) {
         "stretched beyond this once it is sewn; 0.5 is by half")
       .unit("1")
       .between(0.01, 10);
-  d.add("placed", &DressParameters::placed,
-        "weight of the placed shape's metric in the pieces' rest shape; the phases set it, from 0.99 to 0")
-      .unit("1")
-      .between(0, 1);
-  d.add("loads", &DressParameters::loads, "factor on loads; the phases set it, from 0 to 1")
-      .unit("1")
-      .between(0, 1);
+}
+
+const Schema& scheduled_schema() {
+  static const Schema schema = [] {
+    Declaration<DressParameters> dress;
+    DressParameters::declare(dress);
+    dress.add("placed", &DressParameters::placed).between(0, 1);
+    dress.add("loads", &DressParameters::loads).between(0, 1);
+    Schema all = experiment_schema();
+    for (Parameter& p : all.parameters)
+      if (p.name == "dress") p.section = std::make_shared<const Schema>(std::move(dress.schema));
+    return all;
+  }();
+  return schema;
 }
 
 void apply_dress(ConfigNode& experiment, ConfigErrors& errors) {

@@ -21,7 +21,9 @@ struct DressParameters : FileCoordinates {
   int growth = 10, sewing = 30;
   double largest_stretch = 0.5;  ///< of a sewn garment, as Tightness::stretch
   int tightening = 0;            ///< increments in which strain limits come down; the schedule sets it
-  double placed = 0, loads = 1;  ///< which the phases' schedule changes
+  // Set by the phases' schedule alone: the weight of the placed shape's metric in the pieces' rest shape,
+  // from 0.99 to 0, and a factor on loads, from 0 to 1.
+  double placed = 0, loads = 1;
 
   bool is_asked() const { return !obstacle.empty(); }
   static void declare(Declaration<DressParameters>& d);

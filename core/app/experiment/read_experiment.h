@@ -10,6 +10,9 @@ namespace drape {
 /// read_keys reports faults of the keys.
 void set_first_keys(ConfigNode& source);
 
+/// The experiment's schema with the numbers of `dress` that its own schedule sets and no file can.
+const Schema& scheduled_schema();
+
 /// Why friction is refused where no contact model has any, with a remedy.
 std::string refusal_of_friction(const Registry& registry);
 

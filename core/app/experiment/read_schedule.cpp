@@ -101,7 +101,7 @@ class KeyReader {
   void add_target(ScheduleKey& key, LoadPart part, std::size_t item, const std::vector<std::string>& words) {
     const PluginParameters own = parameters_of(e_, part, item);
     const auto numbers =
-        DeclaredNumbers::find(own.entry ? own.entry->schema : experiment_schema(), own.values.get(), words);
+        DeclaredNumbers::find(own.entry ? own.entry->schema : scheduled_schema(), own.values.get(), words);
     if (numbers && numbers->count() == key.values[0].size()) key.targets.push_back({part, item, *numbers});
   }
 
@@ -187,7 +187,7 @@ class KeyReader {
 
   void check_value(const KeyTarget& target, const std::vector<double>& value, ConfigErrors& own) {
     PluginParameters changed = parameters_of(e_, target.part, target.item);
-    const Schema& schema = changed.entry ? changed.entry->schema : experiment_schema();
+    const Schema& schema = changed.entry ? changed.entry->schema : scheduled_schema();
     changed.values = schema.copy(changed.values.get());
     target.numbers.set(changed.values.get(), value.data(), own);
     if (!own.empty() || !changed.entry) return;
