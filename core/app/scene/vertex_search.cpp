@@ -125,12 +125,10 @@ std::vector<int> VertexSearch::selected(const VertexSelection& selection) const 
     return vertices_of_piece(selection, level_);
   std::vector<int> among = candidates(selection);
   if (selection.region == "nearest") {
-    Eigen::Index nearest = 0;
-    (coarsest_.rest.vertices(among, Eigen::all).rowwise() - selection.point.transpose())
-        .rowwise()
-        .squaredNorm()
-        .minCoeff(&nearest);
-    return {level_.own_vertex(coarsest_.cloth_vertex(among[nearest]))};
+    const int nearest = *std::ranges::min_element(among, {}, [&](int v) {
+      return (coarsest_.rest.vertices.row(v) - selection.point.transpose()).squaredNorm();
+    });
+    return {level_.own_vertex(coarsest_.cloth_vertex(nearest))};
   }
   constexpr double rounding = 1e-12;  // round-off must not exclude vertices on a region's boundary
   std::erase_if(among, [&](int v) {
