@@ -15,6 +15,17 @@ class DisjointSets {
     return i;
   }
   void unite(int i, int j) { parent_[find(i)] = find(j); }
+  /// For each number that of its set, from 0 in the order of their first elements.
+  std::vector<int> numbered() {
+    std::vector<int> of_set(parent_.size(), -1), all;
+    int count = 0;
+    for (int i = 0; i < static_cast<int>(parent_.size()); ++i) {
+      int& own = of_set[find(i)];
+      if (own < 0) own = count++;
+      all.push_back(own);
+    }
+    return all;
+  }
 
  private:
   std::vector<int> parent_;

@@ -15,25 +15,20 @@ namespace drape {
 
 std::vector<int> join_vertices(TriangleMesh& mesh, double tolerance) {
   const auto n = static_cast<int>(mesh.vertices.rows());
-  std::vector<int> by_x(n), joined(n);
-  std::iota(joined.begin(), joined.end(), 0);
-  if (!(tolerance > 0)) return joined;
-  by_x = joined;
+  std::vector<int> by_x(n), kept;  // of each set the first vertex
+  std::iota(by_x.begin(), by_x.end(), 0);
+  if (!(tolerance > 0)) return by_x;
   std::ranges::stable_sort(by_x, {}, [&](int v) { return mesh.vertices(v, 0); });
   DisjointSets sets(n);
   for (int i = 0; i < n; ++i)
     for (int j = i + 1; j < n && mesh.vertices(by_x[j], 0) - mesh.vertices(by_x[i], 0) <= tolerance; ++j)
       if ((mesh.vertices.row(by_x[j]) - mesh.vertices.row(by_x[i])).norm() <= tolerance)
         sets.unite(by_x[i], by_x[j]);
-  std::vector<int> number(n, -1), kept;  // of each set's first vertex
-  for (int v = 0; v < n; ++v) {
-    int& of_set = number[sets.find(v)];
-    if (of_set == -1) of_set = static_cast<int>(kept.size()), kept.push_back(v);
-    joined[v] = of_set;
-  }
+  std::vector<int> joined = sets.numbered();
+  for (int v = 0; v < n; ++v)
+    if (joined[v] == std::ssize(kept)) kept.push_back(v);
   mesh.vertices = Positions(mesh.vertices(kept, Eigen::all));
-  for (Eigen::Index i = 0; i < mesh.triangles.size(); ++i)
-    mesh.triangles.data()[i] = joined[mesh.triangles.data()[i]];
+  for (int& corner : mesh.triangles.reshaped()) corner = joined[corner];
   return joined;
 }
 
@@ -42,14 +37,19 @@ std::vector<int> flat_pieces(const TriangleMesh& mesh, const Topology& topology)
   for (int e = 0; e < topology.edges.rows(); ++e)
     if (topology.edge_triangles(e, 1) != -1 && !is_seam(mesh, topology, e))
       sets.unite(topology.edge_triangles(e, 0), topology.edge_triangles(e, 1));
-  std::vector<int> number(mesh.triangles.rows(), -1), piece(mesh.triangles.rows());
-  int count = 0;
-  for (int t = 0; t < mesh.triangles.rows(); ++t) {
-    int& of_set = number[sets.find(t)];
-    if (of_set == -1) of_set = count++;
-    piece[t] = of_set;
-  }
-  return piece;
+  return sets.numbered();
+}
+
+std::vector<int> connected_parts(const TriangleMesh& mesh) {
+  DisjointSets sets(static_cast<int>(mesh.triangles.rows()));
+  std::vector<int> first(mesh.vertices.rows(), -1);  // triangle of each vertex
+  for (int t = 0; t < mesh.triangles.rows(); ++t)
+    for (const int v : mesh.triangles.row(t))
+      if (first[v] < 0)
+        first[v] = t;
+      else
+        sets.unite(t, first[v]);
+  return sets.numbered();
 }
 
 Positions flat_directions(const TriangleMesh& mesh, GrainAxis along, double degrees) {

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <string>
 #include <vector>
 
 #include "core/kernel/interfaces/topology.h"
@@ -15,6 +14,9 @@ std::vector<int> join_vertices(TriangleMesh& mesh, double tolerance);
 /// For each triangle a number of its flat piece, from 0 in the order of their first triangles: edges that are
 /// no seams connect it.
 std::vector<int> flat_pieces(const TriangleMesh& mesh, const Topology& topology);
+
+/// For each triangle the number of its connected part, from 0 in the order of their first triangles.
+std::vector<int> connected_parts(const TriangleMesh& mesh);
 
 /// cut_directions of flat pieces: as they are drawn, from y (for x), u or the mesh's own directions.
 Positions flat_directions(const TriangleMesh& mesh, GrainAxis along, double degrees);

@@ -9,7 +9,7 @@
 
 #include "core/kernel/interfaces/topology.h"
 #include "core/numerics/mesh/area_vectors.h"
-#include "core/numerics/mesh/disjoint_sets.h"
+#include "core/numerics/mesh/flat_pieces.h"
 #include "core/numerics/mesh/mesh_faults.h"
 #include "core/numerics/mesh/texture_coordinates.h"
 #include "core/numerics/patterns/delaunay.h"
@@ -21,15 +21,10 @@ using Eigen::Vector2d;
 
 /// The connected parts of a mesh in the order of their first triangles, each with vertices of its own.
 std::vector<TriangleMesh> parts_of(const TriangleMesh& mesh) {
-  DisjointSets sets(static_cast<int>(mesh.vertices.rows()));
-  for (const auto& t : mesh.triangles.rowwise()) sets.unite(t[0], t[1]), sets.unite(t[1], t[2]);
-  std::vector<int> part_of(mesh.vertices.rows(), -1), number = part_of;
-  std::vector<std::vector<int>> triangles;
-  for (int t = 0; t < mesh.triangles.rows(); ++t) {
-    int& part = part_of[sets.find(mesh.triangles(t, 0))];
-    if (part < 0) part = static_cast<int>(triangles.size()), triangles.emplace_back();
-    triangles[part].push_back(t);
-  }
+  const std::vector<int> part_of = connected_parts(mesh);
+  std::vector<int> number(mesh.vertices.rows(), -1);
+  std::vector<std::vector<int>> triangles(*std::ranges::max_element(part_of) + 1);
+  for (int t = 0; t < mesh.triangles.rows(); ++t) triangles[part_of[t]].push_back(t);
   std::vector<TriangleMesh> parts;
   for (const std::vector<int>& own : triangles) {
     TriangleMesh& part = parts.emplace_back(TriangleMesh{{}, mesh.triangles(own, Eigen::all)});

@@ -41,19 +41,13 @@ class Joints {
       for (int v = 0; v < panels[p].border(); ++v)
         for (const int stitch : {panels[p].stitches[v], panels[p].ends[v]})
           if (stitch >= 0) sets.unite(first_[p] + v, vertex_of.emplace(stitch, first_[p] + v).first->second);
-    std::vector<int> number(count, -1);
-    for (int v = 0; v < count; ++v) {
-      int& own = number[sets.find(v)];
-      if (own == -1) own = vertex_count_++;
-      joined_.push_back(own);
-    }
+    joined_ = sets.numbered();
   }
-  int vertex_count() const { return vertex_count_; }
+  int vertex_count() const { return *std::ranges::max_element(joined_) + 1; }
   int of(std::size_t panel, int vertex) const { return joined_[first_[panel] + vertex]; }
 
  private:
   std::vector<int> first_, joined_;
-  int vertex_count_ = 0;
 };
 
 /// Divides the edge from a to b, and the triangles beside it, by a new vertex in its middle.

@@ -4,27 +4,12 @@
 #include <stdexcept>
 #include <string>
 
-#include "core/numerics/mesh/disjoint_sets.h"
 #include "core/numerics/mesh/flat_pieces.h"
 #include "core/numerics/mesh/seams.h"
 #include "core/numerics/mesh/texture_coordinates.h"
 
 namespace drape {
 namespace {
-
-/// For each triangle the number of its connected part, from 0 in the order of their first triangles.
-std::vector<int> connected_parts(const TriangleMesh& mesh) {
-  DisjointSets sets(static_cast<int>(mesh.vertices.rows()));
-  for (const auto& t : mesh.triangles.rowwise()) sets.unite(t[0], t[1]), sets.unite(t[1], t[2]);
-  std::vector<int> number(mesh.vertices.rows(), -1), part(mesh.triangles.rows());
-  int count = 0;
-  for (int t = 0; t < std::ssize(part); ++t) {
-    int& own = number[sets.find(mesh.triangles(t, 0))];
-    if (own < 0) own = count++;
-    part[t] = own;
-  }
-  return part;
-}
 
 /// The places of each triangle's corners in the planes of their parts, m×6 [m].
 CornerUv places_of_parts(const TriangleMesh& mesh, const std::vector<int>& part, int count) {
