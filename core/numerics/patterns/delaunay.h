@@ -1,8 +1,8 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <random>
-#include <utility>
 #include <vector>
 
 #include "core/numerics/patterns/generate.h"
@@ -16,17 +16,19 @@ Triangles in_order(std::vector<std::array<int, 3>> triangles);
 /// on the points alone.
 Triangles delaunay_triangulation(const std::vector<Eigen::Vector2d>& points);
 
-/// Two sides of closed loops, by the loop and the number in it.
-struct LoopSide {
-  int loop = -1, side = -1;
+/// The corners of closed loops, one loop after another; side i begins at corner i.
+struct LoopSides {
+  std::vector<Eigen::Vector2d> points;
+  std::vector<std::array<int, 2>> sides;  ///< the two corners of each
+  std::vector<int> loop;                  ///< of each
 };
-/// Two sides that meet elsewhere than at the end that one has in common with the next; exact. No loops (-1)
-/// if none do.
-std::pair<LoopSide, LoopSide> crossing_sides(const std::vector<Polygon>& loops);
+LoopSides sides_of(const std::vector<Polygon>& loops);
 
-/// Pairs of segments, each of two points, that cross or touch elsewhere than at a common end; exact.
+/// Pairs of segments, each of two points, that cross or touch elsewhere than at a common end, at most so
+/// many; exact.
 std::vector<std::array<int, 2>> crossing_segments(const std::vector<Eigen::Vector2d>& points,
-                                                  const std::vector<std::array<int, 2>>& segments);
+                                                  const std::vector<std::array<int, 2>>& segments,
+                                                  std::size_t most = SIZE_MAX);
 
 /// The Delaunay triangulation of distinct points in the plane that is constrained by segments, which enclose
 /// a region and do not cross, within that region: holes are left out. Counter-clockwise, in an order that

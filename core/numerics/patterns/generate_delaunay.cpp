@@ -33,19 +33,6 @@ std::string loop_name(std::size_t i) {
 
 Kernel::Segment_2 side(const Ring& ring, std::size_t i) { return {ring[i], ring[(i + 1) % ring.size()]}; }
 
-bool boxes_overlap(const Ring& a, const Ring& b) {
-  return CGAL::do_overlap(CGAL::bbox_2(a.begin(), a.end()), CGAL::bbox_2(b.begin(), b.end()));
-}
-
-bool cross(const Ring& a, const Ring& b) {
-  for (std::size_t i = 0; i < a.size(); ++i)
-    for (std::size_t j = 0; j < b.size(); ++j)
-      if (CGAL::do_intersect(side(a, i), side(b, j))) return true;
-  return false;
-}
-
-bool is_simple(const Ring& ring) { return CGAL::is_simple_2(ring.begin(), ring.end(), Kernel()); }
-
 double area(const Ring& ring) { return std::abs(CGAL::polygon_area_2(ring.begin(), ring.end(), Kernel())); }
 
 bool contains(const Ring& ring, const Point2& p) {
@@ -54,7 +41,7 @@ bool contains(const Ring& ring, const Point2& p) {
 
 /// Validates the loops: simple polygons, holes inside the first and outside one another.
 std::vector<Ring> checked_rings(const std::vector<Polygon>& loops) {
-  constexpr std::size_t most_points = 10'000;  // sides of two loops are compared one by one
+  constexpr std::size_t most_points = 10'000;  // each is compared with every loop that may enclose it
   if (loops.empty()) throw std::runtime_error("polygon: there is no loop");
   std::size_t points = 0;
   for (const Polygon& loop : loops) points += loop.size();
@@ -62,25 +49,33 @@ std::vector<Ring> checked_rings(const std::vector<Polygon>& loops) {
     throw std::runtime_error("polygon: the loops have " + std::to_string(points) + " points, of at most " +
                              std::to_string(most_points) + "; leave out those that shape nothing");
   std::vector<Ring> rings;
+  std::vector<CGAL::Bbox_2> boxes;
+  const auto refuse = [](std::size_t i, const std::string& why) {
+    throw std::runtime_error(loop_name(i) + ' ' + why);
+  };
   for (std::size_t i = 0; i < loops.size(); ++i) {
-    const auto refuse = [&](const std::string& why) { throw std::runtime_error(loop_name(i) + ' ' + why); };
-    if (loops[i].size() < 3) refuse("has fewer than three points");
-    Ring ring;
+    if (loops[i].size() < 3) refuse(i, "has fewer than three points");
+    Ring& ring = rings.emplace_back();
     for (const Eigen::Vector2d& p : loops[i]) {
-      if (!p.allFinite()) refuse("has a coordinate that is not finite");
+      if (!p.allFinite()) refuse(i, "has a coordinate that is not finite");
       ring.emplace_back(p.x(), p.y());
     }
     if (loops[i].front() == loops[i].back())
-      refuse("ends with its first point again; leave the last one out");
-    if (!is_simple(ring) || area(ring) == 0) refuse("crosses or touches itself");
-    for (std::size_t j = 0; j < i; ++j) {
-      if (j > 0 && !boxes_overlap(ring, rings[j])) continue;
-      if (cross(ring, rings[j])) refuse("crosses or touches loop " + std::to_string(j));
-      if (j == 0 && !contains(rings[0], ring[0])) refuse("lies outside loop 0");
-      if (j > 0 && (contains(rings[j], ring[0]) || contains(ring, rings[j][0])))
-        refuse("and loop " + std::to_string(j) + " lie one inside the other");
-    }
-    rings.push_back(std::move(ring));
+      refuse(i, "ends with its first point again; leave the last one out");
+    if (area(ring) == 0) refuse(i, "crosses or touches itself");
+    boxes.push_back(CGAL::bbox_2(ring.begin(), ring.end()));
+  }
+  const LoopSides all = sides_of(loops);
+  for (const auto& [one, other] : crossing_segments(all.points, all.sides, 1))
+    refuse(all.loop[other],
+           "crosses or touches " +
+               (all.loop[one] == all.loop[other] ? "itself" : "loop " + std::to_string(all.loop[one])));
+  for (std::size_t i = 1; i < rings.size(); ++i) {
+    if (!contains(rings[0], rings[i][0])) refuse(i, "lies outside loop 0");
+    for (std::size_t j = 1; j < i; ++j)
+      if (CGAL::do_overlap(boxes[i], boxes[j]) &&
+          (contains(rings[j], rings[i][0]) || contains(rings[i], rings[j][0])))
+        refuse(i, "and loop " + std::to_string(j) + " lie one inside the other");
   }
   return rings;
 }
@@ -206,37 +201,15 @@ Triangles delaunay_triangulation(const std::vector<Eigen::Vector2d>& points) {
   return in_order(std::move(triangles));
 }
 
-std::pair<LoopSide, LoopSide> crossing_sides(const std::vector<Polygon>& loops) {
-  struct Side {
-    LoopSide of;
-    Kernel::Segment_2 segment;
-    CGAL::Bbox_2 box;
-  };
-  std::vector<Side> sides;
-  for (std::size_t k = 0; k < loops.size(); ++k)
-    for (std::size_t i = 0; i < loops[k].size(); ++i) {
-      const Eigen::Vector2d &a = loops[k][i], &b = loops[k][(i + 1) % loops[k].size()];
-      const Kernel::Segment_2 segment({a.x(), a.y()}, {b.x(), b.y()});
-      sides.push_back({{int(k), int(i)}, segment, segment.bbox()});
-    }
-  std::ranges::stable_sort(sides, {}, [](const Side& side) { return side.box.xmin(); });
-  const auto meet = [&](const Side& one, const Side& other) {
-    const Kernel::Segment_2 &a = one.segment, &b = other.segment;
-    const auto count = static_cast<int>(loops[one.of.loop].size());
-    const bool same = one.of.loop == other.of.loop;
-    if (same && other.of.side == (one.of.side + 1) % count)
-      return a.has_on(b.target()) || b.has_on(a.source());
-    if (same && one.of.side == (other.of.side + 1) % count)
-      return a.has_on(b.source()) || b.has_on(a.target());
-    return CGAL::do_intersect(a, b);
-  };
-  for (auto one = sides.begin(); one != sides.end(); ++one)
-    for (auto other = one + 1; other != sides.end() && other->box.xmin() <= one->box.xmax(); ++other)
-      if (CGAL::do_overlap(one->box, other->box) && meet(*one, *other))
-        return std::minmax(one->of, other->of, [](const LoopSide& a, const LoopSide& b) {
-          return std::pair(a.loop, a.side) < std::pair(b.loop, b.side);
-        });
-  return {};
+LoopSides sides_of(const std::vector<Polygon>& loops) {
+  LoopSides all;
+  for (int k = 0; k < std::ssize(loops); ++k) {
+    const auto first = static_cast<int>(all.points.size()), count = static_cast<int>(loops[k].size());
+    for (int i = 0; i < count; ++i) all.sides.push_back({first + i, first + (i + 1) % count});
+    all.points.insert(all.points.end(), loops[k].begin(), loops[k].end());
+    all.loop.insert(all.loop.end(), count, k);
+  }
+  return all;
 }
 
 TriangleMesh delaunay_polygon(const std::vector<Polygon>& loops, int vertices_about, unsigned seed,

@@ -157,13 +157,7 @@ TriangleMesh mesh_panel(const std::vector<Polygon>& loops, double edge_length) {
   if (mirrored)
     for (Polygon& loop : own)
       for (Vector2d& p : loop) p.x() = 2 * box.center().x() - p.x();
-  Polygon points;
-  std::vector<std::array<int, 2>> border;
-  for (const Polygon& loop : own) {
-    const auto first = static_cast<int>(points.size()), count = static_cast<int>(loop.size());
-    for (int i = 0; i < count; ++i) border.push_back({first + i, first + (i + 1) % count});
-    points.insert(points.end(), loop.begin(), loop.end());
-  }
+  auto [points, border, loop_of] = sides_of(own);
   const std::size_t first_inner = points.size();
   for (const Vector2d& p : lattice(own, box, edge_length)) points.push_back(p);
   Triangles triangles = triangles_within(points, border);

@@ -15,22 +15,21 @@ namespace {
 /// The divided loops of a panel.
 struct DividedLoops {
   std::vector<Polygon> loops;
-  std::vector<std::vector<int>> edges;  ///< of each side
-  std::vector<int> stitches, ends;      ///< as PanelMesh's
+  std::vector<int> edges;           ///< of each side
+  std::vector<int> stitches, ends;  ///< as PanelMesh's
   std::set<std::pair<int, int>> sewn;
   std::map<std::pair<int, int>, int> sides;
 
   DividedLoops(const Panel& panel, const std::vector<EdgeDivision>& divisions) {
     for (const std::vector<int>& own : panel.loops) {
       Polygon& loop = loops.emplace_back();
-      std::vector<int>& edge = edges.emplace_back();
       const auto first = static_cast<int>(stitches.size());
       int before = divisions[own.back()].stitches.back();
       for (const int e : own) {
         const EdgeDivision& division = divisions[e];
         for (std::size_t i = 0; i + 1 < division.lengths.size(); ++i) {
           loop.push_back(panel.edges[e].curve.at_length(division.lengths[i]));
-          edge.push_back(e);
+          edges.push_back(e);
           stitches.push_back(division.stitches[i]);
           ends.push_back(i == 0 ? before : -1);
         }
@@ -39,8 +38,8 @@ struct DividedLoops {
       const auto count = static_cast<int>(loop.size());
       for (int i = 0; i < count; ++i) {
         const std::pair<int, int> side = std::minmax(first + i, first + (i + 1) % count);
-        sides[side] = edge[i];
-        if (divisions[edge[i]].stitches[0] >= 0) sewn.insert(side);
+        sides[side] = edges[first + i];
+        if (divisions[edges[first + i]].stitches[0] >= 0) sewn.insert(side);
       }
     }
   }
@@ -60,14 +59,12 @@ std::optional<ConfigError> fault_of(const Panel& panel, const DividedLoops& divi
       return ConfigError{panel.where, in + (k == 0 ? "the outline" : "hole " + std::to_string(k)) + " has " +
                                           std::to_string(loops[k].size()) +
                                           " points at this \"edge_length\"; choose a shorter one"};
-  const auto [one, other] = crossing_sides(loops);
-  if (one.loop >= 0) {
-    const int e = divided.edges[one.loop][one.side], f = divided.edges[other.loop][other.side];
-    return ConfigError{panel.edges[f].where,
-                       in + edges_text(panel, e, f) +
+  const LoopSides all = sides_of(loops);
+  for (const auto& [one, other] : crossing_segments(all.points, all.sides, 1))
+    return ConfigError{panel.edges[divided.edges[other]].where,
+                       in + edges_text(panel, divided.edges[one], divided.edges[other]) +
                            "; an outline must not meet itself: move its vertices, or choose "
                            "a shorter \"edge_length\""};
-  }
   for (std::size_t k = 1; k < loops.size(); ++k)
     if (!is_inside(loops[0], loops[k][0]))
       return ConfigError{panel.edges[panel.loops[k][0]].where,
