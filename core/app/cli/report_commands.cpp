@@ -227,9 +227,9 @@ void add_export_command(Commands& commands) {
       ".obj, .ply: unit of the texture coordinates of flat pieces: mm, cm, m, inch or normalised, 0 to 1 "
       "(default: as they came)")
       ->check([](const std::string& unit) {
-        const bool known =
-            unit == "mm" || unit == "cm" || unit == "m" || unit == "inch" || unit == "normalised";
-        return known ? "" : "must be mm, cm, m, inch or normalised, not " + excerpt(unit);
+        return is_one_of(unit, {"mm", "cm", "m", "inch", "normalised"})
+                   ? ""
+                   : "must be mm, cm, m, inch or normalised, not " + excerpt(unit);
       });
   command.add_flag("--as-read", o->as_read,
                    "with .obj and .ply: in the unit and axes of the cloth's file, the level of its mesh with "

@@ -15,21 +15,6 @@ namespace {
 using Kind = ConfigNode::Kind;
 using Eigen::Vector2d;
 
-/// A list's items or a map's values, each with its name ("" in a list) and its place.
-struct NamedNode {
-  std::string name;
-  const ConfigNode* node;
-  Location where;
-};
-
-std::vector<NamedNode> named_nodes(const ConfigNode& node) {
-  std::vector<NamedNode> all;
-  for (const ConfigNode& item : node.items) all.push_back({"", &item, item.where});
-  for (std::size_t i = 0; i < node.entries.size(); ++i)
-    all.push_back({node.entries[i].first, &node.entries[i].second, node.key_locations[i]});
-  return all;
-}
-
 /// `count` finite numbers; true and false count as 1 and 0. Nothing for another node.
 std::optional<std::vector<double>> numbers(const ConfigNode& node, std::size_t count) {
   std::vector<double> all;
@@ -72,16 +57,9 @@ class PanelReader {
     errors_.push_back({where, "panel " + excerpt(read_.panel.name) + ": " + what});
   }
 
-  /// Whether a name stands for two vertices or two edges, which is an error.
-  bool is_repeated(const ConfigNode& map, const NamedNode& named) {
-    if (named.name.empty() || map.find(named.name) == named.node) return false;
-    refuse(named.where, excerpt(named.name) + " is given twice; rename one");
-    return true;
-  }
-
   void read_vertices() {
     for (const NamedNode& vertex : named_nodes(p_.vertices)) {
-      if (is_repeated(p_.vertices, vertex)) return;
+      if (vertex.repeats) return refuse(vertex.where, excerpt(vertex.name) + given_twice);
       const auto place = numbers(*vertex.node, 2);
       if (!place)
         return refuse(vertex.where, "a vertex is [x, y], two numbers, not " + vertex.node->one_line());
@@ -148,7 +126,7 @@ class PanelReader {
 
   void read_edges() {
     for (const NamedNode& written : named_nodes(p_.edges)) {
-      if (is_repeated(p_.edges, written)) return;
+      if (written.repeats) return refuse(written.where, excerpt(written.name) + given_twice);
       PanelEdgeParameters e;
       const std::string number = std::to_string(ends_.size());
       schema_of<PanelEdgeParameters>("edge " + (written.name.empty() ? number : excerpt(written.name)) +
@@ -271,6 +249,16 @@ class PanelReader {
 };
 
 }  // namespace
+
+std::vector<NamedNode> named_nodes(const ConfigNode& node) {
+  std::vector<NamedNode> all;
+  for (const ConfigNode& item : node.items) all.push_back({"", &item, item.where, false});
+  for (std::size_t i = 0; i < node.entries.size(); ++i) {
+    const auto& [name, value] = node.entries[i];
+    all.push_back({name, &value, node.key_locations[i], !name.empty() && node.find(name) != &value});
+  }
+  return all;
+}
 
 std::optional<int> ReadPanel::edge_of(const ConfigNode& node, const std::string& user,
                                       ConfigErrors& errors) const {

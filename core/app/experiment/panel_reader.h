@@ -19,6 +19,16 @@ inline ConfigNode with_key(const std::string& key, const ConfigNode& node) {
   return map;
 }
 
+/// A list's items or a map's values, each with its name ("" in a list) and its place.
+struct NamedNode {
+  std::string name;
+  const ConfigNode* node;
+  Location where;
+  bool repeats;  ///< a name before it
+};
+std::vector<NamedNode> named_nodes(const ConfigNode& node);
+constexpr const char* given_twice = " is given twice; rename one";
+
 /// How the numbers of a pattern's file are meant.
 struct PatternUnits {
   double length = 1;               ///< [m]

@@ -98,27 +98,19 @@ std::optional<Pattern> read_pattern(const std::filesystem::path& file, ConfigErr
                       "the pattern has no panels; \"panels\" is a map from names to panels"});
     return std::nullopt;
   }
-  for (std::size_t i = 0; i < written.entries.size(); ++i) {
-    const auto& [name, node] = written.entries[i];
-    if (written.find(name) != &node)
-      errors.push_back({written.key_locations[i], "panel " + excerpt(name) + " is given twice; rename one"});
-    if (auto panel = read_panel(name, node, units, errors)) panels.push_back(std::move(*panel));
+  for (const NamedNode& named : named_nodes(written)) {
+    if (named.repeats) errors.push_back({named.where, "panel " + excerpt(named.name) + given_twice});
+    if (auto panel = read_panel(named.name, *named.node, units, errors)) panels.push_back(std::move(*panel));
   }
   if (errors.size() > before) return std::nullopt;  // seams would miss edges
   Pattern pattern;
   pattern.up = p.properties.up;
   SeamReader reader(panels, errors);
-  const auto add = [&](const std::string& name, const ConfigNode& node, const Location& where) {
-    if (auto seam = reader.read(name, node, where)) pattern.seams.push_back(std::move(*seam));
-  };
   const ConfigNode& stitches = p.pattern.stitches;
-  for (std::size_t i = 0; i < stitches.items.size(); ++i)
-    add(std::to_string(i), stitches.items[i], stitches.items[i].where);
-  for (std::size_t i = 0; i < stitches.entries.size(); ++i) {
-    const auto& [name, node] = stitches.entries[i];
-    if (stitches.find(name) != &node)
-      errors.push_back({stitches.key_locations[i], "seam " + excerpt(name) + " is given twice; rename one"});
-    add(name, node, stitches.key_locations[i]);
+  for (int number = 0; const NamedNode& stitch : named_nodes(stitches)) {
+    if (stitch.repeats) errors.push_back({stitch.where, "seam " + excerpt(stitch.name) + given_twice});
+    const std::string name = stitches.kind == Kind::list ? std::to_string(number++) : stitch.name;
+    if (auto seam = reader.read(name, *stitch.node, stitch.where)) pattern.seams.push_back(std::move(*seam));
   }
   for (std::size_t k = 0; k < panels.size(); ++k) {
     for (const auto& [leg, other] : panels[k].darts) {

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <random>
 
 #include "core/app/experiment/cloth.h"
 #include "core/app/experiment/sewn_cloth.h"
@@ -18,6 +17,7 @@
 #include "core/numerics/mesh/unjoined_borders.h"
 #include "core/numerics/mesh_files/io.h"
 #include "core/numerics/multigrid/multigrid.h"
+#include "core/numerics/patterns/delaunay.h"
 
 namespace drape {
 
@@ -27,12 +27,11 @@ namespace {
 class Noise {
  public:
   Noise(double wavelength, int seed) {
-    std::mt19937_64 random(static_cast<std::uint64_t>(seed));
-    // Not a std:: distribution, whose values differ between libraries.
-    auto uniform = [&] { return static_cast<double>(random() >> 11) * 0x1p-53; };
+    Random random(static_cast<unsigned>(seed));
     for (Wave& w : waves_) {
-      const double angle = 2 * M_PI * uniform(), k = 2 * M_PI / (wavelength * (0.75 + 0.5 * uniform()));
-      w = {k * std::cos(angle), k * std::sin(angle), 2 * M_PI * uniform()};
+      const double angle = 2 * M_PI * random.unit(),
+                   k = 2 * M_PI / (wavelength * (0.75 + 0.5 * random.unit()));
+      w = {k * std::cos(angle), k * std::sin(angle), 2 * M_PI * random.unit()};
     }
   }
   double at(double x, double y) const {

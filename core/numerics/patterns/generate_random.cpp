@@ -4,6 +4,7 @@
 #include <string>
 
 #include "core/numerics/patterns/delaunay.h"
+#include "core/numerics/patterns/plane_grid.h"
 
 namespace drape {
 namespace {
@@ -22,49 +23,28 @@ Points rectangle_border(const Eigen::Vector2d& size, int columns, int rows) {
   return points;
 }
 
-/// Points in square cells, for queries whether a disc is empty.
-class CellGrid {
- public:
-  CellGrid(const Eigen::Vector2d& size, double cell)
-      : cell_(cell), columns_(cells(size.x())), rows_(cells(size.y())), items_(columns_ * rows_) {}
-
-  void add(const Eigen::Vector2d& p) { items_[column(p.x()) + columns_ * row(p.y())].push_back(p); }
-
-  /// Whether no point is closer than radius ≤ cell.
-  bool is_free(const Eigen::Vector2d& p, double radius) const {
-    const int i = column(p.x()), j = row(p.y());
-    for (int r = std::max(j - 1, 0); r <= std::min(j + 1, rows_ - 1); ++r)
-      for (int c = std::max(i - 1, 0); c <= std::min(i + 1, columns_ - 1); ++c)
-        for (const Eigen::Vector2d& q : items_[c + columns_ * r])
-          if ((p - q).squaredNorm() < radius * radius) return false;
-    return true;
-  }
-
- private:
-  int cells(double length) const { return static_cast<int>(length / cell_) + 1; }
-  int column(double x) const { return std::min(static_cast<int>(x / cell_), columns_ - 1); }
-  int row(double y) const { return std::min(static_cast<int>(y / cell_), rows_ - 1); }
-
-  double cell_;
-  int columns_, rows_;
-  std::vector<Points> items_;
-};
-
 /// Adds `count` inner points, as far from each other and from the boundary as possible.
 void throw_darts(const Eigen::Vector2d& size, double spacing, int count, Random& random, Points& points) {
   constexpr int patience = 400;  // misses before the radius shrinks
   constexpr double shrink = 0.98;
   // Smallest distance to the sides, relative to the radius: less makes slivers there.
   const double border_share = 0.6;
-  CellGrid taken(size, spacing);
-  for (const Eigen::Vector2d& p : points) taken.add(p);
+  PlaneGrid taken(Eigen::Vector2d::Zero(), size, spacing);
+  for (int i = 0; i < std::ssize(points); ++i) taken.add(i, points[i], points[i]);
+  const auto is_free = [&](const Eigen::Vector2d& p, double radius) {
+    const Eigen::Vector2d reach(radius, radius);
+    bool free = true;
+    taken.for_each(p - reach, p + reach,
+                   [&](int i) { free = free && (p - points[i]).squaredNorm() >= radius * radius; });
+    return free;
+  };
   double radius = spacing;
   for (int misses = 0; static_cast<int>(points.size()) < count;) {
     const double margin = std::min(border_share * radius, size.minCoeff() / 3);
     const Eigen::Vector2d unit(random.unit(), random.unit());
     const Eigen::Vector2d p = (unit.array() * (size.array() - 2 * margin) + margin).matrix();
-    if (taken.is_free(p, radius)) {
-      taken.add(p);
+    if (is_free(p, radius)) {
+      taken.add(static_cast<int>(points.size()), p, p);
       points.push_back(p);
       misses = 0;
     } else if (++misses == patience) {

@@ -6,8 +6,8 @@
 #include <utility>
 
 #include "core/numerics/patterns/delaunay.h"
+#include "core/numerics/patterns/plane_grid.h"
 #include "plugins/refiner/coarsen/outline_chains.h"
-#include "plugins/refiner/coarsen/plane_grid.h"
 
 namespace drape {
 namespace {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <limits>
 
-#include "plugins/refiner/coarsen/plane_grid.h"
+#include "core/numerics/patterns/plane_grid.h"
 
 namespace drape {
 namespace {
