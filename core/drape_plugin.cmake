@@ -6,7 +6,7 @@ function(drape_add_plugin name)
   add_library(${name} MODULE ${plugin_SOURCES})
   # A plugin exports its one C function, so that two plugins may use one name for different things.
   set_target_properties(${name} PROPERTIES LINKER_LANGUAGE CXX CXX_VISIBILITY_PRESET hidden VISIBILITY_INLINES_HIDDEN ON)
-  target_link_libraries(${name} PRIVATE drape::drape)
+  target_link_libraries(${name} PRIVATE drape::engine)
   # Kernels at -O0 take many times as long: where the project chooses no build type, a plugin is compiled as in a Release.
   target_compile_options(${name} PRIVATE "$<$<CONFIG:>:-O3;-DNDEBUG>")
   # A missing symbol shows here, not when loading; a sanitizer's own are in the program alone.
