@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "core/kernel/plugin/registry.h"
-
 namespace drape {
+
+class Registry;
 
 /// The commands of `drape`. An add_… function below adds one or a few, whose options go into a struct that
 /// only the command's action refers to.

@@ -12,6 +12,7 @@
 #include "core/kernel/files/file.h"
 #include "core/kernel/files/message_text.h"
 #include "core/kernel/files/string_utils.h"
+#include "core/kernel/plugin/registry.h"
 
 namespace drape {
 

@@ -7,6 +7,7 @@
 #include "core/kernel/files/message_text.h"
 #include "core/kernel/files/string_utils.h"
 #include "core/kernel/plugin/parameters.h"
+#include "core/kernel/plugin/registry.h"
 
 namespace drape {
 

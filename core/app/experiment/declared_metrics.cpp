@@ -7,6 +7,7 @@
 
 #include "core/app/files/json_file.h"
 #include "core/kernel/files/string_utils.h"
+#include "core/kernel/plugin/registry.h"
 
 namespace drape {
 

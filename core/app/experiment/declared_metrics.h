@@ -8,9 +8,10 @@
 #include "core/app/files/json_file.h"
 #include "core/kernel/interfaces/metric.h"
 #include "core/kernel/plugin/config_node.h"
-#include "core/kernel/plugin/registry.h"
 
 namespace drape {
+
+class Registry;
 
 /// A metric of a run, as results.json has it under "metrics".
 struct DeclaredMetric {

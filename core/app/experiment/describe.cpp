@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "core/kernel/files/string_utils.h"
+#include "core/kernel/plugin/parameters.h"
 
 namespace drape {
 namespace {

@@ -5,7 +5,9 @@
 
 #include "core/app/experiment/experiment.h"
 #include "core/app/experiment/read_experiment.h"
+#include "core/kernel/plugin/parameters.h"
 #include "core/kernel/plugin/placement.h"
+#include "core/kernel/plugin/registry.h"
 
 namespace drape {
 

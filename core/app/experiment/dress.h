@@ -3,7 +3,8 @@
 #include <string>
 #include <vector>
 
-#include "core/kernel/plugin/declared_numbers.h"
+#include "core/kernel/plugin/config_node.h"
+#include "core/kernel/plugin/declaration.h"
 #include "core/numerics/mesh_files/file_coordinates.h"
 
 namespace drape {

@@ -7,6 +7,7 @@
 
 #include "core/app/experiment/dress.h"
 #include "core/kernel/interfaces/material.h"
+#include "core/kernel/plugin/declaration.h"
 #include "core/kernel/plugin/declared_numbers.h"
 #include "core/numerics/mesh/grain.h"
 #include "core/numerics/mesh_files/file_coordinates.h"

@@ -5,6 +5,7 @@
 #include "core/app/experiment/experiment_parameters.h"
 #include "core/app/files/yaml_file.h"
 #include "core/kernel/files/string_utils.h"
+#include "core/kernel/plugin/parameters.h"
 
 namespace drape {
 

@@ -3,6 +3,7 @@
 
 #include "core/app/experiment/describe.h"
 #include "core/app/experiment/experiment_parameters.h"
+#include "core/kernel/plugin/parameters.h"
 
 namespace drape {
 namespace {

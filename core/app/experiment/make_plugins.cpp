@@ -9,6 +9,8 @@
 #include "core/app/files/yaml_file.h"
 #include "core/kernel/files/message_text.h"
 #include "core/kernel/plugin/make.h"
+#include "core/kernel/plugin/parameters.h"
+#include "core/kernel/plugin/registry.h"
 
 namespace drape {
 

@@ -2,6 +2,7 @@
 
 #include "core/app/experiment/describe.h"
 #include "core/kernel/plugin/bounds.h"
+#include "core/kernel/plugin/parameters.h"
 
 namespace drape {
 

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "core/app/experiment/material_parameters.h"
 #include "core/app/python/module.h"
 #include "core/app/python/values.h"
 #include "core/app/report/report.h"
@@ -22,12 +23,16 @@ std::shared_ptr<Level> make_level(const State& rest, const py::object& triangles
   return std::make_shared<Level>(Level::of(0, std::move(mesh)));
 }
 
+struct MaterialOfKeys : Material {
+  static void declare(Declaration<MaterialOfKeys>& d) { declare_material(d); }
+};
+
 Material make_material(const py::kwargs& values) {
-  Material material;
+  MaterialOfKeys material;
   ConfigErrors errors;
   ConfigNode node = node_of(values);
   node.name_keys();
-  schema_of<Material>("material").read(&material, node, errors);
+  schema_of<MaterialOfKeys>("material").read(&material, node, errors);
   throw_errors(errors);
   return material;
 }

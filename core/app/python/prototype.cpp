@@ -9,6 +9,8 @@
 #include "core/app/python/module.h"
 #include "core/app/python/values.h"
 #include "core/kernel/plugin/make.h"
+#include "core/kernel/plugin/parameters.h"
+#include "core/kernel/plugin/registry.h"
 
 namespace drape::python {
 

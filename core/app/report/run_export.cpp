@@ -13,6 +13,7 @@
 #include "core/app/report/run_data.h"
 #include "core/kernel/files/file.h"
 #include "core/kernel/files/string_utils.h"
+#include "core/kernel/plugin/parameters.h"
 #include "core/numerics/mesh/flat_pieces.h"
 #include "core/numerics/mesh/same_entries.h"
 #include "core/numerics/mesh/texture_coordinates.h"

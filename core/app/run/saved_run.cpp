@@ -8,6 +8,7 @@
 #include "core/app/run/recorder_files.h"
 #include "core/kernel/files/file.h"
 #include "core/kernel/files/string_utils.h"
+#include "core/kernel/plugin/parameters.h"
 #include "core/numerics/mesh_files/io.h"
 
 namespace drape {

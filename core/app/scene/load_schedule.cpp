@@ -5,6 +5,7 @@
 
 #include "core/app/experiment/read_experiment.h"
 #include "core/app/scene/boundary_conditions.h"
+#include "core/kernel/plugin/registry.h"
 #include "core/numerics/dressing/intermediate_rest.h"
 #include "core/numerics/dressing/scaled_energy.h"
 

@@ -8,6 +8,7 @@
 #include "core/app/scene/crossed_parts.h"
 #include "core/app/scene/scene.h"
 #include "core/kernel/files/message_text.h"
+#include "core/kernel/plugin/parameters.h"
 #include "core/numerics/collision_detection/components.h"
 #include "core/numerics/mesh/mesh_faults.h"
 #include "core/numerics/model/required.h"

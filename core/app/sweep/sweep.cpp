@@ -10,6 +10,7 @@
 #include "core/app/sweep/variations.h"
 #include "core/kernel/files/message_text.h"
 #include "core/kernel/files/string_utils.h"
+#include "core/kernel/plugin/parameters.h"
 
 namespace drape {
 

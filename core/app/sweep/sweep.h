@@ -4,6 +4,7 @@
 
 #include "core/app/experiment/experiment.h"
 #include "core/app/files/json_file.h"
+#include "core/kernel/plugin/declaration.h"
 
 namespace drape {
 

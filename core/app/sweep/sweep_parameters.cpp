@@ -1,6 +1,7 @@
 #include "core/app/experiment/describe.h"
 #include "core/app/sweep/variations.h"
 #include "core/kernel/plugin/bounds.h"
+#include "core/kernel/plugin/parameters.h"
 
 namespace drape {
 

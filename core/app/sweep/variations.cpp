@@ -12,6 +12,7 @@
 #include "core/app/files/json_file.h"
 #include "core/app/files/yaml_file.h"
 #include "core/kernel/interfaces/solver.h"
+#include "core/kernel/plugin/parameters.h"
 
 namespace drape {
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "core/app/sweep/sweep.h"
+#include "core/kernel/plugin/declaration.h"
 
 namespace drape {
 

@@ -9,8 +9,6 @@ double mean(double warp, const std::optional<double>& weft) { return std::sqrt(w
 
 }  // namespace
 
-void Material::declare(Declaration<Material>& d) { declare_material(d); }
-
 double Material::mean_membrane_modulus() const {
   return warp_stiffness ? mean(*warp_stiffness, weft_stiffness) / thickness : membrane_modulus;
 }

@@ -1,5 +1,7 @@
 #include "core/kernel/plugin/declared_numbers.h"
 
+#include "core/kernel/plugin/parameters.h"
+
 namespace drape {
 
 namespace {
@@ -57,6 +59,10 @@ std::optional<DeclaredNumbers> DeclaredNumbers::find(const Schema& outermost, vo
 void* DeclaredNumbers::owner(void* object) const {
   for (const Section& section : sections_) object = section.parameter->section_in(object, section.item);
   return object;
+}
+
+double* DeclaredNumbers::at(void* object, std::size_t k) const {
+  return parameter_->number(owner(object), first_ + k);
 }
 
 void DeclaredNumbers::set(void* object, const double* values, ConfigErrors& errors) const {

@@ -4,9 +4,12 @@
 #include <string>
 #include <vector>
 
-#include "core/kernel/plugin/parameters.h"
+#include "core/kernel/plugin/config_node.h"
 
 namespace drape {
+
+struct Parameter;
+class Schema;
 
 /// A declared number of a struct, or a list of them: found once by its path, then written often, as numbers.
 /// Not an integer, which would jump. Refers to the schema.
@@ -20,7 +23,7 @@ class DeclaredNumbers {
 
   std::size_t count() const { return count_; }
   /// Number k in a struct whose lists are as long as in find's.
-  double* at(void* object, std::size_t k) const { return parameter_->number(owner(object), first_ + k); }
+  double* at(void* object, std::size_t k) const;
   /// Writes `count` values; none if the parameter refuses any: appends an error without a location for each.
   void set(void* object, const double* values, ConfigErrors& errors) const;
 

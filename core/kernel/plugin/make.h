@@ -1,8 +1,17 @@
 #pragma once
 
-#include "core/kernel/plugin/registry.h"
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "core/kernel/plugin/config_node.h"
 
 namespace drape {
+
+class Registry;
+struct RegistryEntry;
+class Schema;
 
 /// A plugin's parameters, before the object is made from them.
 struct PluginParameters {

@@ -1,6 +1,7 @@
 #include "core/numerics/step/newton_parameters.h"
 
 #include "core/kernel/plugin/bounds.h"
+#include "core/kernel/plugin/parameters.h"
 
 namespace drape {
 

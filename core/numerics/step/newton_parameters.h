@@ -1,7 +1,7 @@
 #pragma once
 
 #include "core/kernel/interfaces/energy.h"
-#include "core/kernel/plugin/parameters.h"
+#include "core/kernel/plugin/declaration.h"
 #include "core/numerics/linear_algebra/numeric_factor.h"
 
 namespace drape {
