@@ -27,13 +27,16 @@ void lower_to_distance(Eigen::VectorXd& gap, const BoxTree& points, const Positi
   BoxTree tree;
   tree.build(boxes);
   for (int run = 0; run < points.runs(); ++run)
-    points.overlaps(tree, run, [&](int i, int t) {
-      if (!counts(i, t)) return;
-      const auto v = triangles.row(t);
-      const Eigen::Vector3d a = y.row(v[0]), b = y.row(v[1]), c = y.row(v[2]), p = x.row(i);
-      const Eigen::Vector4d w = closest_point_triangle(p, a, b, c).c;
-      gap[i] = std::min(gap[i], (w[0] * p + w[1] * a + w[2] * b + w[3] * c).norm());
-    });
+    points.overlaps(
+        tree, run,
+        [&](int i, int t) {
+          if (!counts(i, t)) return;
+          const auto v = triangles.row(t);
+          const Eigen::Vector3d a = y.row(v[0]), b = y.row(v[1]), c = y.row(v[2]), p = x.row(i);
+          const Eigen::Vector4d w = closest_point_triangle(p, a, b, c).c;
+          gap[i] = std::min(gap[i], (w[0] * p + w[1] * a + w[2] * b + w[3] * c).norm());
+        },
+        [] { return false; });
 }
 
 BoxTree tree_of(const Positions& x) {

@@ -51,9 +51,9 @@ class BoxTree {
 
   /// Calls found(i, j) for each box i of the run that overlaps box j of the other tree; of this tree, once
   /// for each pair with one box in the run and the other in that run or a later one. Leaves out pairs of
-  /// primitives that share a vertex.
-  template <class Found>
-  void overlaps(const BoxTree& other, int run, const Found& found) const;
+  /// primitives that share a vertex. Ends once ended(), which is asked after some thousand pairs at most.
+  template <class Found, class Ended>
+  void overlaps(const BoxTree& other, int run, const Found& found, const Ended& ended) const;
 
   /// Calls visit(i) for each box i with distance(box) ≤ reach. visit returns the reach from then on, so that
   /// a search for the nearest can shrink it. The distance of a box must be at least that of any box that
@@ -62,8 +62,8 @@ class BoxTree {
   void visit_near(double reach, const Distance& distance, const Visit& visit) const;
 
  private:
-  template <bool self, class Found>
-  void search(const BoxTree& other, int run, const Found& found) const;
+  template <bool self, class Found, class Ended>
+  void search(const BoxTree& other, int run, const Found& found, const Ended& ended) const;
   template <bool self, class Found>
   void compare(const BoxTree& other, int level, int group, int other_group, const Found& found) const;
 
@@ -131,12 +131,12 @@ inline unsigned BoxTree::sharing(int group, int k, const BoxTree& other, int oth
   return bits;
 }
 
-template <class Found>
-void BoxTree::overlaps(const BoxTree& other, int run, const Found& found) const {
+template <class Found, class Ended>
+void BoxTree::overlaps(const BoxTree& other, int run, const Found& found, const Ended& ended) const {
   if (&other == this)
-    search<true>(other, run, found);
+    search<true>(other, run, found, ended);
   else
-    search<false>(other, run, found);
+    search<false>(other, run, found, ended);
 }
 
 template <class Distance, class Visit>
@@ -164,8 +164,8 @@ void BoxTree::visit_near(double reach, const Distance& distance, const Visit& vi
 }
 
 /// Descends from the other's root to groups of the run's level.
-template <bool self, class Found>
-void BoxTree::search(const BoxTree& other, int run, const Found& found) const {
+template <bool self, class Found, class Ended>
+void BoxTree::search(const BoxTree& other, int run, const Found& found, const Ended& ended) const {
   if (other.size() == 0) return;
   const int level = std::min({1, height() - 1, other.height() - 1});
   const int begin = level == 1 ? run : 8 * run,
@@ -177,7 +177,7 @@ void BoxTree::search(const BoxTree& other, int run, const Found& found) const {
     } stack[8 * 11];  // 8^11 exceeds any int
     int depth = 0;
     stack[depth++] = {other.height() - 1, 0};
-    while (depth > 0) {
+    while (depth > 0 && !ended()) {
       const Node at = stack[--depth];
       if (at.level == level) {
         compare<self>(other, level, group, at.group, found);

@@ -62,9 +62,10 @@ class BvhBroadPhase final : public BroadPhase {
       IndexPairs& list = lists[begin / runs_per_task];
       std::size_t counted = 0;
       for (int run = begin; run < end && count.load(std::memory_order_relaxed) <= limit; ++run) {
-        tree_.overlaps(tree, run, [&](int i, int j) {
-          list.emplace_back(self ? std::min(i, j) : i, self ? std::max(i, j) : j);
-        });
+        tree_.overlaps(
+            tree, run,
+            [&](int i, int j) { list.emplace_back(self ? std::min(i, j) : i, self ? std::max(i, j) : j); },
+            [&] { return std::ssize(list) > limit; });
         count += static_cast<long>(list.size() - counted);
         counted = list.size();
       }

@@ -3,6 +3,7 @@
 #include <array>
 #include <catch2/catch.hpp>
 
+#include "core/numerics/collision_detection/box_tree.h"
 #include "tests/support/random.h"
 
 using namespace drape;
@@ -137,4 +138,16 @@ TEST_CASE("broad phase: the limit on pairs, and kinds that differ") {
     CHECK(!phase->overlaps(*phase, count - 1, pairs));
     CHECK_THROWS_WITH(phase->overlaps(*other, count, pairs), Catch::Contains("two kinds"));
   }
+}
+
+TEST_CASE("a tree's search within a run ends when it is told") {
+  // A run of 64 boxes that overlap 50,000 has three million pairs.
+  BoxTree few, many;
+  few.build(Boxes(64, Box::around({0, 0, 0}, {1, 1, 1}, 0)));
+  many.build(Boxes(50000, Box::around({0, 0, 0}, {1, 1, 1}, 0)));
+  long found = 0;
+  few.overlaps(
+      many, 0, [&](int, int) { ++found; }, [&] { return found > 1000; });
+  CHECK(found > 1000);
+  CHECK(found <= 1000 + 64 * 64);
 }
