@@ -69,10 +69,11 @@ class Recorder : public Observer {
     s_.overhead += work.seconds;
     s_.cpu -= work.cpu_seconds;
   }
-  /// Evaluates the metrics on all finished levels and, if `pairs`, on pairs of them, and writes results.json.
+  /// Evaluates the metrics on all finished levels and writes results.json: unless `all`, without those of
+  /// pairs of levels and those that no table shows.
   /// A failed method keeps the results of its earlier levels.
   void method_finished(const std::vector<LevelResult>& results, const std::optional<MethodFailure>& failure,
-                       bool pairs);
+                       bool all);
   /// Finds the reference, if necessary by a further solve under `observer`, and measures the errors of every
   /// method's finest state and of every snapshot. After a `cancelled` run it solves nothing further. Returns
   /// false if the observer requested a stop meanwhile.

@@ -20,6 +20,11 @@ Json& at_dotted(Json& object, const std::string& name) {
                                   : at_dotted(object[name.substr(0, dot)], name.substr(dot + 1));
 }
 
+bool is_in_tables(const Metric& metric) {
+  return std::ranges::any_of(metric.declaration().columns,
+                             [](const MetricColumn& column) { return column.shown != Shown::stored; });
+}
+
 /// "fields/pcs_l0_l2.ply"
 std::string fields_file(const std::string& method, int coarse, int fine) {
   return "fields/" + method + "_l" + std::to_string(coarse) + "_l" + std::to_string(fine) + ".ply";
@@ -90,7 +95,7 @@ void Recorder::measure_pairs(const std::vector<LevelResult>& results) {
 }
 
 void Recorder::method_finished(const std::vector<LevelResult>& results,
-                               const std::optional<MethodFailure>& failure, bool pairs) {
+                               const std::optional<MethodFailure>& failure, bool all) {
   Json& entry = method_entry();
   // A level that failed during recording may have left an entry.
   while (entry["levels"].size() > results.size()) entry["levels"].erase(entry["levels"].size() - 1);
@@ -101,13 +106,13 @@ void Recorder::method_finished(const std::vector<LevelResult>& results,
     Json& state = entry["levels"][i];
     const LevelModel model = scene_.model(r.level)->with_stiffness(r.contact_stiffness);
     for (const auto& [name, metric] : experiment_.metrics)
-      if (metric->scope() == MetricScope::state)
+      if (metric->scope() == MetricScope::state && (all || is_in_tables(*metric)))
         for (const MetricValue& v :
              measure(name, *metric, {scene_.hierarchy.levels[r.level], model, r.x}, state).values)
           at_dotted(state, v.name) = v.value;
   }
   write_collection(s_.method);
-  if (pairs) measure_pairs(results);
+  if (all) measure_pairs(results);
   if (!s_.intersection_free) worst = Outcome::infeasible;
   entry["status"] = failure ? failed : to_string(worst);
   if (failure) {
