@@ -48,12 +48,12 @@ export class Scene {
     this.cloth = Scene.material(false);
     this.painted = Scene.material(true);
     this.solid = Scene.material(false);
-    // Seams are drawn in front of the cloth that they are in.
-    for (const material of [this.cloth, this.painted]) Object.assign(material, {polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1});
+    // Seams are drawn in front of the cloth that they are in; a factor of the slope would show its back along folds.
+    for (const material of [this.cloth, this.painted]) Object.assign(material, {polygonOffset: true, polygonOffsetFactor: 0, polygonOffsetUnits: 60});
     this.solid.uniforms.front.value.set(.45, .47, .5);
     this.solid.uniforms.back.value.set(.45, .47, .5);
     // What lies on an obstacle is drawn in front of it, without speckles.
-    Object.assign(this.solid, {polygonOffset: true, polygonOffsetFactor: 2, polygonOffsetUnits: 2});
+    Object.assign(this.solid, {polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 61});
     this.shade = new THREE.MeshBasicMaterial({color: 0xffffff, side: THREE.DoubleSide});
     this.sun = new THREE.OrthographicCamera();
     this.lines = new THREE.LineBasicMaterial({color: 0xb3261e, visible: false});
@@ -68,27 +68,31 @@ export class Scene {
   static material(painted) {
     return new THREE.ShaderMaterial({
       side: THREE.DoubleSide,
-      uniforms: {painted: {value: painted ? 1 : 0}, opacity: {value: 1}, front: {value: new THREE.Vector3(.83, .76, .66)}, back: {value: new THREE.Vector3(.62, .70, .77)}},
+      uniforms: {painted: {value: painted ? 1 : 0}, square: {value: 0}, opacity: {value: 1}, front: {value: new THREE.Vector3(.83, .76, .66)}, back: {value: new THREE.Vector3(.62, .70, .77)}},
       vertexShader: `
-        attribute vec3 tint;
+        attribute vec3 tint, rest;
         varying vec3 eyeNormal, eyePosition, colour;
+        varying vec2 place;
         void main() {
           vec4 p = modelViewMatrix * vec4(position, 1.0);
           eyePosition = p.xyz;
           eyeNormal = mat3(viewMatrix) * normal;
           colour = tint;
+          place = rest.xz;
           gl_Position = projectionMatrix * p;
         }`,
       fragmentShader: `
         uniform vec3 front, back;
-        uniform float painted, opacity;
+        uniform float painted, opacity, square;
         varying vec3 eyeNormal, eyePosition, colour;
+        varying vec2 place;
         void main() {
           float side = gl_FrontFacing ? 1.0 : -1.0;
           vec3 n = normalize(eyeNormal + vec3(0.0, 0.0, 1e-9)) * side;
           vec3 up = mat3(viewMatrix) * vec3(0.0, 0.0, 1.0);
           vec3 key = normalize(vec3(-0.75, 0.25, 0.25) + 0.62 * up), fill = normalize(vec3(0.8, 0.1, 0.5));
           vec3 base = mix(gl_FrontFacing ? front : back, colour * (gl_FrontFacing ? 1.0 : 0.94), painted);
+          if (square > 0.0 && mod(floor(place.x / square) + floor(place.y / square), 2.0) > 0.5) base *= 0.7;
           float lambert = dot(n, key), direct = max(0.0, (lambert + 0.2) / 1.2);
           float open = 0.5 + 0.5 * dot(n, up);
           vec3 light = vec3(0.98, 0.92, 0.82) * direct * direct + vec3(0.12, 0.14, 0.18) * max(dot(n, fill), 0.0)
@@ -111,7 +115,12 @@ export class Scene {
   }
 
   /// Whether obstacles stand back by some per cent of the scene: a smooth surface lies within its mesh, which rests on them.
-  setBack(on) { this.solid.polygonOffsetUnits = on ? 3000 : 2; }
+  setBack(on) { this.solid.polygonOffsetUnits = on ? 3000 : 61; }
+  /// Darkens every other square of this side [m] in the rest shape; 0 for none.
+  setSquares(side) {
+    for (const material of [this.cloth, this.painted]) material.uniforms.square.value = side;
+    this.draw();
+  }
   /// Shows arrows along warp.
   setWarp(on) {
     this.lines.visible = on;
@@ -154,7 +163,8 @@ export class Scene {
     mesh.geometry.dispose();
   }
 
-  /// Shows a state in a view; null empties it. `tints` is three bytes per vertex, or null for plain cloth.
+  /// Shows a state in a view; null empties it. `tints` is three bytes per vertex, or null for plain cloth; `rest` the place of each
+  /// vertex at rest, for squares.
   setCloth(k, shape) {
     const view = this.views[k];
     if (view.mesh && (!shape || view.mesh.userData.x !== shape.x)) {
@@ -165,10 +175,16 @@ export class Scene {
     if (!view.mesh) {
       view.mesh = this.add(view, shape, this.cloth);
       view.flat = shape.flat && view.mesh.geometry.boundingSphere;
-      if (shape.seams) view.mesh.add(new THREE.LineSegments(new THREE.BufferGeometry().setAttribute('position', view.mesh.geometry.attributes.position).setIndex(shape.seams), this.seams));
+      if (shape.seams) {
+        const lines = new THREE.BufferGeometry();
+        lines.setAttribute('position', view.mesh.geometry.attributes.position);
+        lines.setIndex(shape.seams);  // which returns nothing in older versions of three.js
+        view.mesh.add(new THREE.LineSegments(lines, this.seams));
+      }
       if (shape.warp) view.mesh.add(new THREE.LineSegments(arrows(shape.x, shape.warp, .06 * this.home.radius), this.lines));
     }
     if (shape.tints) view.mesh.geometry.setAttribute('tint', new THREE.BufferAttribute(shape.tints, 3, true));
+    if (shape.rest) view.mesh.geometry.setAttribute('rest', new THREE.BufferAttribute(shape.rest, 3));
     view.mesh.material = shape.tints ? this.painted : this.cloth;
   }
 

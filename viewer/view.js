@@ -25,6 +25,7 @@ export class View {
     this.scrubber = range('viewer-stop', 'Position in the progression', stop => { this.play(false); this.show(stop); });
     this.playing = h('button', {type: 'button', id: 'viewer-play', 'aria-pressed': 'false', click: () => this.play(!this.plays)}, 'Play');
     this.fields = h('span');
+    this.squareSize = h('output', {id: 'viewer-square-size', for: 'viewer-squares'});
     this.ticks = h('span', {class: 'controls', id: 'viewer-methods', role: 'group', 'aria-label': 'Methods shown'});
     this.legend = h('p', {class: 'legend', id: 'viewer-legend', hidden: true});
     this.rounding = h('span', {id: 'viewer-rounding'});
@@ -36,6 +37,7 @@ export class View {
         tick('smooth surface', false, on => { this.smooth = on; this.scene.setBack(on); this.show(this.stop); }, 'viewer-smooth'),
         tick('x-ray', false, on => this.scene.setXray(on), 'viewer-xray'),
         view.levels.some(level => level.warp) ? tick('warp (red arrows)', false, on => this.scene.setWarp(on), 'viewer-warp') : '',
+        view.levels.some(level => level.rest || level.flat) ? tick('squares at rest', false, on => { this.squares = on; this.show(this.stop); }, 'viewer-squares') : '', this.squareSize,
         view.levels.some(level => level.seams) ? [tick('seams', true, on => this.scene.setSeams(on), 'viewer-seams'),
           tick('flat pieces', false, on => { this.flat = on; this.listPanels(); this.show(this.stop); }, 'viewer-flat')] : '',
         button('viewer-reset', 'Reset', () => this.scene.resetView()), button('viewer-png', 'PNG', () => this.savePicture())),
@@ -161,16 +163,23 @@ export class View {
     const [obstacles, index, x, tints] = await Promise.all([this.obstaclesOf(found.state), this.index(entry),
       this.block('x', found.state.x, bytes => positions(bytes, entry.vertices)),
       tinted]);
+    if (this.squares && !this.smooth) {
+      const {flat: pieces, rest} = entry, at = pieces ? await this.flatPieces(pieces, tints, x) : {index, x, tints, rest: rest && await this.block('rest', rest, b => positions(b, entry.vertices))};
+      return {method, end, found, shape: {...at, warp: entry.warp, seams: entry.seams}, obstacles};
+    }
     return {method, end, found, shape: {...this.smooth && surface({index, x, tints}, block ?? '') || {index, x, tints}, warp: entry.warp, seams: !this.smooth && entry.seams}, obstacles};
   }
-  /// The pieces of a level as they are cut, with the colours of its vertices.
-  async flatPieces(flat, tints) {
-    const [index, x] = await Promise.all([this.index(flat), this.block('flat', flat.x, b => positions(b, flat.vertices))]);
-    if (!tints) return {index, x, tints};
-    const all = new tints.constructor(3 * flat.vertices);
-    all.set(tints);
-    flat.copies.forEach((v, k) => all.set(tints.subarray(3 * v, 3 * v + 3), tints.length + 3 * k));
-    return {index, x, tints: all};
+  /// The pieces of a level as they are cut, or where x has its vertices, with the colours of its vertices.
+  async flatPieces(flat, tints, x = null) {
+    const [index, rest] = await Promise.all([this.index(flat), this.block('flat', flat.x, b => positions(b, flat.vertices))]);
+    const all = values => {
+      if (!values) return values;
+      const copied = Object.assign(new values.constructor(3 * flat.vertices), {rounding: values.rounding});
+      copied.set(values);
+      flat.copies.forEach((v, k) => copied.set(values.subarray(3 * v, 3 * v + 3), values.length + 3 * k));
+      return copied;
+    };
+    return {index, x: all(x) ?? rest, rest, tints: all(tints)};
   }
 
   /// Shows a stop once its data are loaded; a later call supersedes it.
@@ -192,6 +201,7 @@ export class View {
     }
     if (this.ticket !== ticket) return;
     if (!this.aimed) this.aim(panels);
+    this.showSquares(panels);
     panels.forEach((panel, k) => {
       this.scene.setCloth(k, panel.shape);
       this.scene.setObstacles(k, this.obstacles ? panel.obstacles : []);
@@ -202,6 +212,15 @@ export class View {
     this.rounding.textContent = !rounding ? '' : `Positions are rounded to ${Number((rounding * 1e6).toPrecision(2))} µm here; the files in levels/ are exact.`;
     this.panels = panels;
     this.scene.draw();
+  }
+
+  /// Squares of a round size, some thirty along the cloth.
+  showSquares(panels) {
+    const box = new THREE.Box3(), rest = this.squares && panels.find(({shape}) => shape?.rest)?.shape.rest;
+    const side = rest ? box.setFromArray(rest).getSize(new THREE.Vector3()).length() / 30 : 0, power = 10 ** Math.floor(Math.log10(side || 1));
+    this.square = side && [1, 2, 5, 10].map(digit => digit * power).find(size => size >= .8 * side);
+    this.scene.setSquares(this.square);
+    say(this.squareSize, side ? `of ${Number((1e3 * this.square).toPrecision(2))} mm` : '');
   }
 
   /// The obstacles where a state has them; a state names those that have moved.

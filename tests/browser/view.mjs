@@ -58,6 +58,11 @@ test('the level slider changes the mesh, the colours and the legend follow the c
   await until('a smooth surface', async () => (await state()).panels.every(p => p.vertices === 33 * 33));
   await page.locator('#viewer-smooth').uncheck();
   await until('the mesh', async () => (await state()).panels.every(p => p.vertices === 81));
+  const plain = (await downloaded(page, '#viewer-png')).bytes;
+  await page.locator('#viewer-squares').check();
+  await until('squares', async () => (await textOf(page, '#viewer-square-size')).startsWith('of '));
+  assert.notDeepEqual((await downloaded(page, '#viewer-png')).bytes, plain);
+  await page.locator('#viewer-squares').uncheck();
   await page.locator('#viewer-obstacles').uncheck();
   await page.locator('#viewer-xray').check();
   assert.ok(await drawnShare(page, '#viewer-canvas') > .02);
@@ -113,6 +118,13 @@ test('sewn cloth has its seams as lines, and its flat pieces beside it in the sa
   const sewn = await picture();
   await page.locator('#viewer-seams').uncheck();
   assert.notDeepEqual(await picture(), sewn);
+  await page.locator('#viewer-seams').check();
+  await page.locator('#viewer-squares').check();
+  await until('cut along its seams', async () => (await state()).panels[0].vertices > draped.vertices);
+  assert.notDeepEqual(await picture(), sewn);
+  assert.match(await textOf(page, '#viewer-square-size'), /^of (10|20|50) mm$/);
+  await page.locator('#viewer-squares').uncheck();
+  await until('whole again', async () => (await state()).panels[0].vertices === draped.vertices);
   await page.locator('#viewer-flat').check();
   await until('two panels', async () => (await state()).panels.length === 2);
   assert.deepEqual((await state()).panels.map(p => p.flat), [false, true]);

@@ -59,7 +59,15 @@ ViewDocument::ViewDocument(const std::vector<Level>& levels, const Obstacles& ob
     level_entries_.push_back(
         {{"vertices", level.vertex_count()}, {"triangles", level.triangle_count()}, {"block", name}});
     if (level.rest.warp.rows() > 0) level_entries_.back()["warp"] = warp_arrows(level);
-    if (level.rest.sewing) add_sewing(level, level_entries_.back());
+    if (level.rest.sewing)
+      add_sewing(level, level_entries_.back());
+    else if (const auto planar = PlanarUv::of(level.rest)) {
+      Positions rest = Positions::Zero(level.vertex_count(), 3);
+      rest.col(0) = level.rest.vertices * planar->axes.row(0).normalized().transpose();
+      rest.col(2) = level.rest.vertices * planar->axes.row(1).normalized().transpose();
+      keep_(name + "-rest", encode_positions(rest));
+      level_entries_.back()["rest"] = name + "-rest";
+    }
   }
   for (std::size_t k = 0; k < obstacles_.size(); ++k) {
     const std::string name = "obstacle" + std::to_string(k);
