@@ -96,6 +96,22 @@ TEST_CASE("A refined cushion has levels below it, although few vertices make its
   }
 }
 
+TEST_CASE("A finer level begins beside a sharp rim over which the coarse cloth is folded") {
+  Solved s{experiment_in(folders::source() / "configs/tablecloth.yaml", {{"cloth.vertices", "1600"},
+                                                                         {"levels", "1"},
+                                                                         {"refiner", "coarsen"},
+                                                                         {"hierarchy", "{coarsen: 1}"}}),
+           nullptr,
+           {}};
+  s.scene = scene_of(s.experiment);
+  run_method(s, "pcs");
+  REQUIRE(s.levels.size() == 2);
+  CHECK(s.levels[1].message.empty());  // else it starts from the scene's start
+  CHECK(s.levels[1].outcome == Outcome::converged);
+  for (const auto& contact : s.scene->models[1]->contacts())
+    CHECK(contact->intersections(s.levels[1].x).empty());
+}
+
 TEST_CASE("A garment with levels below it is dressed on the coarsest, and each finer one starts from it") {
   const Scratch folder;
   TubeDress tube;

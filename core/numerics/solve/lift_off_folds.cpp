@@ -1,9 +1,8 @@
 #include "core/numerics/solve/lift_off_folds.h"
 
 #include <Eigen/Geometry>
-#include <algorithm>
 #include <cmath>
-#include <utility>
+#include <memory>
 #include <vector>
 
 #include "core/numerics/model/required.h"
@@ -39,73 +38,48 @@ Positions outwards(const LevelModel& model, const Positions& x) {
 
 /// Where a state meets something, or, if nowhere, comes nearer than a barrier can part: edges of two layers
 /// may lie in the plane of one coarse triangle.
-struct Meetings {
+std::vector<Eigen::Vector3d> meetings(const LevelModel& model, const Positions& x) {
+  constexpr double least_gap = 1e-3;  // in d̂
   std::vector<Eigen::Vector3d> places;
-  bool intersect = false;
-
-  static Meetings of(const LevelModel& model, const Positions& x) {
-    constexpr double least_gap = 1e-3;  // in d̂
-    Meetings met;
-    for (const auto& contact : model.contacts())
-      for (const Intersection& pair : contact->intersections(x)) met.places.push_back(pair.where);
-    met.intersect = !met.places.empty();
-    if (met.intersect) return met;
-    for (const auto& contact : model.contacts()) {
-      const std::unique_ptr<Collisions> near = collisions_at(*contact, x);
-      const Stencils stencils = near->stencils();
-      std::vector<double> gaps;
-      near->append_gaps(gaps);
-      for (Eigen::Index k = 0; k < std::ssize(gaps); ++k)
-        if (gaps[k] < least_gap * contact->dhat()) met.places.push_back(mean_of(x, stencils.row(k)));
-    }
-    return met;
+  for (const auto& contact : model.contacts())
+    for (const Intersection& pair : contact->intersections(x)) places.push_back(pair.where);
+  if (!places.empty()) return places;
+  for (const auto& contact : model.contacts()) {
+    const std::unique_ptr<Collisions> near = collisions_at(*contact, x);
+    const Stencils stencils = near->stencils();
+    std::vector<double> gaps;
+    near->append_gaps(gaps);
+    for (Eigen::Index k = 0; k < std::ssize(gaps); ++k)
+      if (gaps[k] < least_gap * contact->dhat()) places.push_back(x.row(stencils.row(k).maxCoeff()));
   }
-  bool is_better_than(const Meetings& other) const {
-    return std::pair(intersect, places.size()) < std::pair(other.intersect, other.places.size());
-  }
-
- private:
-  static Eigen::Vector3d mean_of(const Positions& x, const Eigen::RowVectorXi& stencil) {
-    Eigen::Vector3d sum(0, 0, 0);
-    int count = 0;
-    for (const int v : stencil)
-      if (v >= 0) sum += x.row(v).transpose(), ++count;
-    return sum / count;
-  }
-};
+  return places;
+}
 
 }  // namespace
 
 std::optional<Positions> lifted_off_folds(const LevelModel& model, const Positions& interpolated) {
-  constexpr double amounts[] = {1, 2, 0.5, -0.5, -1};  // of the distances to the neighbours' means
-  constexpr double reaches[] = {2, 1, 4};              // of a move around a meeting, in edges
-  constexpr int rounds = 12;
+  constexpr int rounds = 12, outward_rounds = 4;
+  constexpr double step = 0.2, reach = 3;  // of a round's move, in edges
+  constexpr int narrowness = 8;            // the fold's own vertices tell its direction
   const Level& level = model.level();
+  const double edge = std::sqrt(2 * level.vertex_area.sum() / level.triangle_count());
   Positions x = interpolated, direction;
-  Meetings met = Meetings::of(model, x);
-  for (int round = 0; round < rounds && !met.places.empty(); ++round) {
+  for (int round = 0; round < rounds; ++round) {
+    const std::vector<Eigen::Vector3d> places = meetings(model, x);
+    if (places.empty()) return x;
     if (round == 0) direction = outwards(model, interpolated);
-    Positions best = x;
-    Meetings fewest = met;
-    for (const double reach : reaches) {
-      Eigen::VectorXd near = Eigen::VectorXd::Zero(x.rows());
-      for (const Eigen::Vector3d& place : met.places)
-        for (int v = 0; v < level.vertex_count(); ++v)
-          if ((x.row(v).transpose() - place).squaredNorm() < reach * reach * level.vertex_area[v])
-            near[v] = 1;
-      for (const double amount : amounts) {
-        if (fewest.places.empty()) break;
-        Positions moved = x + (amount * near).asDiagonal() * direction;
-        if (Meetings own = Meetings::of(model, moved); own.is_better_than(fewest))
-          fewest = std::move(own), best = std::move(moved);
-      }
-      if (fewest.is_better_than(met)) break;
+    Positions move = Positions::Zero(x.rows(), 3);
+    Eigen::ArrayXd weights = Eigen::ArrayXd::Ones(x.rows());
+    for (const Eigen::Vector3d& place : places) {
+      const Eigen::ArrayXd distances = (x.rowwise() - place.transpose()).rowwise().norm();
+      const Eigen::ArrayXd near = (1 - distances / (reach * edge)).max(0);
+      move += near.matrix() * (near.pow(narrowness).matrix().transpose() * direction).normalized();
+      weights += near;
     }
-    if (!fewest.is_better_than(met)) return std::nullopt;
-    x = std::move(best);
-    met = std::move(fewest);
+    const double length = (round < outward_rounds ? step : -step) * edge;
+    for (int v = 0; v < level.vertex_count(); ++v)
+      if (!model.fixed()[v]) x.row(v) += length / weights[v] * move.row(v);
   }
-  if (met.places.empty()) return x;
   return std::nullopt;
 }
 
