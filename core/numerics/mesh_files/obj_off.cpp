@@ -188,8 +188,10 @@ std::string obj_text(const TriangleMesh& mesh) {
   for (Eigen::Index i = 0; i < corners.uv.rows(); ++i)
     text += "vt " + exact_text(corners.uv(i, 0)) + ' ' + exact_text(corners.uv(i, 1)) + '\n';
   for (int t = 0; t < mesh.triangles.rows(); ++t) {
-    if (!mesh.piece.empty() && (t == 0 || mesh.piece[t] != mesh.piece[t - 1]))
-      text += "g " + mesh.piece_names[mesh.piece[t]] + '\n';
+    if (!mesh.piece.empty() && (t == 0 || mesh.piece[t] != mesh.piece[t - 1])) {
+      const std::string& name = mesh.piece_names[mesh.piece[t]];
+      text += "g " + name + "\nusemtl " + name + '\n';  // Blender keeps materials, and loses groups of faces
+    }
     text += 'f';
     for (int k = 0; k < 3; ++k) {
       text += ' ' + std::to_string(mesh.triangles(t, k) + 1);
