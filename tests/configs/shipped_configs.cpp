@@ -1,4 +1,5 @@
-// Every experiment of the project is sound, and runs: here on a few vertices and two levels.
+// Every experiment of the project is sound, and runs, here on a few vertices and two levels, to what it ran
+// to when a vertex had one rest position in space.
 
 #include <algorithm>
 
@@ -36,10 +37,39 @@ std::string shrunk(const fs::path& config) {
                     : "2 --set cloth.columns=0 --set cloth.rows=0 --set cloth.vertices=256");
 }
 
+/// Whether this is the build of former_runs.json. Others round differently, and cloth that buckles ends in
+/// other folds.
+#if defined __GNUC__ && !defined __clang__ && defined __znver3__ && defined __AVX512F__ && defined NDEBUG
+constexpr bool recorded_build = __GNUC__ == 12 && !DRAPE_SANITIZED;
+#else
+constexpr bool recorded_build = false;
+#endif
+
+/// former_runs.json has the start's energy, and of each level the iterations, the energy and the checksum of
+/// the mesh, as commit 13925e90 ran the experiments that there were: the last one before rest shapes lay on
+/// corners. A change of results writes its own rows there, and says why. So did exits from saddles, of
+/// which the cube has one, and the tablecloth's cylinder, whose curved side was taken from its axis.
+void check_former(const nlohmann::json& former, const fs::path& run) {
+  std::ifstream iterations(run / "iterations.csv");
+  std::string word;
+  std::getline(iterations, word);
+  const auto at = std::count(word.begin(), word.begin() + static_cast<long>(word.find(",energy,")), ',') + 1;
+  for (int k = 0; k <= at; ++k) std::getline(iterations, word, ',');
+  CHECK(std::stod(word) == Approx(former["start"].get<double>()).epsilon(1e-12));
+  auto levels = nlohmann::json::array();
+  const auto methods = results_in(run)["methods"];
+  for (const auto& level : methods.front()["levels"])
+    levels.push_back({level["iterations"], level["energy"], level["mesh_checksum"]});
+  INFO("as it runs now: " << levels);
+  if (recorded_build) CHECK((levels == former["levels"]));
+}
+
 }  // namespace
 
 // By one method: `drape check` reads the others' settings, and other tests solve by every method.
 TEST_CASE("every shipped experiment passes drape check as it is, and converges, made small") {
+  const auto former = json_in(folders::source() / "tests/configs/data/former_runs.json");
+  std::size_t compared = 0;
   for (const fs::path& config : shipped(false)) {
     INFO(config);
     const Scratch folder;
@@ -48,7 +78,12 @@ TEST_CASE("every shipped experiment passes drape check as it is, and converges, 
         "run " + config.string() + " --out out --threads 1 --quiet --no-report --measure" + shrunk(config),
         folder.path);
     CHECK(fs::exists(folder / "out/results.json"));
+    const auto row = former.find(config.lexically_relative(folders::source()).string());
+    if (row == former.end()) continue;
+    check_former(*row, folder / "out");
+    ++compared;
   }
+  CHECK(compared == former.size());
 }
 
 TEST_CASE("every shipped sweep passes drape sweep --dry-run") {
