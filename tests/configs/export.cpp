@@ -159,6 +159,8 @@ TEST_CASE("with --rest a mesh is the rest shape of the finest level, or of the o
     CHECK((mesh.triangles == rest.triangles));
   }
   CHECK(export_refusal("a.glb --rest") == "error: --rest is of meshes; take .obj or .ply\n");
+  CHECK(export_refusal("a.obj --rest --method pcs") ==
+        "error: --method is of states; rest shapes are the same for every method\n");
   CHECK(export_refusal("a.obj --rest --level 2") == "error: --level 2: the run's levels go from 0 to 1\n");
 }
 

@@ -209,6 +209,14 @@ TEST_CASE("A sewn run can be run again from its own config, and goes out as its 
   FileCoordinates{"cm", "y"}.convert(front);
   CHECK(front.isApprox(state.vertices.topRows(n * n), 1e-12));
 
+  drape_ends("export out --to placed.obj --rest --level 0 --as-read", folder);
+  const TriangleMesh placed = read_mesh(folder / "placed.obj");
+  CHECK(placed.vertices.isApprox(own.vertices, 1e-4));  // but for the vertices that were joined
+  CHECK(placed.triangles == own.triangles);
+  CHECK(placed.uv == own.uv);
+  drape_ends("export out --to placed.ply --rest --level 0 --uv-unit m", folder);
+  CHECK(read_mesh(folder / "placed.ply").uv.isApprox(1e-3 * own.uv, 1e-12));
+
   for (const auto& [unit, factor] : {std::pair("mm", 1.), {"m", 1e-3}, {"inch", 1 / 25.4}}) {
     drape_ends("export out --to uv.obj --overwrite --level 0 --uv-unit " + std::string(unit), folder);
     CHECK(read_mesh(folder / "uv.obj").uv.isApprox(factor * own.uv, 1e-12));

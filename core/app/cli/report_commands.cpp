@@ -60,7 +60,8 @@ void add_picture_width(CLI::App& command, std::optional<int>& width, const std::
 
 /// Writes a sweep's garments. Exits with 1 unless all pass.
 int export_sweep(const std::string& folder, const fs::path& to, const ExportOptions& options) {
-  if (to.has_extension() || options.level || options.frames || options.as_read || !options.method.empty())
+  if (to.has_extension() || options.level || options.frames || options.as_read || options.rest ||
+      !options.uv_unit.empty() || !options.method.empty())
     throw std::runtime_error(
         "of a sweep, --to is a folder, and the finest level of every run is exported to it");
   const RunTable table = export_data_set(folder, to, options);
@@ -76,23 +77,6 @@ int export_states(const std::string& folder, const fs::path& file, const ExportO
   std::cout << "written: " << printable(files.front().string());
   if (files.size() > 1) std::cout << " to " << printable(files.back().string());
   std::cout << "\n";
-  return exit_done;
-}
-
-/// Writes the rest shape of a level, by default the finest one's.
-int export_rest(const std::string& folder, const fs::path& file, const ExportOptions& options) {
-  const std::string extension = file.extension().string();
-  if (extension != ".obj" && extension != ".ply")
-    throw std::runtime_error("--rest is of meshes; take .obj or .ply");
-  const RunData run = read_run(folder);
-  const int finest = run.finest_level(), level = options.level.value_or(finest);
-  if (level > finest)
-    throw std::runtime_error("--level " + std::to_string(level) + ": the run's levels go from 0 to " +
-                             std::to_string(finest));
-  refuse_target(file, options.overwrite);
-  const TriangleMesh mesh = run.mesh(rest_file(level));
-  write_file(file, extension == ".obj" ? obj_text(mesh) : ply_bytes(mesh), options.existing());
-  std::cout << "written: " << printable(file.string()) << "\n";
   return exit_done;
 }
 
@@ -191,13 +175,12 @@ int print_table(const Folders& folders, const std::vector<std::string>& columns,
 void add_export_command(Commands& commands) {
   struct Options : ExportOptions {
     std::string folder, file;
-    bool rest = false;
   };
   const auto o = std::make_shared<Options>();
   CLI::App& command =
       commands.add("export", "write states of a run as glTF, OBJ, PLY, VTP or PNG, a sweep's as a data set",
                    "drape export results/sphere --to sphere.glb --frames",
-                   [o] { return (o->rest ? export_rest : export_states)(o->folder, o->file, *o); });
+                   [o] { return export_states(o->folder, o->file, *o); });
   command.add_option("folder", o->folder, "results folder, or a sweep's")->required();
   add_option(
       command, "-o,--to FILE", o->file,

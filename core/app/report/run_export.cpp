@@ -68,9 +68,9 @@ TriangleMesh cloth_mesh(const RunData& run, const LevelRecord& level) {
   return mesh;
 }
 
-/// The cloth in the unit and the axes of the file that it was read from; on the level of that file's mesh
-/// with its vertices and faces.
-TriangleMesh mesh_as_read(const RunData& run, const LevelRecord& level) {
+/// A level's mesh in the unit and the axes of the file that the cloth was read from; on the level of that
+/// file's mesh with its vertices and faces.
+TriangleMesh mesh_as_read(const RunData& run, int level, TriangleMesh mesh) {
   ClothParameters cloth;
   ConfigErrors unread;
   if (const ConfigNode* written = run.config.find("cloth"))
@@ -80,9 +80,8 @@ TriangleMesh mesh_as_read(const RunData& run, const LevelRecord& level) {
     schema_of<HierarchyParameters>().read(&hierarchy, *written, unread);
   const AsReadParameters& read = cloth.as_read;
   if (read.file.empty()) throw std::runtime_error("--as-read: the run's cloth is not of a file");
-  TriangleMesh mesh = cloth_mesh(run, level);
   mesh.vertices = read.in_file(mesh.vertices);
-  if (level.level != hierarchy.coarsen) return mesh;
+  if (level != hierarchy.coarsen) return mesh;
   TriangleMesh own = read_mesh(read.file), joined = own;
   read.convert(joined.vertices);
   joined.vertices *= read.scale;
@@ -102,6 +101,14 @@ void convert_uv(TriangleMesh& mesh, const std::string& unit) {
     mesh.sewing->uv_length = scale_to_picture(mesh);
   else
     mesh.uv *= std::exchange(mesh.sewing->uv_length, metres(0, 0)) / metres(0, 0);
+}
+
+/// A level's mesh as the options want it, as bytes of a .obj or .ply.
+std::string mesh_bytes(const RunData& run, int level, TriangleMesh mesh, const VertexFields& fields,
+                       const std::string& extension, const ExportOptions& options) {
+  if (options.as_read) mesh = mesh_as_read(run, level, std::move(mesh));
+  if (!options.uv_unit.empty()) convert_uv(mesh, options.uv_unit);
+  return extension == ".obj" ? obj_text(mesh) : ply_bytes(mesh, options.as_read ? VertexFields() : fields);
 }
 
 /// A state with its normals, at the vertices that the texture coordinates have split.
@@ -247,9 +254,12 @@ void check_options(const fs::path& file, const ExportOptions& options) {
   if (options.frames && extension != ".glb" && extension != ".png")
     throw std::runtime_error("--frames makes an animation, which " + extension +
                              " cannot hold; take .glb, or .png for numbered pictures");
-  if (options.as_read && extension != ".obj" && extension != ".ply")
-    throw std::runtime_error("--as-read is of meshes; take .obj or .ply");
-  if (!options.uv_unit.empty() && ((extension != ".obj" && extension != ".ply") || options.as_read))
+  const bool of_mesh = extension == ".obj" || extension == ".ply";
+  if (options.as_read && !of_mesh) throw std::runtime_error("--as-read is of meshes; take .obj or .ply");
+  if (options.rest && !of_mesh) throw std::runtime_error("--rest is of meshes; take .obj or .ply");
+  if (options.rest && !options.method.empty())
+    throw std::runtime_error("--method is of states; rest shapes are the same for every method");
+  if (!options.uv_unit.empty() && (!of_mesh || options.as_read))
     throw std::runtime_error("--uv-unit is of a .obj or .ply without --as-read");
   const PictureOptions& picture = options.picture;
   if (extension != ".png" && (picture.width || picture.direction || picture.outline || picture.xray))
@@ -274,6 +284,16 @@ std::vector<fs::path> export_run(const fs::path& folder, const fs::path& file, c
   check_options(file, options);
   const std::string extension = lower_extension(file);
   const RunData run = read_run(folder);
+  if (options.rest) {
+    const int finest = run.finest_level(), level = options.level.value_or(finest);
+    if (level > finest)
+      throw std::runtime_error("--level " + std::to_string(level) + ": the run's levels go from 0 to " +
+                               std::to_string(finest));
+    refuse_target(file, options.overwrite);
+    write_file(file, mesh_bytes(run, level, run.mesh(rest_file(level)), {}, extension, options),
+               options.existing());
+    return {file};
+  }
   const MethodRecord& method = chosen_method(run, options.method);
   std::vector<const LevelRecord*> levels = chosen_levels(method, options.level);
   const bool all_levels = extension == ".glb" ? !options.frames : extension == ".png" && options.frames;
@@ -281,19 +301,12 @@ std::vector<fs::path> export_run(const fs::path& folder, const fs::path& file, c
   if (extension == ".png") return export_pictures(run, method, levels, file, options);
   refuse_target(file, options.overwrite);
   const LevelRecord& level = *levels[0];
-  const auto mesh = [&] {
-    TriangleMesh mesh = options.as_read ? mesh_as_read(run, level) : cloth_mesh(run, level);
-    if (!options.uv_unit.empty()) convert_uv(mesh, options.uv_unit);
-    return mesh;
-  };
-  const auto fields = [&] {
-    return options.as_read ? VertexFields() : read_ply_fields(run.folder / level.mesh);
-  };
+  const auto fields = [&] { return read_ply_fields(run.folder / level.mesh); };
   write_file(file,
-             extension == ".glb"   ? gltf_of(run, method, levels, options.frames)
-             : extension == ".vtp" ? vtp_text(cloth_mesh(run, level), fields())
-             : extension == ".obj" ? obj_text(mesh())
-                                   : ply_bytes(mesh(), fields()),
+             extension == ".glb" ? gltf_of(run, method, levels, options.frames)
+             : extension == ".vtp"
+                 ? vtp_text(cloth_mesh(run, level), fields())
+                 : mesh_bytes(run, level.level, cloth_mesh(run, level), fields(), extension, options),
              options.existing());
   return {file};
 }

@@ -25,6 +25,7 @@ struct ExportOptions {
   std::optional<int> level;  ///< empty: every level of a .glb and of numbered pictures, or the finest
   bool frames = false;  ///< the recorded snapshots: of one level, as an animation in a .glb; or as pictures
   PictureOptions picture;  ///< of a .png alone
+  bool rest = false;       ///< a level's rest shape, by default the finest one's, in place of a state
   bool as_read = false;  ///< in the unit and axes of the cloth's file; on its mesh's level with its vertices
   std::string uv_unit = {};  ///< of the texture coordinates of flat pieces; empty: as they came
   bool overwrite = false;    ///< replace existing files
