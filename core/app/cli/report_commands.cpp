@@ -23,8 +23,6 @@
 #include "core/kernel/files/string_utils.h"
 #include "core/kernel/plugin/loader.h"
 #include "core/kernel/plugin/parameters.h"
-#include "core/numerics/mesh_files/io.h"
-#include "core/numerics/mesh_files/io_formats.h"
 
 namespace drape {
 
