@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "core/kernel/files/message_text.h"
 #include "core/kernel/files/string_utils.h"
@@ -63,8 +64,12 @@ class PanelReader {
       if (vertex.repeats) return refuse(vertex.where, excerpt(vertex.name) + given_twice);
       const auto place = numbers(*vertex.node, 2);
       if (!place)
-        return refuse(vertex.where, "a vertex is [x, y], two numbers, not " + vertex.node->one_line());
+        return refuse(vertex.where, "a vertex is [x, y], two numbers of at most " +
+                                        three_digits(bounds::largest_coordinate) + ", not " +
+                                        excerpt(vertex.node->one_line()));
       vertices_.push_back(units_.length * Vector2d((*place)[0], (*place)[1]));
+      if (!vertex.name.empty())
+        named_vertices_.try_emplace(vertex.name, static_cast<int>(vertex_names_.size()));
       vertex_names_.push_back(vertex.name);
     }
     if (vertices_.size() < 3)
@@ -73,8 +78,8 @@ class PanelReader {
   }
 
   std::optional<int> vertex_of(const ConfigNode& node, const std::string& edge) {
-    const auto named = std::ranges::find(vertex_names_, node.scalar);
-    if (named != vertex_names_.end() && !node.scalar.empty()) return int(named - vertex_names_.begin());
+    if (const auto named = named_vertices_.find(node.scalar); named != named_vertices_.end())
+      return named->second;
     const auto number = parse_integer(node.scalar);
     if (number && *number >= 0 && *number < std::ssize(vertices_)) return *number;
     const bool has_names = !vertex_names_[0].empty();
@@ -145,6 +150,7 @@ class PanelReader {
                       "edge " + name + " begins and ends at one place; make two edges of a closed curve");
       const auto curve = curve_of(e.curvature, name, vertices_[*a], vertices_[*b]);
       if (!curve) return;
+      if (!own.empty()) read_.named_edges.try_emplace(own, static_cast<int>(read_.edge_names.size()));
       read_.edge_names.push_back(own);
       read_.parts.push_back({static_cast<int>(read_.parts.size())});
       read_.panel.edges.push_back({name, *curve, e.label, written.where});
@@ -246,6 +252,7 @@ class PanelReader {
   ReadPanel read_;
   std::vector<Vector2d> vertices_;
   std::vector<std::string> vertex_names_;
+  std::map<std::string, int> named_vertices_;
   std::vector<std::pair<int, int>> ends_;  // vertices of each written edge
 };
 
@@ -253,18 +260,18 @@ class PanelReader {
 
 std::vector<NamedNode> named_nodes(const ConfigNode& node) {
   std::vector<NamedNode> all;
+  std::set<std::string> names = {""};
   for (const ConfigNode& item : node.items) all.push_back({"", &item, item.where, false});
   for (std::size_t i = 0; i < node.entries.size(); ++i) {
     const auto& [name, value] = node.entries[i];
-    all.push_back({name, &value, node.key_locations[i], !name.empty() && node.find(name) != &value});
+    all.push_back({name, &value, node.key_locations[i], !name.empty() && !names.insert(name).second});
   }
   return all;
 }
 
 std::optional<int> ReadPanel::edge_of(const ConfigNode& node, const std::string& user,
                                       ConfigErrors& errors) const {
-  const auto named = std::ranges::find(edge_names, node.scalar);
-  if (named != edge_names.end() && !node.scalar.empty()) return static_cast<int>(named - edge_names.begin());
+  if (const auto named = named_edges.find(node.scalar); named != named_edges.end()) return named->second;
   const auto number = parse_integer(node.scalar);
   if (number && *number >= 0 && *number < std::ssize(parts)) return *number;
   std::vector<std::string> names;

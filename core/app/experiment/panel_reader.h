@@ -39,6 +39,7 @@ struct PatternUnits {
 struct ReadPanel {
   Panel panel;
   std::vector<std::string> edge_names;     ///< as written; "" for one without a name
+  std::map<std::string, int> named_edges;  ///< the first of each name
   std::vector<std::vector<int>> parts;     ///< of each written edge, its edges in the panel
   std::vector<std::pair<int, int>> darts;  ///< their two legs
 

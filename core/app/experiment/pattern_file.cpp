@@ -1,6 +1,8 @@
 #include "core/app/experiment/pattern_file.h"
 
 #include <algorithm>
+#include <map>
+#include <string>
 #include <utility>
 
 #include "core/app/experiment/panel_reader.h"
@@ -18,7 +20,9 @@ using Kind = ConfigNode::Kind;
 /// The seams of a file, by panels that are read.
 class SeamReader {
  public:
-  SeamReader(const std::vector<ReadPanel>& panels, ConfigErrors& errors) : panels_(panels), errors_(errors) {}
+  SeamReader(const std::vector<ReadPanel>& panels, ConfigErrors& errors) : panels_(panels), errors_(errors) {
+    for (int k = 0; k < std::ssize(panels); ++k) named_.try_emplace(panels[k].panel.name, k);
+  }
 
   std::optional<Seam> read(const std::string& name, const ConfigNode& node, const Location& where) {
     const std::size_t before = errors_.size();
@@ -61,23 +65,24 @@ class SeamReader {
                                          node.shown()});
       return;
     }
-    const auto named =
-        std::ranges::find(panels_, panel.scalar, [](const ReadPanel& p) { return p.panel.name; });
-    if (named == panels_.end()) {
+    const auto named = named_.find(panel.scalar);
+    if (named == named_.end()) {
       std::vector<std::string> names;
       for (const ReadPanel& p : panels_) names.push_back(p.panel.name);
       errors_.push_back({panel.where, "seam " + seam + ": there is no panel " + panel.shown() + "; " +
                                           did_you_mean(panel.scalar, names, "there are " + joined(names))});
       return;
     }
-    const auto number = named->edge_of(edge, "seam " + seam, errors_);
+    const ReadPanel& own = panels_[named->second];
+    const auto number = own.edge_of(edge, "seam " + seam, errors_);
     if (!number) return;
-    std::vector<int> parts = named->parts[*number];
+    std::vector<int> parts = own.parts[*number];
     if (against) std::ranges::reverse(parts);
-    for (const int part : parts) side.push_back({static_cast<int>(named - panels_.begin()), part});
+    for (const int part : parts) side.push_back({named->second, part});
   }
 
   const std::vector<ReadPanel>& panels_;
+  std::map<std::string, int> named_;
   ConfigErrors& errors_;
 };
 
@@ -106,8 +111,10 @@ std::optional<Pattern> read_pattern(const std::filesystem::path& file, ConfigErr
   Pattern pattern;
   pattern.up = p.properties.up;
   SeamReader reader(panels, errors);
+  constexpr std::size_t most_faults = 100;
   const ConfigNode& stitches = p.pattern.stitches;
   for (int number = 0; const NamedNode& stitch : named_nodes(stitches)) {
+    if (errors.size() > before + most_faults) break;  // each looks for the name that was meant
     if (stitch.repeats) errors.push_back({stitch.where, "seam " + excerpt(stitch.name) + given_twice});
     const std::string name = stitches.kind == Kind::list ? std::to_string(number++) : stitch.name;
     if (auto seam = reader.read(name, *stitch.node, stitch.where)) pattern.seams.push_back(std::move(*seam));

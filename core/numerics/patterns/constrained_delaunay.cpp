@@ -1,9 +1,13 @@
 #include <CGAL/Constrained_Delaunay_triangulation_2.h>
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
+#include <CGAL/Spatial_sort_traits_adapter_2.h>
 #include <CGAL/Triangulation_face_base_with_info_2.h>
 #include <CGAL/Triangulation_vertex_base_with_info_2.h>
+#include <CGAL/spatial_sort.h>
 
+#include <cstddef>
 #include <map>
+#include <numeric>
 #include <stdexcept>
 
 #include "core/numerics/mesh/cut_polygon.h"
@@ -20,6 +24,21 @@ using Faces = CGAL::Constrained_triangulation_face_base_2<Exact, SidesOf>;
 using Constrained =
     CGAL::Constrained_Delaunay_triangulation_2<Exact, CGAL::Triangulation_data_structure_2<Vertices, Faces>>;
 
+/// The order in which points are inserted. Many along a curve, one after another, would take a time that
+/// grows with the square; a random order that is sorted by place does not.
+std::vector<std::ptrdiff_t> order_of(const std::vector<Eigen::Vector2d>& points) {
+  constexpr std::size_t many =
+      10'000;  // fewer keep their order: among points on a circle it chooses triangles
+  std::vector<std::ptrdiff_t> order(points.size());
+  std::iota(order.begin(), order.end(), 0);
+  if (points.size() < many) return order;
+  std::vector<Exact::Point_2> at;
+  for (const Eigen::Vector2d& p : points) at.emplace_back(p.x(), p.y());
+  using Traits = CGAL::Spatial_sort_traits_adapter_2<Exact, const Exact::Point_2*>;
+  CGAL::spatial_sort(order.begin(), order.end(), Traits(at.data()));
+  return order;
+}
+
 /// The triangulation of what segments enclose.
 struct Enclosed {
   std::vector<std::array<int, 3>> triangles;
@@ -31,14 +50,16 @@ struct Enclosed {
   /// Intersection_of_constraints_exception if two cross.
   Enclosed(const std::vector<Eigen::Vector2d>& points, const std::vector<std::array<int, 2>>& segments) {
     Constrained all;
-    std::vector<Constrained::Vertex_handle> at;
-    for (const Eigen::Vector2d& p : points) {
+    std::vector<Constrained::Vertex_handle> at(points.size());
+    Constrained::Face_handle near;
+    for (const std::ptrdiff_t i : order_of(points)) {
       const auto before = all.number_of_vertices();
-      at.push_back(all.insert({p.x(), p.y()}, at.empty() ? Constrained::Face_handle() : at.back()->face()));
+      at[i] = all.insert({points[i].x(), points[i].y()}, near);
       if (all.number_of_vertices() > before)
-        at.back()->info() = static_cast<int>(at.size()) - 1;
+        at[i]->info() = static_cast<int>(i);
       else
         distinct = false;
+      near = at[i]->face();
     }
     std::map<std::pair<int, int>, int> passes;
     for (const auto& [a, b] : segments)

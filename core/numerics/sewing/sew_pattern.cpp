@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/kernel/files/message_text.h"
 #include "core/numerics/mesh/disjoint_sets.h"
 #include "core/numerics/mesh/mesh_faults.h"
 #include "core/numerics/mesh/rotation.h"
@@ -99,10 +100,11 @@ std::vector<char> turned_panels(const Pattern& pattern, ConfigErrors& errors) {
   };
   std::vector<std::vector<Neighbour>> neighbours(pattern.panels.size());
   for (const Seam& seam : pattern.seams)
-    for (const EdgeIndex& a : seam.sides[0])
-      for (const EdgeIndex& b : seam.sides[1]) {
-        neighbours[a.panel].push_back({b.panel, &seam});
-        neighbours[b.panel].push_back({a.panel, &seam});
+    for (const int side : {0, 1})
+      for (const EdgeIndex& edge : seam.sides[side]) {  // one of the other side stands for all of them
+        const int other = seam.sides[1 - side][0].panel;
+        neighbours[edge.panel].push_back({other, &seam});
+        neighbours[other].push_back({edge.panel, &seam});
       }
   std::vector<char> turned(pattern.panels.size(), 0), found(pattern.panels.size(), 0);
   std::set<const Seam*> faulty;
@@ -129,7 +131,8 @@ std::vector<char> turned_panels(const Pattern& pattern, ConfigErrors& errors) {
 }
 
 /// Appends where the joined panels are no sheet of two sides.
-void check_joints(const Pattern& pattern, const TriangleMesh& cloth, ConfigErrors& errors) {
+void check_joints(const Pattern& pattern, const TriangleMesh& cloth, double edge_length,
+                  ConfigErrors& errors) {
   MeshFaults faults = MeshFaults::of_elements(cloth);
   const auto panel_of = [&](int t) -> const Panel& { return pattern.panels[cloth.piece[t]]; };
   const auto names = [&](const std::vector<int>& triangles) {
@@ -139,13 +142,20 @@ void check_joints(const Pattern& pattern, const TriangleMesh& cloth, ConfigError
     for (const std::string& name : panels) text += (text.empty() ? "" : ", ") + name;
     return (panels.size() == 1 ? "panel " : "panels ") + text;
   };
-  constexpr const char* remedy = "; take one of the seams out, or choose a shorter \"edge_length\"";
+  const double size = std::sqrt(outline_size(pattern).area / static_cast<double>(pattern.panels.size()));
+  const std::string remedy = size > edge_length
+                                 ? "; take one of the seams out, or choose a shorter \"edge_length\""
+                                 : "; the panels are about " + three_digits(size) +
+                                       " m wide, less than \"edge_length\" (" + three_digits(edge_length) +
+                                       " m): check \"units_in_meter\"";
   std::set<std::string> told;
   const auto add = [&](int t, const std::string& text) {
     if (told.insert(text).second) errors.push_back({panel_of(t).where, text + remedy});
   };
   for (const int t : faults.repeating_triangles)
-    add(t, names({t}) + ": its seams join two vertices of one triangle");
+    add(t, names({t}) +
+               ": its seams join two vertices of one triangle; where they join both sides of a corner, "
+               "end them one triangle before it, by a vertex on each side");
   if (!errors.empty()) return;
   for (const auto& [t, other] : faults.doubled_triangles)
     add(t, names({t, other}) + ": the seams lay one triangle on another");
@@ -154,12 +164,13 @@ void check_joints(const Pattern& pattern, const TriangleMesh& cloth, ConfigError
                            std::vector<char>(cloth.triangles.rows(), 0));
   for (const FaultyEdge& edge : faults.crowded_edges)
     add(edge.triangles[0], names(edge.triangles) + " meet at one edge, where a cloth has two triangles");
-  for (const auto& [v, fans] : faults.shared_vertices) {
-    std::vector<int> around;
-    for (int t = 0; t < cloth.triangles.rows(); ++t)
-      if ((cloth.triangles.row(t).array() == v).any()) around.push_back(t);
-    add(around[0], names(around) + " meet at a point only, as seams join it and no edges beside it");
-  }
+  std::map<int, std::vector<int>> around;  // each vertex that is shared its triangles
+  for (const auto& [v, fans] : faults.shared_vertices) around[v];
+  for (int t = 0; t < cloth.triangles.rows(); ++t)
+    for (const int v : cloth.triangles.row(t))
+      if (const auto shared = around.find(v); shared != around.end()) shared->second.push_back(t);
+  for (const auto& [v, triangles] : around)
+    add(triangles[0], names(triangles) + " meet at a point only, as seams join it and no edges beside it");
 }
 
 }  // namespace
@@ -234,7 +245,7 @@ std::optional<TriangleMesh> sew_pattern(const Pattern& pattern, double edge_leng
   cloth.vertices.array().colwise() /= places.array();
   FileCoordinates{"m", pattern.up}.convert(cloth.vertices);
   cloth.sewing = Sewing{};
-  check_joints(pattern, cloth, errors);
+  check_joints(pattern, cloth, edge_length, errors);
   if (errors.size() > before) return std::nullopt;
   return cloth;
 }
