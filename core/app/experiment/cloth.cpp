@@ -13,6 +13,7 @@
 #include "core/numerics/mesh/flat_pieces.h"
 #include "core/numerics/mesh/grain.h"
 #include "core/numerics/mesh/rotation.h"
+#include "core/numerics/mesh/unjoined_borders.h"
 #include "core/numerics/mesh_files/io.h"
 #include "core/numerics/patterns/delaunay.h"
 
@@ -44,25 +45,32 @@ std::vector<std::string> cut(TriangleMesh& cloth, const ClothParameters& c) {
   const bool everywhere = c.grain || along_file;
   if (!everywhere && c.grain_regions.empty()) return {};
   std::vector<char> asked(cloth.triangles.rows(), everywhere);  // where grain is counted from the axis
-  Positions warp =
-      everywhere ? cut_directions(cloth, c.grain_along, c.grain.value_or(0)) : warp_directions(cloth);
+  Eigen::VectorXd degrees = Eigen::VectorXd::Constant(cloth.triangles.rows(), c.grain.value_or(0));
   constexpr double rounding = 1e-12;  // [m]; a flat pattern that was rotated is flat but for round-off
+  Eigen::Array3Xd centroids(3, cloth.triangles.rows());
+  for (Eigen::Index t = 0; t < centroids.cols(); ++t)
+    centroids.col(t) = cloth.vertices(cloth.triangles.row(t), Eigen::all).colwise().mean().transpose();
+  constexpr std::size_t most_regions = 1000;  // each looks at every triangle
+  if (c.grain_regions.size() > most_regions)
+    return {"\"grain_regions\" has " + std::to_string(c.grain_regions.size()) + " entries, of at most " +
+            std::to_string(most_regions) + "; a file's faces may have their own warp_x, warp_y and warp_z"};
   for (std::size_t i = 0; i < c.grain_regions.size(); ++i) {
     const GrainRegionParameters& region = c.grain_regions[i];
-    const Positions own = cut_directions(cloth, c.grain_along, region.grain);
     bool any = false;
-    for (Eigen::Index t = 0; t < warp.rows(); ++t) {
-      const Eigen::Array3d centroid = cloth.vertices(cloth.triangles.row(t), Eigen::all).colwise().mean();
-      if ((centroid < region.lower.array() - rounding).any() ||
-          (centroid > region.upper.array() + rounding).any())
-        continue;
-      warp.row(t) = own.row(t), asked[t] = any = true;
-    }
+    for (Eigen::Index t = 0; t < degrees.size(); ++t)
+      if ((centroids.col(t) >= region.lower.array() - rounding).all() &&
+          (centroids.col(t) <= region.upper.array() + rounding).all())
+        degrees[t] = region.grain, asked[t] = any = true;
     if (!any)
       return {"\"grain_regions\": entry " + std::to_string(i) + " has no triangle's centroid; widen its box"};
   }
   std::vector<std::string> faults = grain_faults(cloth, c.grain_along, asked);
-  if (faults.empty()) cloth.warp = warp;
+  if (!faults.empty()) return faults;
+  const Positions counted = cut_directions(cloth, c.grain_along, degrees);
+  Positions warp = everywhere ? counted : warp_directions(cloth);
+  for (Eigen::Index t = 0; t < warp.rows(); ++t)
+    if (asked[t]) warp.row(t) = counted.row(t);
+  cloth.warp = warp;
   return faults;
 }
 
@@ -186,9 +194,14 @@ std::optional<TriangleMesh> checked_cloth(const Experiment& e, ConfigErrors& err
     std::vector<std::string> faults = check_mesh(*cloth);
     if (faults.empty() && cloth->sewing) faults = check_pieces(*cloth);
     if (faults.empty()) faults = cut(*cloth, c);
-    const std::string placed = c.shape == "pattern" ? "as the panels are placed, " : "";
+    const bool placed = c.shape == "pattern";
     for (const std::string& fault : faults)
-      errors.push_back({e.location_of("cloth"), (c.file.empty() ? "" : c.file + ": ") + placed + fault});
+      errors.push_back({e.location_of("cloth"),
+                        (c.file.empty() ? "" : c.file + ": ") + (placed ? "as the panels are placed, " : "") +
+                            fault +
+                            (placed ? "; where two panels lie face to face, seams twist the cloth unless one "
+                                      "is turned over, as by \"rotation: [0, 180, 0]\""
+                                    : "")});
     if (faults.empty()) return cloth;
   } catch (const std::exception& error) {
     errors.push_back({e.location_of("cloth"), reason_of(error)});

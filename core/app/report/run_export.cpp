@@ -17,6 +17,7 @@
 #include "core/numerics/mesh/flat_pieces.h"
 #include "core/numerics/mesh/same_entries.h"
 #include "core/numerics/mesh/texture_coordinates.h"
+#include "core/numerics/mesh/unjoined_borders.h"
 #include "core/numerics/mesh_files/io.h"
 #include "core/numerics/mesh_files/io_formats.h"
 

@@ -13,25 +13,6 @@
 
 namespace drape {
 
-std::vector<int> join_vertices(TriangleMesh& mesh, double tolerance) {
-  const auto n = static_cast<int>(mesh.vertices.rows());
-  std::vector<int> by_x(n), kept;  // of each set the first vertex
-  std::iota(by_x.begin(), by_x.end(), 0);
-  if (!(tolerance > 0)) return by_x;
-  std::ranges::stable_sort(by_x, {}, [&](int v) { return mesh.vertices(v, 0); });
-  DisjointSets sets(n);
-  for (int i = 0; i < n; ++i)
-    for (int j = i + 1; j < n && mesh.vertices(by_x[j], 0) - mesh.vertices(by_x[i], 0) <= tolerance; ++j)
-      if ((mesh.vertices.row(by_x[j]) - mesh.vertices.row(by_x[i])).norm() <= tolerance)
-        sets.unite(by_x[i], by_x[j]);
-  std::vector<int> joined = sets.numbered();
-  for (int v = 0; v < n; ++v)
-    if (joined[v] == std::ssize(kept)) kept.push_back(v);
-  mesh.vertices = Positions(mesh.vertices(kept, Eigen::all));
-  for (int& corner : mesh.triangles.reshaped()) corner = joined[corner];
-  return joined;
-}
-
 std::vector<int> flat_pieces(const TriangleMesh& mesh, const Topology& topology) {
   DisjointSets sets(static_cast<int>(mesh.triangles.rows()));
   for (int e = 0; e < topology.edges.rows(); ++e)
@@ -52,12 +33,12 @@ std::vector<int> connected_parts(const TriangleMesh& mesh) {
   return sets.numbered();
 }
 
-Positions flat_directions(const TriangleMesh& mesh, GrainAxis along, double degrees) {
-  const double angle = degrees * std::numbers::pi / 180;
+Positions flat_directions(const TriangleMesh& mesh, GrainAxis along, const Eigen::VectorXd& degrees) {
   const Eigen::RowVector3d axis =
       along == GrainAxis::u ? Eigen::RowVector3d(1, 0, 0) : Eigen::RowVector3d(0, 1, 0);
   Positions warp(mesh.triangles.rows(), 3);
   for (Eigen::Index t = 0; t < warp.rows(); ++t) {
+    const double angle = degrees[t] * std::numbers::pi / 180;
     const Eigen::RowVector3d from =
         along == GrainAxis::file && mesh.warp.rows() > 0 ? mesh.warp.row(t) : axis;
     warp.row(t) = std::cos(angle) * from + std::sin(angle) * Eigen::RowVector3d(-from.y(), from.x(), 0);

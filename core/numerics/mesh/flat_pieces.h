@@ -7,10 +7,6 @@
 
 namespace drape {
 
-/// Makes one vertex, at the first one's place, of those that are nearer to each other than `tolerance` [m]; 0
-/// joins none. Texture coordinates stay as they are at the corners. Returns the new index of each vertex.
-std::vector<int> join_vertices(TriangleMesh& mesh, double tolerance);
-
 /// For each triangle a number of its flat piece, from 0 in the order of their first triangles: edges that are
 /// no seams connect it.
 std::vector<int> flat_pieces(const TriangleMesh& mesh, const Topology& topology);
@@ -19,7 +15,7 @@ std::vector<int> flat_pieces(const TriangleMesh& mesh, const Topology& topology)
 std::vector<int> connected_parts(const TriangleMesh& mesh);
 
 /// cut_directions of flat pieces: as they are drawn, from y (for x), u or the mesh's own directions.
-Positions flat_directions(const TriangleMesh& mesh, GrainAxis along, double degrees);
+Positions flat_directions(const TriangleMesh& mesh, GrainAxis along, const Eigen::VectorXd& degrees);
 
 /// Lengths in space over lengths in texture coordinates [m]: by areas, and along u and v alone.
 struct UvLength {

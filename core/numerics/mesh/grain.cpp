@@ -53,11 +53,15 @@ Positions warp_directions(const TriangleMesh& rest) {
 }
 
 Positions cut_directions(const TriangleMesh& rest, GrainAxis along, double degrees) {
+  return cut_directions(rest, along, Eigen::VectorXd::Constant(rest.triangles.rows(), degrees));
+}
+
+Positions cut_directions(const TriangleMesh& rest, GrainAxis along, const Eigen::VectorXd& degrees) {
   if (rest.sewing) return flat_directions(rest, along, degrees);
-  const double angle = degrees * std::numbers::pi / 180;
   Positions warp(rest.triangles.rows(), 3);
   for (Eigen::Index t = 0; t < warp.rows(); ++t) {
     const Sides sides(rest, t);
+    const double angle = degrees[t] * std::numbers::pi / 180;
     Vector first = direction(rest, t, sides, along);
     for (int axis = 0; axis < 3 && first.isZero(0); ++axis) first = sides.projected(Vector::Unit(axis));
     if (angle != 0) first = std::cos(angle) * first + std::sin(angle) * sides.normal.cross(first);

@@ -20,6 +20,8 @@ Positions warp_directions(const TriangleMesh& rest);
 /// triangle's front, or as flat pieces are drawn. Where texture coordinates have no area, the x axis stands
 /// for u.
 Positions cut_directions(const TriangleMesh& rest, GrainAxis along, double degrees);
+/// With an angle for each triangle.
+Positions cut_directions(const TriangleMesh& rest, GrainAxis along, const Eigen::VectorXd& degrees);
 
 /// The first of the triangles marked in `triangles` in which the axis has no direction, and why.
 std::vector<std::string> grain_faults(const TriangleMesh& rest, GrainAxis along,

@@ -5,8 +5,10 @@
 #include <cmath>
 #include <map>
 #include <numeric>
+#include <stdexcept>
 #include <utility>
 
+#include "core/kernel/files/message_text.h"
 #include "core/kernel/interfaces/topology.h"
 #include "core/numerics/mesh/disjoint_sets.h"
 #include "core/numerics/mesh/mesh_faults.h"
@@ -171,31 +173,55 @@ std::vector<TJunction> t_junctions(const TriangleMesh& mesh) {
 
 namespace {
 
+/// Vertices by the cells of a grid as fine as a distance [m].
+class Cells {
+ public:
+  Cells(const Positions& x, double distance) : x_(x), size_(distance) {}
+
+  void add(int v) { all_.emplace(cell_of(v), v); }
+
+  /// Visits the added vertices in the 27 cells around v, at most so many of each, until one is taken.
+  template <class Take>
+  void near(int v, int most, const Take& take) const {
+    const Cell cell = cell_of(v);
+    for (int n = 0; n < 27; ++n) {
+      const int offset[] = {n % 3 - 1, n / 3 % 3 - 1, n / 9 - 1};
+      const Cell near{cell[0] + offset[0], cell[1] + offset[1], cell[2] + offset[2]};
+      const auto [begin, end] = all_.equal_range(near);
+      int visited = 0;
+      for (auto it = begin; it != end && visited < most; ++it, ++visited)
+        if (take(it->second)) return;
+    }
+  }
+
+ private:
+  using Cell = std::array<double, 3>;
+  Cell cell_of(int v) const {
+    return {std::floor(x_(v, 0) / size_), std::floor(x_(v, 1) / size_), std::floor(x_(v, 2) / size_)};
+  }
+
+  const Positions& x_;
+  double size_;
+  std::multimap<Cell, int> all_;
+};
+
 /// Border vertices within their own reach of another one, and within `tolerance` [m].
 template <class Reach>
 Coincidence border_within(const Level& level, double tolerance, const Reach& reach) {
-  // Each border vertex is compared with those in the 27 cells around it, of a grid as fine as the tolerance.
-  using Cell = std::array<double, 3>;
   constexpr int most_compared = 64;  // with those of a cell that has very many
   const Positions& x = level.rest.vertices;
-  std::multimap<Cell, int> seen;
+  Cells seen(x, tolerance);
   Coincidence found;
   for (int v = 0; v < level.vertex_count(); ++v) {
     if (!level.topology.on_border[v]) continue;
-    Cell cell;
-    for (int c = 0; c < 3; ++c) cell[c] = std::floor(x(v, c) / tolerance);
     int on = -1;
-    for (int n = 0; n < 27 && on < 0; ++n) {
-      const int offset[] = {n % 3 - 1, n / 3 % 3 - 1, n / 9 - 1};
-      const Cell near{cell[0] + offset[0], cell[1] + offset[1], cell[2] + offset[2]};
-      const auto [begin, end] = seen.equal_range(near);
-      int compared = 0;
-      for (auto it = begin; it != end && on < 0 && compared < most_compared; ++it, ++compared)
-        if (const double d = (x.row(v) - x.row(it->second)).norm();
-            d < tolerance && d < std::min(reach(v), reach(it->second)))
-          on = it->second;
-    }
-    seen.emplace(cell, v);
+    seen.near(v, most_compared, [&](int other) {
+      const double d = (x.row(v) - x.row(other)).norm();
+      const bool within = d < tolerance && d < std::min(reach(v), reach(other));
+      if (within) on = other;
+      return within;
+    });
+    seen.add(v);
     if (on < 0) continue;
     if (found.count++ == 0) found = {on, v, 1};
   }
@@ -203,6 +229,38 @@ Coincidence border_within(const Level& level, double tolerance, const Reach& rea
 }
 
 }  // namespace
+
+std::vector<int> join_vertices(TriangleMesh& mesh, double tolerance) {
+  constexpr double rounding = 1e-9;  // of the tolerance
+  constexpr long most_each = 300;    // compared on average; those of a soup of triangles are some tens
+  const auto n = static_cast<int>(mesh.vertices.rows());
+  if (!(tolerance > 0)) {
+    std::vector<int> same(n);
+    std::iota(same.begin(), same.end(), 0);
+    return same;
+  }
+  DisjointSets sets(n);
+  Cells seen(mesh.vertices, tolerance * (1 + rounding));
+  long compared = 0;
+  for (int v = 0; v < n; ++v) {
+    seen.near(v, n, [&](int other) {
+      if ((mesh.vertices.row(other) - mesh.vertices.row(v)).norm() <= tolerance) sets.unite(other, v);
+      return ++compared > most_each * (n + most_each);
+    });
+    if (compared > most_each * (n + most_each))
+      throw std::runtime_error(
+          "\"join\" of " + three_digits(tolerance) +
+          " m is larger than many edges: it would join hundreds of vertices to one; take "
+          "less than the shortest edge");
+    seen.add(v);
+  }
+  std::vector<int> joined = sets.numbered(), kept;  // of each set the first vertex
+  for (int v = 0; v < n; ++v)
+    if (joined[v] == std::ssize(kept)) kept.push_back(v);
+  mesh.vertices = Positions(mesh.vertices(kept, Eigen::all));
+  for (int& corner : mesh.triangles.reshaped()) corner = joined[corner];
+  return joined;
+}
 
 Coincidence coincident_border(const Level& level, double tolerance) {
   return border_within(level, tolerance, [&](int) { return tolerance; });

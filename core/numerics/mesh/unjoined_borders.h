@@ -10,6 +10,11 @@ namespace drape {
 /// For each vertex of one mesh in several frames the first one that is at its place in all of them.
 std::vector<int> first_at_place(const std::vector<TriangleMesh>& frames);
 
+/// Makes one vertex, at the first one's place, of those that are nearer to each other than `tolerance` [m]; 0
+/// joins none. Texture coordinates stay as they are at the corners. Returns the new index of each vertex.
+/// Throws std::runtime_error if hundreds of vertices on average are about as near as the tolerance.
+std::vector<int> join_vertices(TriangleMesh& mesh, double tolerance);
+
 /// Whether a mesh has lost the joints of its faces: it falls into pieces of one or two triangles, and most of
 /// their edges coincide with others, bit for bit.
 bool is_soup(const TriangleMesh& mesh);

@@ -2,6 +2,8 @@
 #include <algorithm>
 #include <array>
 #include <iterator>
+#include <map>
+#include <string>
 
 #include "core/kernel/files/message_text.h"
 #include "core/kernel/files/number_text.h"
@@ -72,12 +74,13 @@ std::array<double, 2> obj_uv(const TextReader& reader) {
 struct ObjParts {
   std::string_view keyword;
   std::vector<std::string> names = {};
+  std::map<std::string, int> numbers = {};  ///< of the names
   std::vector<int> of_triangle = {};
   int current = -1;
 
   void name(const std::vector<std::string_view>& words) {
     const std::string name(words.size() > 1 ? words[1] : "default");
-    current = static_cast<int>(std::ranges::find(names, name) - names.begin());
+    current = numbers.try_emplace(name, static_cast<int>(names.size())).first->second;
     if (current == std::ssize(names)) names.push_back(name);
   }
 };

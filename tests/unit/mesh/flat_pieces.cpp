@@ -6,6 +6,7 @@
 #include "core/numerics/mesh/check.h"
 #include "core/numerics/mesh/rotation.h"
 #include "core/numerics/mesh/seams.h"
+#include "core/numerics/mesh/unjoined_borders.h"
 #include "core/numerics/patterns/generate.h"
 #include "tests/support/sewn.h"
 #include "tests/unit/mesh/mesh_files.h"
