@@ -78,21 +78,27 @@ std::string unknown_obstacle(const Experiment& e, const std::string& obstacle) {
                                     : "the names are " + joined(names));
 }
 
-/// The index of the obstacle that a pin follows; none if it follows none, or one that is unknown.
-std::optional<std::size_t> followed_by(const Experiment& e, std::size_t pin) {
+/// For each pin the index of the obstacle that it follows; none if it follows none, or one that is unknown.
+std::vector<std::optional<std::size_t>> followed_by_pins(const Experiment& e) {
   const ConfigNode* obstacles = e.resolved.find("obstacles");
-  const std::string& named = e.parameters.pins[pin].follow.obstacle;
-  return obstacles && !named.empty() ? obstacles->index_of(named) : std::nullopt;
+  std::map<std::string, std::optional<std::size_t>> known;  // a list of many is searched once for each name
+  std::vector<std::optional<std::size_t>> followed;
+  for (const PinParameters& pin : e.parameters.pins) {
+    const auto [name, is_new] = known.try_emplace(pin.follow.obstacle);
+    if (is_new && obstacles && !name->first.empty()) name->second = obstacles->index_of(name->first);
+    followed.push_back(name->second);
+  }
+  return followed;
 }
 
 /// For each pin that follows, another one that shares vertices with it on a level and does not follow as it
 /// does; empty without one. Each is compared with the first that selects the vertex.
-std::vector<std::string> conflicts(const Experiment& e, const Level& level, const Level& coarsest) {
+std::vector<std::string> conflicts(const Experiment& e,
+                                   const std::vector<std::optional<std::size_t>>& followed,
+                                   const Level& level, const Level& coarsest) {
   const std::vector<PinParameters>& pins = e.parameters.pins;
   std::vector<std::string> found(pins.size());
   std::vector<int> first(level.vertex_count(), -1);
-  std::vector<std::optional<std::size_t>> followed;
-  for (std::size_t k = 0; k < pins.size(); ++k) followed.push_back(followed_by(e, k));
   const auto add = [&](int pin, int other, int vertex) {
     if (pins[pin].follow.obstacle.empty() || !found[pin].empty()) return;
     const bool same = followed[pin] == followed[other];
@@ -114,9 +120,10 @@ std::vector<std::string> conflicts(const Experiment& e, const Level& level, cons
 /// Attaches pins to the obstacles that they follow.
 class Follower {
  public:
-  Follower(const Experiment& e, const Scene& scene) : e_(e), scene_(scene), order_(e.obstacle_order()) {
+  Follower(const Experiment& e, const Scene& scene)
+      : e_(e), scene_(scene), order_(e.obstacle_order()), followed_(followed_by_pins(e)) {
     for (const Level& level : scene.hierarchy.levels)
-      conflicts_.push_back(conflicts(e, level, scene.hierarchy.levels[0]));
+      conflicts_.push_back(conflicts(e, followed_, level, scene.hierarchy.levels[0]));
     for (const auto& model : scene.models) {
       meshes_.push_back(obstacles_of(model->contacts()));
       std::vector<std::vector<DirichletVertex>>& own = held_.emplace_back(e.parameters.pins.size());
@@ -127,7 +134,7 @@ class Follower {
   /// Attaches a pin's vertices on every level; returns the first fault, empty without one.
   std::string attach(int pin, std::vector<FollowingVertices>& levels) {
     const std::string& obstacle = e_.parameters.pins[pin].follow.obstacle;
-    const std::optional<std::size_t> index = followed_by(e_, pin);
+    const std::optional<std::size_t> index = followed_[pin];
     if (!index) return unknown_obstacle(e_, obstacle);
     const Eigen::Index place = std::ranges::find(order_, *index) - order_.begin();
     for (std::size_t l = 0; l < levels.size(); ++l) {
@@ -172,7 +179,7 @@ class Follower {
 
   /// The number of vertices in the file of the obstacle that the pin follows; without one, that of its mesh.
   Eigen::Index vertices_of_file(int pin, const TriangleMesh& mesh) {
-    const ConfigNode& obstacle = e_.resolved.find("obstacles")->items[*followed_by(e_, pin)];
+    const ConfigNode& obstacle = e_.resolved.find("obstacles")->items[*followed_[pin]];
     const ConfigNode *file = obstacle.find("mesh"), *frames = obstacle.find("animation");
     if (frames && !frames->items.empty()) file = &frames->items[0];
     if (!file || file->scalar.empty()) return mesh.vertices.rows();
@@ -184,6 +191,7 @@ class Follower {
   const Experiment& e_;
   const Scene& scene_;
   const std::vector<std::size_t> order_;
+  const std::vector<std::optional<std::size_t>> followed_;
   // On each level: for each pin another one that wants its vertices elsewhere, the obstacles' meshes, and the
   // vertices that each pin holds.
   std::vector<std::vector<std::string>> conflicts_;

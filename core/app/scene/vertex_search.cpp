@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <set>
 
 #include "core/numerics/mesh/seams.h"
 
@@ -10,26 +11,21 @@ namespace drape {
 
 namespace {
 
-/// The vertices of a piece, or the ends of its border edges or seams, or of all seams.
-std::vector<int> vertices_of_piece(const VertexSelection& selection, const Level& level) {
+/// The vertices of a piece's triangles, or the ends of their border edges or seams.
+std::vector<int> vertices_of_piece(const VertexSelection& selection, const Level& level,
+                                   const std::vector<int>& triangles) {
   const TriangleMesh& rest = level.rest;
-  const auto has = [&](int t) {
-    return !selection.piece || (!rest.piece.empty() && rest.piece_names[rest.piece[t]] == *selection.piece);
-  };
-  std::vector<char> chosen(level.vertex_count(), 0);
-  for (int t = 0; t < level.triangle_count(); ++t)
-    for (int k = 0; k < 3 && has(t); ++k) {
+  std::set<int> chosen;
+  for (const int t : triangles)
+    for (int k = 0; k < 3; ++k) {
       const int e = level.topology.triangle_edges(t, k);
       const bool whole = selection.region == "piece", edge = selection.region == "seam"
                                                                  ? is_seam(rest, level.topology, e)
                                                                  : level.topology.edge_triangles(e, 1) == -1;
       if (whole || edge)
-        for (const int corner : {(k + 1) % 3, (k + 2) % 3}) chosen[rest.triangles(t, corner)] = 1;
+        for (const int corner : {(k + 1) % 3, (k + 2) % 3}) chosen.insert(rest.triangles(t, corner));
     }
-  std::vector<int> vertices;
-  for (int v = 0; v < level.vertex_count(); ++v)
-    if (chosen[v]) vertices.push_back(v);
-  return vertices;
+  return {chosen.begin(), chosen.end()};
 }
 
 /// The vertices on the edges of a label: those of finer levels lie on the coarsest level's edges, in the
@@ -70,6 +66,8 @@ VertexSearch::VertexSearch(const Level& level, const Level& coarsest, std::size_
   constexpr std::size_t few = 16;  // for which trees do not pay
   for (int v = 0; v < level.vertex_count(); ++v)
     if (level.topology.on_border[v]) border_.push_back(v);
+  for (int t = 0; t < std::ssize(level.rest.piece); ++t)
+    triangles_[level.rest.piece_names[level.rest.piece[t]]].push_back(t);
   if (count <= few) return;
   const auto build = [](std::optional<BoxTree>& tree, const Level& of) {
     std::vector<Box> boxes;
@@ -109,6 +107,15 @@ std::vector<int> VertexSearch::candidates(const VertexSelection& selection) cons
   return found;
 }
 
+std::vector<int> VertexSearch::selected_by_name(const VertexSelection& selection) const {
+  if (selection.region == "label") return vertices_of_label(selection, level_, coarsest_);
+  std::vector<int> all(level_.triangle_count());
+  std::iota(all.begin(), all.end(), 0);
+  if (!selection.piece) return vertices_of_piece(selection, level_, all);
+  const auto piece = triangles_.find(*selection.piece);
+  return piece == triangles_.end() ? std::vector<int>() : vertices_of_piece(selection, level_, piece->second);
+}
+
 std::vector<int> VertexSearch::selected(const VertexSelection& selection) const {
   std::vector<int> selected;
   if (selection.region == "vertices") {
@@ -119,10 +126,13 @@ std::vector<int> VertexSearch::selected(const VertexSelection& selection) const 
     selected.erase(std::unique(selected.begin(), selected.end()), selected.end());
     return selected;
   }
-  if (selection.region == "label") return vertices_of_label(selection, level_, coarsest_);
-  if (selection.region == "piece" || selection.region == "seam" ||
-      (selection.piece && selection.region == "border"))
-    return vertices_of_piece(selection, level_);
+  if (selection.region == "label" || selection.region == "piece" || selection.region == "seam" ||
+      (selection.piece && selection.region == "border")) {
+    const auto [known, is_new] =
+        named_.try_emplace({selection.region, selection.piece.value_or(""), selection.label.value_or("")});
+    if (is_new) known->second = selected_by_name(selection);
+    return known->second;
+  }
   std::vector<int> among = candidates(selection);
   if (selection.region == "nearest") {
     const int nearest = *std::ranges::min_element(among, {}, [&](int v) {

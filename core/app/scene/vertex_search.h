@@ -1,6 +1,9 @@
 #pragma once
 
+#include <array>
+#include <map>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "core/app/experiment/experiment_parameters.h"
@@ -21,10 +24,13 @@ class VertexSearch {
  private:
   /// Those among which the selected ones are, ascending.
   std::vector<int> candidates(const VertexSelection& selection) const;
+  std::vector<int> selected_by_name(const VertexSelection& selection) const;
 
   const Level &level_, &coarsest_;
   std::vector<int> border_;
-  std::optional<BoxTree> tree_, coarse_tree_;  // the second one only of another level
+  std::optional<BoxTree> tree_, coarse_tree_;          // the second one only of another level
+  std::map<std::string, std::vector<int>> triangles_;  // of each piece
+  mutable std::map<std::array<std::string, 3>, std::vector<int>> named_;  // found by region, piece and label
 };
 
 }  // namespace drape
