@@ -172,7 +172,14 @@ void refuse_intersecting_start(const Experiment& e, const LevelModel& model, con
   const std::string few =
       model.level().cloth_vertices.empty() ? "" : ", or ask for fewer levels below the cloth's mesh";
   for (const auto& contact : model.contacts()) {
-    const std::vector<Intersection> found = contact->intersections(start);
+    std::vector<Intersection> found;
+    try {
+      found = contact->intersections(start);
+    } catch (const std::runtime_error& error) {  // too many to look for
+      errors.push_back({e.location_of("start"),
+                        "the start of level " + std::to_string(model.level().index) + ": " + error.what()});
+      continue;
+    }
     for (std::size_t k = 0; k < std::min(found.size(), max_listed); ++k)
       errors.push_back({e.location_of("start"), "the start of level " + std::to_string(model.level().index) +
                                                     " touches" + remark + ": " + to_string(found[k])});

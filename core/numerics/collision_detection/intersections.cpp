@@ -6,7 +6,8 @@
 
 #include <Eigen/Geometry>
 #include <array>
-#include <limits>
+#include <stdexcept>
+#include <string>
 
 #include "core/kernel/threads/parallel.h"
 #include "core/numerics/collision_detection/broad_phase.h"
@@ -126,21 +127,25 @@ std::unique_ptr<BroadPhase> broad_phase_of(const TriangleMesh& mesh, const Trian
   return phase;
 }
 
-constexpr long unlimited = std::numeric_limits<long>::max();
+/// The pairs of triangles whose boxes overlap. A mesh without crossings has some tens for each triangle.
+AdjacencyList near_pairs(const TriangleMesh& mesh, const TriangleMesh& other, bool same) {
+  const long most = 2'000'000 + 100 * (mesh.triangles.rows() + (same ? 0 : other.triangles.rows()));
+  AdjacencyList candidates;
+  const auto own = broad_phase_of(mesh, mesh);
+  if (own->overlaps(same ? *own : *broad_phase_of(other, mesh), most, candidates)) return candidates;
+  throw std::runtime_error("more than " + std::to_string(most) +
+                           " pairs of triangles lie across or beside one another: too many to look for "
+                           "crossings; take a mesh whose triangles do not crowd or cross");
+}
 
 }  // namespace
 
 std::vector<TrianglePair> self_intersections(const TriangleMesh& mesh) {
-  AdjacencyList candidates;
-  const auto phase = broad_phase_of(mesh, mesh);
-  phase->overlaps(*phase, unlimited, candidates);
-  return meeting(mesh, mesh, true, candidates);
+  return meeting(mesh, mesh, true, near_pairs(mesh, mesh, true));
 }
 
 std::vector<TrianglePair> intersections(const TriangleMesh& mesh, const TriangleMesh& other) {
-  AdjacencyList candidates;
-  broad_phase_of(mesh, mesh)->overlaps(*broad_phase_of(other, mesh), unlimited, candidates);
-  return meeting(mesh, other, false, candidates);
+  return meeting(mesh, other, false, near_pairs(mesh, other, false));
 }
 
 std::optional<Eigen::Index> first_outside(const TriangleMesh& closed, const Positions& points) {

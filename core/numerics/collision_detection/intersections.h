@@ -16,7 +16,8 @@ struct TrianglePair {
 /// Pairs first < second of one mesh's triangles that intersect or touch, by exact predicates, in order.
 /// Triangles that share an edge intersect if they are coplanar and overlap; those that share a vertex, if
 /// they meet elsewhere too (as in CGAL's self_intersections). A degenerate triangle counts as intersecting
-/// every triangle whose bounding box its own overlaps.
+/// every triangle whose bounding box its own overlaps. Throws std::runtime_error if more than two million
+/// boxes overlap and more than 100 for each triangle.
 std::vector<TrianglePair> self_intersections(const TriangleMesh& mesh);
 
 /// Pairs of a triangle of one mesh and one of another that intersect or touch, by exact predicates, in order.

@@ -16,8 +16,9 @@
 namespace drape::ipc {
 namespace {
 
-/// Some ten times the pairs of boxes of a cloth of 200K vertices with d̂ equal to its edge length.
-constexpr long max_pairs = 50'000'000;
+/// For each vertex some ten times the pairs of boxes of a large cloth with d̂ equal to its edge length, and
+/// more of a small cloth.
+constexpr long pairs_each = 250, pairs_of_any = 1'000'000;
 /// Two primitives are neighbours if a path along the cloth connects them that stays within this distance, in
 /// d̂, of the middle between their nearest points.
 constexpr double neighbourhood = 2;
@@ -30,12 +31,14 @@ std::vector<ContactPair> pairs_within_dhat(const Surface& cloth, const Positions
   const Positions none;
   std::vector<ContactPair> found;
   long boxes = 0;
-  const PairLimits limits{max_pairs, std::numeric_limits<long>::max()};
+  const long most = pairs_of_any + pairs_each * rest.rows();
+  const PairLimits limits{most, std::numeric_limits<long>::max()};
   if (!SelfPairSearch(cloth, BroadPhaseKind::bvh)
            .find({rest, rest, dhat, none, none}, 0, limits, boxes, found))
-    throw std::runtime_error(
-        "contact \"ipc\": more than 50 million pairs of the resting cloth's vertices, edges and triangles "
-        "are within \"dhat\" of each other; lower it to half the length of an edge");
+    throw std::runtime_error("contact \"ipc\": more than " + std::to_string(most) +
+                             " pairs of the resting cloth's vertices, edges and triangles are within "
+                             "\"dhat\" of each other; lower it to half the length of an edge, or take a mesh "
+                             "whose triangles do not crowd");
   return found;
 }
 

@@ -25,7 +25,7 @@ namespace drape::ipc {
 class RestLayers {
  public:
   /// The pairs of the level's rest shape; `cloth` is its surface. Throws std::runtime_error if there are more
-  /// than 50 million.
+  /// than a million and 250 for each vertex.
   static RestLayers of(const Surface& cloth, const Level& level, double dhat);
 
   /// d̂ of a self pair [m], 0 for a pair without a barrier.

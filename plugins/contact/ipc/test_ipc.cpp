@@ -262,6 +262,6 @@ TEST_CASE("ipc: a dhat larger than the cloth is refused before its pairs exceed 
   CHECK_NOTHROW(Ipc(p).bind(level, Material()));
   p.dhat = 1000;
   CHECK_THROWS_WITH(Ipc(p).bind(level, Material()),
-                    Catch::Contains("more than 50 million pairs of the resting cloth's vertices, edges and "
+                    Catch::Contains("more than 2600000 pairs of the resting cloth's vertices, edges and "
                                     "triangles are within \"dhat\" of each other"));
 }
