@@ -46,9 +46,16 @@ fs::path cache_folder() {
                             : temporary_folder() / ("drape-cache-" + std::to_string(geteuid()));
 }
 
-/// Makes a folder in the cache, both for this user alone. Throws std::runtime_error, which names the
-/// variable, if it cannot be made, if another user may have put a library there, or if DRAPE_PLUGIN_PATH
-/// cannot name it.
+/// Whether a library is this user's or root's, and nobody else may write to it.
+bool is_own(const fs::path& library) {
+  struct stat status {};
+  return lstat(library.c_str(), &status) == 0 && S_ISREG(status.st_mode) &&
+         (status.st_uid == geteuid() || status.st_uid == 0) && !(status.st_mode & (S_IWGRP | S_IWOTH));
+}
+
+/// Makes a folder in the cache, both for this user alone, and empties those that others might write to until
+/// now. Throws std::runtime_error, which names the variable, if it cannot be made, if it is another user's,
+/// or if DRAPE_PLUGIN_PATH cannot name it.
 void make_cache(const fs::path& folder) {
   const auto refuse = [&](const std::string& why) {
     throw std::runtime_error("--plugin: " + why + "; name a folder for it in the variable XDG_CACHE_HOME");
@@ -61,8 +68,11 @@ void make_cache(const fs::path& folder) {
     const bool is_folder = lstat(own.c_str(), &status) == 0 && S_ISDIR(status.st_mode);
     if (!is_folder || (status.st_uid != geteuid() && status.st_uid != 0))
       refuse("another user may have put a library into " + own.string());
-    if (status.st_mode & (S_IWGRP | S_IWOTH) && chmod(own.c_str(), S_IRWXU) != 0)
-      refuse("other users may write to " + own.string());
+    if (!(status.st_mode & (S_IWGRP | S_IWOTH))) continue;
+    if (chmod(own.c_str(), S_IRWXU) != 0) refuse("other users may write to " + own.string());
+    fs::remove_all(folder, error);
+    if (error || (fs::create_directory(folder, error), error))
+      refuse("cannot empty " + folder.string() + ", to which other users might write");
   }
   if (folder.string().find(':') != std::string::npos)
     refuse("\":\" separates the folders of DRAPE_PLUGIN_PATH, so that it cannot name " + folder.string());
@@ -112,7 +122,7 @@ fs::path compiled(const fs::path& source) {
   fs::path folder = cache_folder() / name.str();
   const fs::path library = folder / (source.stem().string() + ".so");
   make_cache(folder);
-  if (fs::exists(library)) return folder;
+  if (is_own(library)) return folder;
 
   const fs::path made = folder / (std::to_string(getpid()) + ".part");
   words.insert(words.end(), {"-o", made.string(), "-L" + libraries.string(), "-ldrape"});
