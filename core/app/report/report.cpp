@@ -145,10 +145,9 @@ Json run_json(const RunRecord& run, const fs::path& from) {
 }
 
 /// Only a page of drape's may be replaced: its title says so.
-void refuse_other_file(const fs::path& page) {
+void refuse_other_file(const fs::path& page, const std::string& remedy) {
   if (fs::exists(page) && read_file(page).find(" – drape</title>") == std::string::npos)
-    throw std::runtime_error(page.string() +
-                             ": is there already, and no report of drape; name another page with --out");
+    refuse_path(page, "is there already, and no report of drape; " + remedy);
 }
 
 /// Before anything is drawn or written.
@@ -161,6 +160,7 @@ void refuse_unwritable(const fs::path& folder, const std::string& remedy) {
 
 std::vector<std::string> write_report(const fs::path& folder, const std::function<bool()>& cancelled,
                                       std::optional<int> picture_width) {
+  refuse_other_file(folder / "report.html", "move it");
   const RunCollection collection = read_runs({folder});
   refuse_unwritable(folder, "copy the folder to where it can, and name the copy");
   const RunData& run = *collection.runs.front().data;
@@ -191,7 +191,7 @@ std::vector<std::string> write_report(const fs::path& folder, const std::functio
 }
 
 void write_runs_report(const std::vector<fs::path>& folders, const fs::path& file) {
-  refuse_other_file(file);
+  refuse_other_file(file, "name another page with --out");
   const RunCollection collection = read_runs(folders);
   const fs::path place = fs::absolute(file).lexically_normal();
   const fs::path parent = file.parent_path();
