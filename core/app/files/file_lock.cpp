@@ -52,9 +52,8 @@ bool FileLock::acquire(double patience) {
   char host[256] = "";
   gethostname(host, sizeof host - 1);
   const std::string self = std::string(holder_begins) + std::to_string(getpid()) + " on " + host + "\n";
-  if (ftruncate(file_, 0) != 0 || pwrite(file_, self.data(), self.size(), 0) < 0)
-    refuse_path(name_, "cannot write (is the disk full?)");
-  return true;
+  if (ftruncate(file_, 0) == 0 && pwrite(file_, self.data(), self.size(), 0) == std::ssize(self)) return true;
+  refuse_path(name_, "cannot write (is the disk full?)");
 }
 
 std::string FileLock::holder() const { return boost::trim_right_copy(read_file(name_)); }

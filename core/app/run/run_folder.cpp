@@ -201,6 +201,8 @@ RunFolder::RunFolder(std::filesystem::path path, bool overwrite,
     lock();
   } catch (...) {
     std::error_code error;
+    if (!made.empty() && fs::is_empty(file(lock_name), error) && !error) fs::remove(file(lock_name), error);
+    if (!made.empty()) fs::remove(file("checkpoint"), error);
     for (const fs::path& folder : made) fs::remove(folder, error);  // removes only empty ones
     throw;
   }
