@@ -238,6 +238,89 @@ TEST_CASE("A vertex or an edge of very many triangles is refused") {
   }
 }
 
+TEST_CASE("A pattern of very many edges, darts or seams is read in time") {
+  const auto pattern = [](const std::string& panel, const std::string& stitches) {
+    const Scratch folder("name: large\nlevels: 1\ncloth: {shape: pattern, file: p.yaml, edge_length: 1}\n" +
+                         rest_of_experiment);
+    folder.write("p.yaml", "pattern:\n  panels: {a: " + panel + "}\n  stitches: [" + stitches + "]\n");
+    return checked(folder);
+  };
+  const auto ring = [](int count) {
+    std::ostringstream text;
+    text << "{vertices: {";
+    for (int k = 0; k < count; ++k)
+      text << "v" << k << ": [" << 2000 * std::cos(2 * std::numbers::pi * k / count) << ", "
+           << 2000 * std::sin(2 * std::numbers::pi * k / count) << "], ";
+    text << "}, edges: {";
+    for (int k = 0; k < count; ++k) text << "e" << k << ": [v" << k << ", v" << (k + 1) % count << "], ";
+    return text.str() + "}}";
+  };
+  CHECK(pattern(ring(30000), "").exit_code == 0);
+  const Ended faulty = pattern(ring(5000), repeated(20000, [](int) { return "[a.x, a.y], "; }));
+  CHECK_THAT(faulty.err, Contains("panel a has no edge \"x\"") && Contains("error: and "));
+}
+
+TEST_CASE("A mesh of very many parts, grain regions or crossing triangles is checked in time, or refused") {
+  const auto triangles = [](int count, const std::function<std::string(int)>& corners) {
+    return repeated(count, corners) + repeated(count, [](int k) {
+             return "g part" + std::to_string(k) + "\nf " + std::to_string(3 * k + 1) + " " +
+                    std::to_string(3 * k + 2) + " " + std::to_string(3 * k + 3) + "\n";
+           });
+  };
+  const auto apart = [](int k) {
+    std::ostringstream text;
+    const double x = k % 300 * 0.01, y = k / 300 * 0.01;
+    text << "v " << x << " " << y << " 0\nv " << x + 0.009 << " " << y << " 0\nv " << x << " " << y + 0.009
+         << " 0\n";
+    return text.str();
+  };
+  const auto crossing = [](int k) {
+    std::ostringstream text;
+    const double a = k * 1e-3, z = k * 1e-7;
+    text << "v " << -std::cos(a) << " " << -std::sin(a) << " " << z - 0.01 << "\nv " << std::cos(a) << " "
+         << std::sin(a) << " " << z - 0.01 << "\nv " << 0.01 * std::cos(a) << " " << 0.01 * std::sin(a) << " "
+         << z + 0.01 << "\n";
+    return text.str();
+  };
+  CHECK(checked_mesh("a.obj", triangles(60000, apart)).exit_code == 0);
+  const Scratch folder("name: large\nlevels: 1\ncloth: {shape: file, file: a.obj, join: 1}\n" +
+                       rest_of_experiment);
+  folder.write("a.obj", triangles(40000, apart));
+  CHECK_THAT(checked(folder).err, Contains("\"join\" of 1 m is larger than many edges"));
+  const std::string regions = repeated(6000, [](int) { return "{lower: [0, 0, -1], upper: [1, 1, 1]}, "; });
+  CHECK_THAT(checked(Scratch("name: large\nlevels: 1\ncloth: {shape: square, side: 1, vertices: 20000, "
+                             "grain_regions: [" +
+                             regions + "]}\n" + rest_of_experiment))
+                 .err,
+             Contains("\"grain_regions\" has 6000 entries, of at most 1000"));
+  const Scratch star("name: large\nlevels: 1\ncloth: {shape: file, file: a.obj}\ncontact: ipc\n" +
+                     rest_of_experiment);
+  star.write("a.obj", triangles(3141, crossing));
+  CHECK_THAT(checked(star).err, Contains(" pairs of the resting cloth's vertices, edges and triangles"));
+  const Scratch obstacle(
+      "name: large\nlevels: 1\ncloth: {vertices: 6000}\ncontact: ipc\n"
+      "start: {translate: [-0.5, -0.5, 0]}\nobstacles: [{mesh: a.obj}]\n" +
+      rest_of_experiment);
+  obstacle.write("a.obj", triangles(9000, crossing));
+  CHECK_THAT(checked(obstacle).err, Contains("pairs of triangles lie across or beside one another"));
+}
+
+TEST_CASE("Pins of pieces are found in time") {
+  const Scratch folder("name: large\nlevels: 1\ncloth: {shape: file, file: a.obj}\npins: [" +
+                       repeated(9000, [](int) { return "{region: piece, piece: small}, "; }) + "]\n" +
+                       rest_of_experiment);
+  const TriangleMesh fine = grid({1, 1}, 200, 200, Diagonals::one_way);
+  std::ostringstream text;
+  for (const auto& p : fine.vertices.rowwise()) text << "v " << p << "\n";
+  for (Eigen::Index t = 0; t < fine.triangles.rows(); ++t)
+    text << (t == 0                           ? "g large\nf "
+             : t == fine.triangles.rows() - 1 ? "g small\nf "
+                                              : "f ")
+         << fine.triangles.row(t).array() + 1 << "\n";
+  folder.write("a.obj", text.str());
+  CHECK(checked(folder).exit_code == 0);
+}
+
 TEST_CASE("A mesh or an experiment that is linked to a file without an end is refused") {
   const Scratch folder("name: large\nlevels: 1\ncloth: {shape: file, file: a.ply}\n" + rest_of_experiment);
   for (const std::string endless : {"/dev/zero", "/proc/self/pagemap"}) {
