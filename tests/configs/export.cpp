@@ -283,6 +283,13 @@ TEST_CASE("view writes the page if it is missing or old, and opens it, or prints
   view(none);
   CHECK(text_of(page) == "mine");
   fs::last_write_time(folder / "a run/results.json", fs::last_write_time(page) + std::chrono::seconds(5));
+  for (const std::string command : {"view 'a run'", "report 'a run'"}) {
+    check_error(refused(folder, command, none),
+                "a run/report.html: is there already, and no report of drape; move it");
+    CHECK(text_of(page) == "mine");
+  }
+  folder.write("a run/report.html", "<title>old – drape</title>");
+  fs::last_write_time(folder / "a run/results.json", fs::last_write_time(page) + std::chrono::seconds(5));
   view(none);
   CHECK(text_of(page).ends_with("</html>\n"));
 

@@ -164,6 +164,22 @@ TEST_CASE("A library is kept where only this user can write, and loaded from now
   CHECK_THAT(drape_with(command, folder.path, homeless).err, !Contains("compiling"));
 }
 
+TEST_CASE("What others may have put into the cache while they could write to it is not loaded") {
+  const PluginFolder folder;
+  const std::string command = listed + "rubber.cpp";
+  REQUIRE_THAT(folder.with(command).err, Contains("compiling"));
+  fs::path library;
+  for (const auto& entry : fs::recursive_directory_iterator(folder / "cache/drape"))
+    if (entry.path().extension() == ".so") library = entry.path();
+  const fs::path own = library.parent_path();
+  CHECK_THAT(folder.with(command).err, !Contains("compiling"));
+  fs::permissions(own, fs::perms::all);
+  CHECK_THAT(folder.with(command).err, Contains("compiling"));
+  CHECK((fs::status(own).permissions() & fs::perms::others_write) == fs::perms::none);
+  fs::permissions(library, fs::perms::all);
+  CHECK_THAT(folder.with(command).err, Contains("compiling"));
+}
+
 TEST_CASE("A relative folder for the cache is not used: it would be another one wherever the command runs") {
   const PluginFolder folder;
   const std::string temporary = (folder / "tmp").string();

@@ -15,6 +15,15 @@ TEST_CASE("a results folder that cannot be used") {
                   {"link", "link: is a link to gone, which does not exist; make that folder, or name "}});
 }
 
+TEST_CASE("a run that cannot begin, since no file takes a byte, leaves nothing") {
+  const Scratch folder(small_experiment());
+  const Ended ended =
+      Command("ulimit -f 0 && exec " + drape_command + " run e.yaml --out new/out", folder.path).wait();
+  CHECK(ended.exit_code == 2);
+  CHECK_THAT(ended.err, Contains("new/out/checkpoint/lock: cannot write (is the disk full?)"));
+  CHECK_FALSE(fs::exists(folder / "new"));
+}
+
 TEST_CASE("names that the file system does not allow are refused before the first write") {
   const auto experiment = [](const std::string& method) {
     return replaced(small_experiment(), "  pcs: {}\n", "  " + method + ": {type: pcs}\n");
