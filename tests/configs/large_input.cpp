@@ -242,15 +242,16 @@ TEST_CASE("A pattern of very many edges, darts or seams is read in time") {
   const auto pattern = [](const std::string& panel, const std::string& stitches) {
     const Scratch folder("name: large\nlevels: 1\ncloth: {shape: pattern, file: p.yaml, edge_length: 1}\n" +
                          rest_of_experiment);
-    folder.write("p.yaml", "pattern:\n  panels: {a: " + panel + "}\n  stitches: [" + stitches + "]\n");
+    folder.write("p.yaml", "properties: {units_in_meter: 1}\npattern:\n  panels: {a: " + panel +
+                               "}\n  stitches: [" + stitches + "]\n");
     return checked(folder);
   };
   const auto ring = [](int count) {
     std::ostringstream text;
     text << "{vertices: {";
     for (int k = 0; k < count; ++k)
-      text << "v" << k << ": [" << 2000 * std::cos(2 * std::numbers::pi * k / count) << ", "
-           << 2000 * std::sin(2 * std::numbers::pi * k / count) << "], ";
+      text << "v" << k << ": [" << 50 * std::cos(2 * std::numbers::pi * k / count) << ", "
+           << 50 * std::sin(2 * std::numbers::pi * k / count) << "], ";
     text << "}, edges: {";
     for (int k = 0; k < count; ++k) text << "e" << k << ": [v" << k << ", v" << (k + 1) % count << "], ";
     return text.str() + "}}";
@@ -283,11 +284,12 @@ TEST_CASE("A mesh of very many parts, grain regions or crossing triangles is che
     return text.str();
   };
   CHECK(checked_mesh("a.obj", triangles(60000, apart)).exit_code == 0);
-  const Scratch folder("name: large\nlevels: 1\ncloth: {shape: file, file: a.obj, join: 1}\n" +
+  const Scratch folder("name: large\nlevels: 1\ncloth: {shape: file, file: a.obj, join: 0.1}\n" +
                        rest_of_experiment);
   folder.write("a.obj", triangles(40000, apart));
-  CHECK_THAT(checked(folder).err, Contains("\"join\" of 1 m is larger than many edges"));
-  const std::string regions = repeated(6000, [](int) { return "{lower: [0, 0, -1], upper: [1, 1, 1]}, "; });
+  CHECK_THAT(checked(folder).err, Contains("\"join\" of 0.1 m is larger than many edges"));
+  const std::string regions =
+      repeated(6000, [](int) { return "{lower: [0, 0, -1], upper: [1, 1, 1], grain: 1}, "; });
   CHECK_THAT(checked(Scratch("name: large\nlevels: 1\ncloth: {shape: square, side: 1, vertices: 20000, "
                              "grain_regions: [" +
                              regions + "]}\n" + rest_of_experiment))
