@@ -19,8 +19,7 @@ TEST_CASE("a run that cannot begin, since no file takes a byte, leaves nothing")
   const Scratch folder(small_experiment());
   const Ended ended =
       Command("ulimit -f 0 && exec " + drape_command + " run e.yaml --out new/out", folder.path).wait();
-  CHECK(ended.exit_code == 2);
-  CHECK_THAT(ended.err, Contains("new/out/checkpoint/lock: cannot write (is the disk full?)"));
+  CHECK(ended.exit_code == 2);  // its sentence finds no file either
   CHECK_FALSE(fs::exists(folder / "new"));
 }
 
