@@ -5,12 +5,12 @@
 namespace drape {
 
 /// Detects that steps lead round and round through the same few states: an energy and a force residual that
-/// return to those of two, three or four steps before, twelve steps in a row.
+/// return to those of two to eight steps before, twelve steps in a row.
 ///
 /// A step lowers the energy of which it takes the lagged quantities as given; where these answer the step
 /// with more than what they took, as friction's normal forces can, no step comes nearer to an equilibrium.
 struct CycleDetector {
-  static constexpr int shortest_period = 2, longest_period = 4;
+  static constexpr int shortest_period = 2, longest_period = 8;
 
   int steps = 0;  ///< noted so far
   /// Energies [J] and force residuals of the last steps; step k is at k mod (longest_period + 1).
