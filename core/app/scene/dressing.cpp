@@ -19,6 +19,10 @@ namespace {
 /// Times of the smoothing and of the contraction that are tried.
 constexpr double smoothings[] = {1, 0.3, 2, 4};
 constexpr double contractions[] = {0.009, 0.018, 0.028, 0.05};
+/// Ways along the normals [median edges], tried if the cloth crosses itself however it is smoothed. A lining
+/// and its outer cloth have their wrong sides against each other, so that each moves off the other; their
+/// seams lie at the mean of the panels' places, which is the same line for both.
+constexpr double inflations[] = {0, 0.2};
 
 /// A body that fits stretches the placed pieces, which are much longer than they are sewn, by less than a
 /// hundredth while it grows.
@@ -46,6 +50,15 @@ TriangleMesh body_of(const Experiment& e, const LevelModel& model) {
   const std::vector<std::string> names = e.obstacle_names();
   const auto index = std::ranges::find(names, e.parameters.dress.obstacle) - names.begin();
   return obstacles_of(model.contacts()).at(index);
+}
+
+/// Makes a garment without intersections the scene's start, on every level.
+void take(DressingStart start, double contraction, Scene& scene) {
+  start.contraction = contraction;
+  for (const ProlongationMatrix& linear : scene.hierarchy.linear)
+    start.garments.push_back(linear * start.garments.back());
+  scene.placed = scene.starts = start.garments;
+  scene.dressing = std::move(start);
 }
 
 /// The error of the best start that was tried, at the panel of most of its intersections.
@@ -93,32 +106,35 @@ void find_dressing_start(const Experiment& e, Scene& scene, ConfigErrors& errors
                                  "; are the unit, the axis and the place of both right?"});
   };
   if (!body.intersects(own)) return refuse("nowhere near");
-  std::vector<Positions> shapes;
-  for (const double t : smoothings) shapes.push_back(smoothed(level.rest.triangles, scene.starts[0], t));
-  const auto take = [&](double contraction, std::size_t shape) {
-    scene.dressing = DressingStart{contraction, smoothings[shape], {shapes[shape]}};
-    for (const ProlongationMatrix& linear : scene.hierarchy.linear)
-      scene.dressing->garments.push_back(linear * scene.dressing->garments.back());
-  };
-  std::set<std::size_t> crossed;  // shapes that cross themselves
   std::vector<Intersection> least;
-  for (const double contraction : contractions) {
-    scene.dressing = DressingStart{contraction, smoothings[0], {shapes[0]}};
-    const LoadSchedule schedule(e, scene);
-    const auto model = schedule.model(*schedule.at(schedule.values(0)), 0, *scene.models[0]);
-    const TriangleMesh small = body_of(e, *model);
-    for (std::size_t k = 0; k < shapes.size(); ++k) {
-      if (crossed.contains(k)) continue;
-      std::vector<Intersection> found = intersections_of(*model, shapes[k]);
-      if (found.empty() && is_inside(shapes[k].topRows(1), small)) return refuse("inside");
-      if (found.empty()) {
-        take(contraction, k);
-        scene.placed = scene.starts = scene.dressing->garments;
-        return;
-      }
-      if (touches_itself(found)) crossed.insert(k);
-      if (least.empty() || found.size() < least.size()) least = std::move(found);
+  for (const double inflation : inflations) {
+    const double way = inflation * median_edge(level);
+    std::vector<DressingStart> shapes;
+    for (const double t : smoothings) {
+      const Positions smooth = smoothed(level.rest.triangles, scene.starts[0], t);
+      shapes.push_back({0, t, way, {inflated({smooth, level.rest.triangles}, way)}});
     }
+    std::set<std::size_t> crossed;  // shapes that cross themselves
+    for (const double contraction : contractions) {
+      scene.dressing = shapes[0];
+      scene.dressing->contraction = contraction;
+      const LoadSchedule schedule(e, scene);
+      const auto model = schedule.model(*schedule.at(schedule.values(0)), 0, *scene.models[0]);
+      const TriangleMesh small = body_of(e, *model);
+      for (std::size_t k = 0; k < shapes.size(); ++k) {
+        if (crossed.contains(k)) continue;
+        const Positions& x = shapes[k].garments[0];
+        std::vector<Intersection> found = intersections_of(*model, x);
+        if (found.empty() && is_inside(x.topRows(1), small)) return refuse("inside");
+        if (found.empty()) {
+          take(std::move(shapes[k]), contraction, scene);
+          return;
+        }
+        if (touches_itself(found)) crossed.insert(k);
+        if (least.empty() || found.size() < least.size()) least = std::move(found);
+      }
+    }
+    if (crossed.size() < shapes.size()) break;
   }
   errors.push_back(refusal(e, least, level));
 }

@@ -28,6 +28,7 @@ using FollowingVertices = std::vector<FollowingVertex>;
 struct DressingStart {
   double contraction = 0;           ///< of the body, of its area [1]
   double smoothing = 0;             ///< of the placed garment [1]
+  double inflation = 0;             ///< of the smoothed garment, along its normals [m]
   std::vector<Positions> garments;  ///< of every level, n×3 [m]
 };
 

@@ -7,6 +7,7 @@
 
 #include "core/kernel/interfaces/topology.h"
 #include "core/numerics/linear_algebra/block_cholesky.h"
+#include "core/numerics/mesh/area_vectors.h"
 
 namespace drape {
 
@@ -103,6 +104,22 @@ Positions smoothed(const Triangles& triangles, const Positions& x, double time,
   const Topology topology = Topology::of(triangles, static_cast<int>(x.rows()));
   for (const auto& edge : topology.edges.rowwise()) system.add_edge(edge[0], edge[1], time);
   return system.solve(x, fixed.empty() ? std::vector<char>(x.rows(), 0) : fixed);
+}
+
+Positions inflated(const TriangleMesh& mesh, double distance) {
+  if (distance == 0) return mesh.vertices;
+  constexpr double least_sum = 1e-3;  // of normals, as a part of their lengths
+  const Positions areas = area_vectors(mesh);
+  Positions normals = Positions::Zero(mesh.vertices.rows(), 3);
+  Eigen::VectorXd lengths = Eigen::VectorXd::Zero(mesh.vertices.rows());
+  for (Eigen::Index t = 0; t < areas.rows(); ++t)
+    for (const int v : mesh.triangles.row(t))
+      normals.row(v) += areas.row(t), lengths[v] += areas.row(t).norm();
+  Positions x = mesh.vertices;
+  for (Eigen::Index v = 0; v < x.rows(); ++v)
+    if (const double sum = normals.row(v).norm(); sum > least_sum * lengths[v])
+      x.row(v) += distance / sum * normals.row(v);
+  return x;
 }
 
 }  // namespace drape

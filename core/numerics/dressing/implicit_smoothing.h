@@ -20,4 +20,8 @@ Positions contracted(const TriangleMesh& mesh, double time);
 Positions smoothed(const Triangles& triangles, const Positions& x, double time,
                    const std::vector<char>& fixed = {});
 
+/// Every vertex moved by a distance [m] along its normal, the mean of those of its triangles by area; those
+/// whose triangles cancel stay.
+Positions inflated(const TriangleMesh& mesh, double distance);
+
 }  // namespace drape

@@ -52,6 +52,21 @@ TEST_CASE("Smoothing shares a long edge's length with its neighbours and keeps t
   CHECK((smoothed(sheet.triangles, x, 0) - x).norm() < 1e-12);
 }
 
+TEST_CASE("Inflation moves a surface along its normals, and leaves two layers' common edge") {
+  const TriangleMesh sphere = unit_sphere(3);
+  const Eigen::VectorXd radii = inflated(sphere, 0.1).rowwise().norm();
+  CHECK(radii.minCoeff() == Approx(1.1).epsilon(1e-4));
+  CHECK(radii.maxCoeff() == Approx(1.1).epsilon(1e-4));
+  TriangleMesh folded = grid({1, 1}, 5, 3, Diagonals::one_way);  // at half of its length onto itself
+  for (int v = 0; v < folded.vertices.rows(); ++v)
+    if (folded.vertices(v, 0) > 0.5) folded.vertices(v, 0) = 1 - folded.vertices(v, 0);
+  const Positions x = inflated(folded, 0.1);
+  for (int v = 0; v < x.rows(); ++v) {
+    CHECK(std::abs(x(v, 2)) == Approx(folded.vertices(v, 0) == 0.5 ? 0 : 0.1));
+    CHECK((x.row(v) - folded.vertices.row(v)).head(2).norm() == 0);
+  }
+}
+
 TEST_CASE("Rest shapes between two have the mean of their metrics, and turn over nowhere") {
   const Level flat = Level::of(0, as_piece(grid({1, 1}, 5, 5, Diagonals::criss_cross)));
   Positions placed = flat.rest.vertices;
