@@ -34,22 +34,33 @@ double side_of_cloth(const FrictionContact& contact) {
 /// The key of a cloth vertex's mean displacement on an obstacle; contacts have other second numbers.
 ContactKey key_of_mean(int vertex, int obstacle) { return {vertex, -3, obstacle, 0, 0}; }
 
-const Vector3d* find(const ContactKey& key, const TangentialDisplacements& displacements) {
+const TangentialDisplacement* find(const ContactKey& key, const TangentialDisplacements& displacements) {
   const auto found = std::ranges::lower_bound(displacements, key, {}, &TangentialDisplacement::contact);
-  return found != displacements.end() && found->contact == key ? &found->displacement : nullptr;
+  return found != displacements.end() && found->contact == key ? &*found : nullptr;
+}
+
+/// The displacement at which friction of at most `force` is what it was at the stored one, or nearly so.
+Vector3d with_kept_force(const TangentialDisplacement& stored, double force, double epsilon) {
+  const double length = stored.displacement.norm(), q = std::min(1.0, length / epsilon),
+               part = force > 0 ? stored.force * q * (2 - q) / force : 0;
+  if (!(length > 0) || !(part > 0)) return stored.displacement;
+  return (part < 1 ? 1 - std::sqrt(1 - part) : 1) * epsilon / length * stored.displacement;
 }
 
 /// The stored displacement of a contact; for a new one that of its vertices on its obstacle, or zero.
-Vector3d displacement_of(const FrictionContact& contact, const TangentialDisplacements& displacements) {
-  if (const Vector3d* own = find(contact.key, displacements)) return *own;
+Vector3d displacement_of(const FrictionContact& contact, const TangentialDisplacements& displacements,
+                         double epsilon, Sticking sticking) {
+  if (const TangentialDisplacement* own = find(contact.key, displacements))
+    return sticking == Sticking::force ? with_kept_force(*own, contact.force, epsilon) : own->displacement;
   Vector3d sum = Vector3d::Zero();
   double weights = 0;
   if (contact.touched.obstacle < 0) return sum;
   for (int k = 0; k < 4; ++k) {
     if (contact.vertices[k] < 0) continue;
-    const Vector3d* mean = find(key_of_mean(contact.vertices[k], contact.touched.obstacle), displacements);
+    const TangentialDisplacement* mean =
+        find(key_of_mean(contact.vertices[k], contact.touched.obstacle), displacements);
     if (!mean) continue;
-    sum += std::abs(contact.c[k]) * *mean;
+    sum += std::abs(contact.c[k]) * mean->displacement;
     weights += std::abs(contact.c[k]);
   }
   return weights > 0 ? Vector3d(side_of_cloth(contact) * sum / weights) : sum;
@@ -79,7 +90,7 @@ TangentialDisplacements sorted(TangentialDisplacements displacements) {
 
 LaggedFriction::LaggedFriction(FrictionContacts groups, const Positions& reference,
                                const TangentialDisplacements& displacements,
-                               double friction_smoothing_distance)
+                               double friction_smoothing_distance, Sticking sticking)
     : epsilon_(friction_smoothing_distance) {
   for (std::vector<FrictionContact>& group : groups) {
     if (contacts_.empty())
@@ -91,7 +102,8 @@ LaggedFriction::LaggedFriction(FrictionContacts groups, const Positions& referen
   origin_.resize(contacts_.size());
   parallel_for(size(), contacts_per_task, [&](int begin, int end) {
     for (int i = begin; i < end; ++i)
-      origin_[i] = position(contacts_[i], reference) - displacement_of(contacts_[i], displacements);
+      origin_[i] = position(contacts_[i], reference) -
+                   displacement_of(contacts_[i], displacements, epsilon_, sticking);
   });
 }
 
@@ -143,7 +155,7 @@ TangentialDisplacements LaggedFriction::tangential_displacements(const Positions
   all.reserve(contacts_.size());
   for (int i = 0; i < size(); ++i) {
     const Vector3d u = displacement(i, x);
-    all.push_back({contacts_[i].key, std::min(1.0, epsilon_ / u.norm()) * u});
+    all.push_back({contacts_[i].key, std::min(1.0, epsilon_ / u.norm()) * u, contacts_[i].force});
   }
   return sorted(std::move(all));
 }
@@ -156,7 +168,7 @@ TangentialDisplacements LaggedFriction::advected_tangential_displacements(
     const FrictionContact& contact = contacts_[i];
     Vector3d u = displacement(i, x);
     if (contact.touched.obstacle >= 0) u -= side_of_cloth(contact) * tangential(i, motion(contact.touched));
-    all.push_back({contact.key, u});
+    all.push_back({contact.key, u, contact.force});
   }
   append_means(all);
   return sorted(std::move(all));
@@ -255,10 +267,11 @@ FrictionContacts friction_contacts(const Collisions& collisions) {
 
 std::unique_ptr<const LaggedFriction> lagged_friction(const Collisions& collisions, FrictionContacts contacts,
                                                       const Positions& reference,
-                                                      const TangentialDisplacements& displacements) {
+                                                      const TangentialDisplacements& displacements,
+                                                      Sticking sticking) {
   if (contacts.empty()) return nullptr;
   return std::make_unique<const LaggedFriction>(std::move(contacts), reference, displacements,
-                                                collisions.friction_smoothing_distance());
+                                                collisions.friction_smoothing_distance(), sticking);
 }
 
 }  // namespace drape

@@ -13,6 +13,13 @@ namespace drape {
 struct TangentialDisplacement {
   ContactKey contact;
   Eigen::Vector3d displacement;  ///< of one side relative to the other, in the tangent plane [m]
+  double force = 0;              ///< the friction force that its normal force allowed then [N]
+};
+
+/// What a contact that sticks keeps when its normal force changes.
+enum class Sticking {
+  displacement,  ///< and the friction force follows the normal force
+  force          ///< up to what the normal force allows; the displacement follows
 };
 
 /// Ascending by contact, without duplicates. After an obstacle has moved, the cloth may touch other features
@@ -41,7 +48,8 @@ class LaggedFriction final : public BoundEnergy {
   /// Displacements are measured from `reference` (n×3) [m]; `displacements` are added to those of the
   /// contacts that they name.
   LaggedFriction(FrictionContacts groups, const Positions& reference,
-                 const TangentialDisplacements& displacements, double friction_smoothing_distance);
+                 const TangentialDisplacements& displacements, double friction_smoothing_distance,
+                 Sticking sticking = Sticking::displacement);
 
   double value(const Positions& x) const override;
   double add_gradient(const Positions& x, Positions& g) const override;
@@ -80,7 +88,8 @@ FrictionContacts friction_contacts(const Collisions& collisions);
 /// all of them. Null without contacts.
 std::unique_ptr<const LaggedFriction> lagged_friction(const Collisions& collisions, FrictionContacts contacts,
                                                       const Positions& reference,
-                                                      const TangentialDisplacements& displacements);
+                                                      const TangentialDisplacements& displacements,
+                                                      Sticking sticking = Sticking::displacement);
 inline std::unique_ptr<const LaggedFriction> lagged_friction(const Collisions& collisions,
                                                              const Positions& reference,
                                                              const TangentialDisplacements& displacements) {

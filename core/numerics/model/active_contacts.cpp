@@ -148,8 +148,9 @@ void ActiveContacts::lag_friction(bool of_step) {
 
 void ActiveContacts::set_next_friction(FrictionContacts lag) {
   const std::size_t k = friction_.size();
-  friction_.push_back(
-      lagged_friction(*collisions_[k], std::move(lag), reference_, tangential_displacements_[k]));
+  friction_.push_back(lagged_friction(*collisions_[k], std::move(lag), reference_,
+                                      tangential_displacements_[k],
+                                      damping_.fraction < 1 ? Sticking::force : Sticking::displacement));
 }
 
 bool ActiveContacts::damp_lag() {

@@ -108,3 +108,24 @@ TEST_CASE("under-relaxed friction contacts are means, and those that have ended 
     CHECK((lag[0][i].c - now[i].c).norm() < 1e-14);
   }
 }
+
+TEST_CASE("a contact that keeps its force sticks with it while its normal force changes, within that") {
+  FrictionContact contact;
+  contact.key = {3, 1, 0, 0, 0};
+  contact.vertices = {0, -1, -1, -1};
+  contact.c = {1, 0, 0, 0};
+  contact.normal = {0, 0, 1};
+  contact.force = 0.25;
+  const Positions rest = Positions::Zero(1, 3), x = Eigen::RowVector3d(0.3 * smoothing, 0.4 * smoothing, 0);
+  const LaggedFriction before({{contact}}, rest, {}, smoothing);
+  const TangentialDisplacements stored = before.tangential_displacements(x);
+  const Positions force = gradient_of(before, x);
+  for (const double times : {0.5, 0.76, 1.0, 2.0, 100.0}) {  // 0.75 of it is in use
+    FrictionContact now = contact;
+    now.force *= times;
+    const LaggedFriction kept({{now}}, x, stored, smoothing, Sticking::force);
+    CHECK((gradient_of(kept, x) - std::min(1.0, times / 0.75) * force).norm() <= 1e-12);
+    const LaggedFriction follows({{now}}, x, stored, smoothing);
+    CHECK((gradient_of(follows, x) - times * force).norm() <= 1e-12);
+  }
+}

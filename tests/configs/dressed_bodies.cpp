@@ -1,0 +1,96 @@
+// One body, open at both ends, in every kind of file, unit and axis that bodies come in.
+
+#include <iomanip>
+#include <sstream>
+
+#include "core/numerics/mesh_files/io.h"
+#include "tests/support/solve.h"
+#include "tests/support/tube_dress.h"
+
+using namespace drape;
+
+namespace {
+
+/// A body's file, for a mesh in metres with z up.
+struct Form {
+  std::string file, keys;
+  double unit = 1;  ///< [m]
+  bool y_up = false;
+
+  Positions coordinates(const Positions& x) const {
+    Positions own = x / unit;
+    if (y_up)
+      for (auto row : own.rowwise()) row = Eigen::RowVector3d(row[0], row[2], -row[1]);
+    return own;
+  }
+
+  std::string text(const TriangleMesh& body) const {
+    const Positions x = coordinates(body.vertices);
+    std::ostringstream out;
+    out << std::setprecision(17);
+    const auto point = [&](int v) -> std::ostream& {
+      return out << x(v, 0) << " " << x(v, 1) << " " << x(v, 2) << "\n";
+    };
+    const bool ply = file.ends_with(".ply"), stl = file.ends_with(".stl"), off = file.ends_with(".off");
+    if (ply)
+      out << "ply\nformat ascii 1.0\nelement vertex " << x.rows()
+          << "\nproperty double x\nproperty double y\nproperty double z\nelement face "
+          << body.triangles.rows() << "\nproperty list uchar int vertex_indices\nend_header\n";
+    if (stl) out << "solid body\n";
+    if (off) out << "OFF\n" << x.rows() << " " << body.triangles.rows() << " 0\n";
+    for (int v = 0; v < x.rows() && !stl; ++v) out << (ply || off ? "" : "v "), point(v);
+    for (const auto& t : body.triangles.rowwise()) {
+      if (stl) {
+        out << "facet normal 0 0 0\nouter loop\n";
+        for (const int v : t) out << "vertex ", point(v);
+        out << "endloop\nendfacet\n";
+      } else if (ply || off) {
+        out << "3 " << t[0] << " " << t[1] << " " << t[2] << "\n";
+      } else {
+        out << "f " << t[0] + 1 << " " << t[1] + 1 << " " << t[2] + 1 << "\n";
+      }
+    }
+    if (stl) out << "endsolid body\n";
+    return out.str();
+  }
+};
+
+}  // namespace
+
+TEST_CASE("An open body has the same energies from every kind of file, in any unit and with any axis up") {
+  const TubeDress tube{.columns = 8, .rows = 5, .facets = 24};
+  const Scratch folder;
+  tube.write(folder,
+             "material: {density: 300, thickness: 5e-4, membrane_modulus: 4e5, bending_modulus: 1e5}\n"
+             "energies: [neo_hookean, hinge, gravity]\n");
+  const TriangleMesh body = read_mesh((folder / "body.obj").string());
+  std::optional<Positions> start;
+  double barrier = 0;
+  std::vector<std::pair<std::string, double>> energies;
+  for (const Form& form : {Form{"body.obj", ""},
+                           {"mm.obj", ", unit: mm", 1e-3},
+                           {"y.obj", ", up: y", 1, true},
+                           {"cm_y.ply", ", unit: cm, up: y", 0.01, true},
+                           {"inch.stl", ", unit: inch", 0.0254},
+                           {"y.stl", ", up: y", 1, true},
+                           {"mm.off", ", unit: mm", 1e-3}}) {
+    INFO(form.file);
+    folder.write(form.file, form.text(body));
+    const auto scene = scene_of(experiment_in(
+        folder / "e.yaml", {{"dress", "{body: " + (folder / form.file).string() + form.keys + "}"}}));
+    const LevelModel& model = *scene->models[0];
+    if (!start) start = scene->starts[0];
+    CHECK((scene->starts[0] - *start).cwiseAbs().maxCoeff() < 1e-9);
+    Positions worn = *start;  // 1 mm off the body, within reach of its barrier
+    for (auto row : worn.rowwise()) row.head(2) *= (tube.radius + 0.001) / row.head(2).norm();
+    CHECK(model.contacts().at(0)->intersections(worn).empty());
+    const double own =
+        model.contacts().at(0)->build_candidates(worn, worn)->build_collisions(worn)->value(worn);
+    if (barrier == 0) barrier = own, energies = model.energy_parts(worn);
+    REQUIRE(barrier > 0);
+    CHECK(own == Approx(barrier).epsilon(1e-9));
+    const auto parts = model.energy_parts(worn);
+    for (std::size_t k = 0; k < parts.size(); ++k)
+      CHECK(parts[k].second == Approx(energies[k].second).epsilon(1e-9).margin(1e-15));
+  }
+}
