@@ -57,7 +57,7 @@ TEST_CASE("Inflation moves a surface along its normals, and leaves two layers' c
   const Eigen::VectorXd radii = inflated(sphere, 0.1).rowwise().norm();
   CHECK(radii.minCoeff() == Approx(1.1).epsilon(1e-4));
   CHECK(radii.maxCoeff() == Approx(1.1).epsilon(1e-4));
-  TriangleMesh folded = grid({1, 1}, 5, 3, Diagonals::one_way);  // at half of its length onto itself
+  TriangleMesh folded = grid({1, 1}, 5, 3, Diagonals::criss_cross);  // at half of its length onto itself
   for (int v = 0; v < folded.vertices.rows(); ++v)
     if (folded.vertices(v, 0) > 0.5) folded.vertices(v, 0) = 1 - folded.vertices(v, 0);
   const Positions x = inflated(folded, 0.1);
