@@ -65,8 +65,7 @@ class ActiveContacts {
 
   /// Halves the fraction by which a step's lag follows the state, since the lag does not converge:
   /// equilibrium is a fixed point of it at any fraction. Until the damping ends, contacts that stick keep
-  /// their force (Sticking). Returns false without friction, or if it is as small
-  /// as it gets.
+  /// their force (Sticking). Returns false without friction, or if it is as small as it gets.
   bool damp_lag();
   /// Ends the damping, for another load.
   void end_lag_damping() { damping_ = {}; }
