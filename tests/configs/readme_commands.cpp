@@ -1,4 +1,5 @@
-// The commands of README.md, docs/gallery.md, docs/start and docs/guide/fabrics.md run, with experiments made small.
+// The commands of README.md, docs/gallery.md, docs/start and docs/guide/fabrics.md run, with experiments made
+// small.
 
 #include <regex>
 

@@ -10,6 +10,7 @@
 #include "core/kernel/files/message_text.h"
 #include "core/kernel/files/string_utils.h"
 #include "core/kernel/interfaces/material.h"
+#include "core/kernel/plugin/bounds.h"
 #include "core/kernel/plugin/parameters.h"
 #include "core/numerics/mesh_files/text_reader.h"
 

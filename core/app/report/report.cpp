@@ -160,7 +160,8 @@ void refuse_unwritable(const fs::path& folder, const std::string& remedy) {
 
 std::vector<std::string> write_report(const fs::path& folder, const std::function<bool()>& cancelled,
                                       std::optional<int> picture_width) {
-  refuse_other_file(folder / "report.html", "move it");
+  if (!fs::is_symlink(folder / "report.html"))  // a link is replaced, and not followed
+    refuse_other_file(folder / "report.html", "move it");
   const RunCollection collection = read_runs({folder});
   refuse_unwritable(folder, "copy the folder to where it can, and name the copy");
   const RunData& run = *collection.runs.front().data;

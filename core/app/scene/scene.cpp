@@ -98,7 +98,7 @@ Positions uncrossed_start(const LevelModel& model, Positions start) {
   };
   if (model.level().cloth_vertices.empty() || is_free(start)) return start;
   for (const double time : {0.03, 0.1, 0.3, 1.0, 2.0, 4.0})
-    if (const Positions x = smoothed(model.level().rest.triangles, start, time, model.fixed()); is_free(x))
+    if (Positions x = smoothed(model.level().rest.triangles, start, time, model.fixed()); is_free(x))
       return x;
   return start;
 }
