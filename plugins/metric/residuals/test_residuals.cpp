@@ -15,7 +15,7 @@ obstacles: [{shape: half_space}]
 newton: {force_tolerance: 1e-6}
 methods: {newton: {}}
 )");
-  drape_ends("run e.yaml --out out --quiet --no-report", folder);
+  drape_ends("run e.yaml --measure --out out --quiet --no-report", folder);
   const auto level = json_in(folder / "out/results.json")["methods"]["newton"]["levels"][0];
   CHECK(level["force_residual_plain"].get<double>() < 1e-5);  // null is below any number
   CHECK(level["decrement_plain"].get<double>() < 1e-4);
