@@ -23,6 +23,7 @@ std::shared_ptr<Level> make_level(const State& rest, const py::object& triangles
   return std::make_shared<Level>(Level::of(0, std::move(mesh)));
 }
 
+/// A material that declares the keys of an experiment's `material`.
 struct MaterialOfKeys : Material {
   static void declare(Declaration<MaterialOfKeys>& d) { declare_material(d); }
 };

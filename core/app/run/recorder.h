@@ -70,8 +70,7 @@ class Recorder : public Observer {
     s_.cpu -= work.cpu_seconds;
   }
   /// Evaluates the metrics on all finished levels and writes results.json: unless `all`, without those of
-  /// pairs of levels and those that no table shows.
-  /// A failed method keeps the results of its earlier levels.
+  /// pairs of levels and those that no table shows. A failed method keeps the results of its earlier levels.
   void method_finished(const std::vector<LevelResult>& results, const std::optional<MethodFailure>& failure,
                        bool all);
   /// Finds the reference, if necessary by a further solve under `observer`, and measures the errors of every

@@ -102,7 +102,6 @@ class ScheduleStepping final : public LoadStepping {
   ScheduleStepping(LoadSchedule schedule, const Experiment& experiment, const Scene& scene)
       : schedule_(std::move(schedule)),
         cloth_(experiment.parameters.cloth),
-        coarsest_(scene.hierarchy.levels[0]),
         dress_(experiment.parameters.dress),
         has_sewn_pins_(dress_.is_asked() && !schedule_.first()->parameters->pins.empty()),
         first_start_(scene.starts[0]),
@@ -153,7 +152,7 @@ class ScheduleStepping final : public LoadStepping {
   }
 
   StepLimit advance(int level, const Positions& x) override {
-    if (dress_.is_asked()) refuse_if_too_tight(x);
+    if (dress_.is_asked()) refuse_if_too_tight(at_coarsest(hierarchy_, x, level));
     if (complete()) ++increment_;
     StepLimit limit{0, {}};
     double part = 1;
@@ -213,14 +212,15 @@ class ScheduleStepping final : public LoadStepping {
     return {};
   }
 
-  /// Throws LoadRefused for a garment at x that is too tight for its body, as it grows, or once it is sewn.
+  /// Throws LoadRefused for a garment at x, on the coarsest level, that is too tight for its body, as it
+  /// grows, or once it is sewn.
   void refuse_if_too_tight(const Positions& x) const {
     if (increment_ == 0 || increment_ > dress_.growth + dress_.sewing) return;
     std::string fault;
     if (increment_ <= dress_.growth)
       fault = too_tight_as_placed(cloth_, *load_->rests->level(0), x);
     else if (increment_ == dress_.growth + dress_.sewing && complete())
-      fault = too_tight_as_sewn(cloth_, dress_, coarsest_, x);
+      fault = too_tight_as_sewn(cloth_, dress_, hierarchy_.levels[0], x);
     if (!fault.empty()) throw LoadRefused(fault);
   }
 
@@ -240,7 +240,6 @@ class ScheduleStepping final : public LoadStepping {
 
   const LoadSchedule schedule_;
   const ClothParameters cloth_;
-  const Level& coarsest_;
   const DressParameters dress_;
   const bool has_sewn_pins_;     // the dressing decides where pins hold
   const Positions first_start_;  // of the coarsest level [m]
