@@ -6,6 +6,7 @@
 #include "core/app/experiment/experiment.h"
 #include "core/app/sweep/sweep.h"
 #include "core/app/sweep/variations.h"
+#include "core/kernel/files/number_text.h"
 #include "tests/support/registry.h"
 
 using namespace drape;

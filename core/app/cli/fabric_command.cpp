@@ -14,7 +14,6 @@
 #include "core/kernel/files/message_text.h"
 #include "core/kernel/files/number_text.h"
 #include "core/kernel/files/string_utils.h"
-#include "core/kernel/plugin/parameters.h"
 #include "core/numerics/elements/orthotropic_stiffness.h"
 
 namespace drape {
@@ -99,7 +98,7 @@ int print_fabric(const FabricOptions& options) {
   for (const auto& [key, value] : values.entries)
     if (key != "source") material.add(key, value);
   MaterialParameters own;
-  if (errors.empty()) schema_of<MaterialParameters>("material").read(&own, material, errors);
+  if (errors.empty()) read_section(material, own, errors, "material");
   require_none(errors);
   std::cout << printable(options.name);
   if (const ConfigNode* source = values.find("source")) std::cout << ": " << printable(source->scalar);

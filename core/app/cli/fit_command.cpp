@@ -17,7 +17,7 @@
 #include "core/kernel/files/message_text.h"
 #include "core/kernel/files/number_text.h"
 #include "core/kernel/files/string_utils.h"
-#include "core/kernel/plugin/parameters.h"
+#include "core/kernel/plugin/config_node.h"
 #include "core/kernel/threads/parallel.h"
 
 namespace drape {

@@ -22,7 +22,7 @@
 #include "core/kernel/files/message_text.h"
 #include "core/kernel/files/string_utils.h"
 #include "core/kernel/plugin/loader.h"
-#include "core/kernel/plugin/parameters.h"
+#include "core/kernel/files/number_text.h"
 
 namespace drape {
 

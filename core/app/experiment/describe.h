@@ -28,9 +28,6 @@ std::string describe_markdown(const RegistryEntry& entry, const SharedSection* s
 std::string with_parameters(const std::string& page, const RegistryEntry& entry,
                             const SharedSection* shared = nullptr);
 
-/// The node as JSON; unquoted scalars become numbers or booleans if they spell one.
-Json json_value(const ConfigNode& node);
-
 /// The JSON Schema of configs with this schema, for editors. With a registry, nodes that choose a plugin
 /// accept the registered names and parameters; without, anything.
 Json json_schema(const Schema& schema, const Registry* registry = nullptr);

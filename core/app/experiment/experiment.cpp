@@ -16,6 +16,7 @@
 #include "core/kernel/files/string_utils.h"
 #include "core/kernel/plugin/registry.h"
 #include "core/numerics/elements/orthotropic_stiffness.h"
+#include "core/kernel/files/number_text.h"
 
 namespace drape {
 
@@ -243,5 +244,21 @@ std::vector<std::string> chosen_methods(const Experiment& experiment, const std:
   std::erase_if(known, [&](const std::string& name) { return !is_one_of(name, asked); });
   return known;
 }
+
+template <class Section>
+ConfigNode section_node(const Section& section) {
+  return schema_of<Section>().write(&section);
+}
+
+template <class Section>
+void read_section(const ConfigNode& map, Section& section, ConfigErrors& errors, const std::string& name) {
+  schema_of<Section>(name).read(&section, map, errors);
+}
+
+template ConfigNode section_node(const ClothParameters&);
+template ConfigNode section_node(const StartParameters&);
+template void read_section(const ConfigNode&, ClothParameters&, ConfigErrors&, const std::string&);
+template void read_section(const ConfigNode&, HierarchyParameters&, ConfigErrors&, const std::string&);
+template void read_section(const ConfigNode&, MaterialParameters&, ConfigErrors&, const std::string&);
 
 }  // namespace drape

@@ -1,6 +1,7 @@
 #include "core/app/experiment/experiment_parameters.h"
 
 #include "core/app/experiment/material_parameters.h"
+#include "core/kernel/plugin/parameters.h"
 #include "core/kernel/plugin/placement.h"
 #include "core/numerics/contact/contact_parameters.h"
 

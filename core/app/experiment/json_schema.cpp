@@ -4,6 +4,7 @@
 #include "core/app/experiment/describe.h"
 #include "core/app/experiment/experiment_parameters.h"
 #include "core/kernel/plugin/parameters.h"
+#include "core/kernel/files/number_text.h"
 
 namespace drape {
 namespace {
@@ -96,29 +97,6 @@ Json named_plugins_schema(const std::string& kind, const Registry& registry) {
 }
 
 }  // namespace
-
-Json json_value(const ConfigNode& node) {
-  Json json;
-  switch (node.kind) {
-    case ConfigNode::Kind::null:
-      break;
-    case ConfigNode::Kind::list:
-      json = Json::array();
-      for (const ConfigNode& item : node.items) json.push_back(json_value(item));
-      break;
-    case ConfigNode::Kind::map:
-      json = Json::object();
-      for (const auto& [key, value] : node.entries) json[key] = json_value(value);
-      break;
-    case ConfigNode::Kind::scalar:
-      if (node.quoted) return node.scalar;
-      if (const auto integer = parse_integer(node.scalar)) return *integer;
-      if (const auto number = parse_number(node.scalar)) return *number;
-      if (node.scalar == "true" || node.scalar == "false") return node.scalar == "true";
-      return node.scalar;
-  }
-  return json;
-}
 
 Json json_schema(const Schema& schema, const Registry* registry) {
   Json properties = Json::object();

@@ -2,7 +2,7 @@
 
 #include "core/kernel/interfaces/material.h"
 #include "core/kernel/plugin/bounds.h"
-#include "core/kernel/plugin/parameters.h"
+#include "core/kernel/plugin/declaration.h"
 
 namespace drape {
 

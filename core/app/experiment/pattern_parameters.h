@@ -5,7 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "core/kernel/plugin/parameters.h"
+#include "core/kernel/plugin/config_node.h"
+#include "core/kernel/plugin/declaration.h"
 
 namespace drape {
 

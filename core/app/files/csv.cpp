@@ -6,7 +6,7 @@
 
 #include "core/kernel/files/file.h"
 #include "core/kernel/files/string_utils.h"
-#include "core/kernel/plugin/parameters.h"
+#include "core/kernel/files/number_text.h"
 
 namespace drape {
 

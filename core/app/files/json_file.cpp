@@ -7,6 +7,8 @@
 
 #include "core/kernel/files/file.h"
 #include "core/kernel/files/message_text.h"
+#include "core/kernel/files/number_text.h"
+#include "core/kernel/plugin/config_node.h"
 
 namespace drape {
 
@@ -98,5 +100,28 @@ template std::optional<bool> JsonFile::find(const Json& object, const std::strin
 template std::optional<int> JsonFile::find(const Json& object, const std::string& key) const;
 template std::optional<double> JsonFile::find(const Json& object, const std::string& key) const;
 template std::optional<std::string> JsonFile::find(const Json& object, const std::string& key) const;
+
+Json json_value(const ConfigNode& node) {
+  Json json;
+  switch (node.kind) {
+    case ConfigNode::Kind::null:
+      break;
+    case ConfigNode::Kind::list:
+      json = Json::array();
+      for (const ConfigNode& item : node.items) json.push_back(json_value(item));
+      break;
+    case ConfigNode::Kind::map:
+      json = Json::object();
+      for (const auto& [key, value] : node.entries) json[key] = json_value(value);
+      break;
+    case ConfigNode::Kind::scalar:
+      if (node.quoted) return node.scalar;
+      if (const auto integer = parse_integer(node.scalar)) return *integer;
+      if (const auto number = parse_number(node.scalar)) return *number;
+      if (node.scalar == "true" || node.scalar == "false") return node.scalar == "true";
+      return node.scalar;
+  }
+  return json;
+}
 
 }  // namespace drape

@@ -8,6 +8,8 @@
 
 namespace drape {
 
+struct ConfigNode;
+
 /// JSON whose objects keep the order in which their keys were written.
 using Json = nlohmann::ordered_json;
 
@@ -47,6 +49,9 @@ std::string json_text(const Json& json, int indent = -1);
 /// The JSON's text on one line of ASCII, other characters escaped: for scripts of a page, whatever its
 /// encoding.
 std::string ascii_json_text(const Json& json);
+
+/// The node as JSON; unquoted scalars become numbers or booleans if they spell one.
+Json json_value(const ConfigNode& node);
 
 /// Why files that results.json names cannot begin with this name, as in "has 300 bytes, and may have 200"; ""
 /// if they can. Checked before a run rather than left to the file system in its middle.

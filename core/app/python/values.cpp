@@ -4,7 +4,6 @@
 #include <regex>
 #include <utility>
 
-#include "core/app/experiment/describe.h"
 #include "core/app/experiment/experiment_path.h"
 #include "core/app/files/json_file.h"
 #include "core/app/files/yaml_file.h"

@@ -7,11 +7,10 @@
 #include <set>
 #include <stdexcept>
 
-#include "core/app/experiment/describe.h"
+#include "core/app/files/json_file.h"
 #include "core/app/report/report.h"
 #include "core/kernel/files/file.h"
 #include "core/kernel/files/number_text.h"
-#include "core/kernel/plugin/parameters.h"
 #include "core/numerics/mesh_files/io.h"
 #include "core/numerics/mesh_files/io_formats.h"
 

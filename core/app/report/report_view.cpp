@@ -5,7 +5,6 @@
 
 #include "core/app/view/view_document.h"
 #include "core/kernel/files/message_text.h"
-#include "core/kernel/plugin/parameters.h"
 #include "core/numerics/mesh_files/io.h"
 
 namespace drape {

@@ -11,7 +11,7 @@
 #include "core/app/files/yaml_file.h"
 #include "core/kernel/files/file.h"
 #include "core/kernel/interfaces/solver.h"
-#include "core/kernel/plugin/parameters.h"
+#include "core/kernel/plugin/config_node.h"
 #include "core/numerics/mesh_files/io.h"
 
 namespace drape {

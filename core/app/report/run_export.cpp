@@ -13,7 +13,6 @@
 #include "core/app/report/run_data.h"
 #include "core/kernel/files/file.h"
 #include "core/kernel/files/string_utils.h"
-#include "core/kernel/plugin/parameters.h"
 #include "core/numerics/mesh/flat_pieces.h"
 #include "core/numerics/mesh/same_entries.h"
 #include "core/numerics/mesh/texture_coordinates.h"
@@ -75,10 +74,10 @@ TriangleMesh mesh_as_read(const RunData& run, int level, TriangleMesh mesh) {
   ClothParameters cloth;
   ConfigErrors unread;
   if (const ConfigNode* written = run.config.find("cloth"))
-    schema_of<ClothParameters>().read(&cloth, *written, unread);
+    read_section(*written, cloth, unread);
   HierarchyParameters hierarchy;
   if (const ConfigNode* written = run.config.find("hierarchy"))
-    schema_of<HierarchyParameters>().read(&hierarchy, *written, unread);
+    read_section(*written, hierarchy, unread);
   const AsReadParameters& read = cloth.as_read;
   if (read.file.empty()) throw std::runtime_error("--as-read: the run's cloth is not of a file");
   mesh.vertices = read.in_file(mesh.vertices);

@@ -8,7 +8,6 @@
 #include "core/app/run/recorder_files.h"
 #include "core/kernel/files/file.h"
 #include "core/kernel/files/string_utils.h"
-#include "core/kernel/plugin/parameters.h"
 #include "core/numerics/mesh_files/io.h"
 
 namespace drape {
@@ -91,7 +90,7 @@ ConfigNode saved_config(const Experiment& experiment) {
     const FileCoordinates own = start.file_coordinates(p.cloth);
     start.unit = own.unit;
     start.up = own.up;
-    set_path(config, "start", schema_of<StartParameters>().write(&start));
+    set_path(config, "start", section_node(start));
     set_path(config, "start.file", copy_named("start.ply"));
   }
   if (!p.cloth.file.empty()) {
@@ -112,7 +111,7 @@ ConfigNode saved_config(const Experiment& experiment) {
     cloth.grain = as_written.grain;  // its faces have warp as it was cut
     cloth.grain_along = as_written.grain_along;
     cloth.grain_regions.clear();
-    set_path(config, "cloth", schema_of<ClothParameters>().write(&cloth));
+    set_path(config, "cloth", section_node(cloth));
     set_path(config, "cloth.file", copy_named(rest_file(p.hierarchy.coarsen)));
   }
   if (!p.reference.file.empty()) set_path(config, "reference.file", copy_named("reference.ply"));

@@ -8,7 +8,6 @@
 #include "core/app/scene/crossed_parts.h"
 #include "core/app/scene/scene.h"
 #include "core/kernel/files/message_text.h"
-#include "core/kernel/plugin/parameters.h"
 #include "core/numerics/collision_detection/components.h"
 #include "core/numerics/mesh/mesh_faults.h"
 #include "core/numerics/model/required.h"
@@ -228,7 +227,7 @@ Vector3d repair_start(Experiment& experiment, const Scene& scene, ConfigErrors& 
   if (!search.found || search.translation.isZero(0)) return Vector3d::Zero();
   StartParameters& moved = experiment.parameters.start;
   moved.translate += search.translation;
-  set_path(experiment.resolved, "start", schema_of<StartParameters>().write(&moved));
+  set_path(experiment.resolved, "start", section_node(moved));
   return search.translation;
 }
 

@@ -4,7 +4,6 @@
 #include <set>
 
 #include "core/app/experiment/cloth.h"
-#include "core/app/experiment/describe.h"
 #include "core/app/experiment/experiment_path.h"
 #include "core/app/files/yaml_file.h"
 #include "core/app/sweep/variations.h"

@@ -1,6 +1,7 @@
 #include "core/kernel/files/number_text.h"
 
 #include <charconv>
+#include <cmath>
 
 namespace drape {
 namespace {
@@ -8,6 +9,12 @@ namespace {
 std::string text_of_number(double value, std::chars_format format, int precision) {
   char text[400];  // the largest number has 309 digits before its decimals
   return std::string(text, std::to_chars(text, text + sizeof text, value, format, precision).ptr);
+}
+
+template <class Number>
+std::optional<Number> parsed(const std::string& text) {
+  Number value{};
+  return read_number(text, value) == std::errc() ? std::optional(value) : std::nullopt;
 }
 
 }  // namespace
@@ -28,5 +35,14 @@ std::string exact_text(double value) {
   char text[32];
   return std::string(text, std::to_chars(text, text + sizeof text, value).ptr);
 }
+
+std::optional<double> parse_number(const std::string& text) { return parsed<double>(text); }
+
+std::optional<double> number_of(const std::string& text) {
+  const std::optional<double> value = parse_number(text);
+  return value && std::isfinite(*value) ? value : std::nullopt;
+}
+
+std::optional<int> parse_integer(const std::string& text) { return parsed<int>(text); }
 
 }  // namespace drape

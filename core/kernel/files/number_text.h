@@ -1,6 +1,7 @@
 #pragma once
 
 #include <charconv>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <system_error>
@@ -22,5 +23,12 @@ std::errc read_number(std::string_view text, Number& number) {
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
   return end == text.data() + text.size() ? error : std::errc::invalid_argument;
 }
+
+/// The decimal number that the whole text spells ("+1", "1e-3", ".5"), or nothing.
+std::optional<double> parse_number(const std::string& text);
+/// The finite number that the whole text spells, or nothing.
+std::optional<double> number_of(const std::string& text);
+/// The integer that the whole text spells, or nothing.
+std::optional<int> parse_integer(const std::string& text);
 
 }  // namespace drape

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "core/kernel/plugin/parameters.h"
+#include "core/kernel/plugin/declaration.h"
 
 /// A struct of numbers with their declaration: member, default, SI unit ("1" if dimensionless), bounds
 /// between which everything stays finite, and what the number sets.

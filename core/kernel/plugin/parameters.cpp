@@ -15,12 +15,6 @@ namespace {
 
 using NodeKind = ConfigNode::Kind;
 
-template <class Number>
-std::optional<Number> parsed(const std::string& text) {
-  Number value{};
-  return read_number(text, value) == std::errc() ? std::optional(value) : std::nullopt;
-}
-
 std::string with_unit(double value, const Parameter& p) {
   const std::string text = ConfigNode::of(value).scalar;
   return p.unit.empty() || p.unit == "1" ? text : text + " " + p.unit;
@@ -187,13 +181,6 @@ void read_parameter(const Parameter& p, void* object, const ConfigNode& written,
   if (check(value, p, errors))
     p.read(object, p.path ? relative_path(value) : expand_shorthand(value, p), errors);
 }
-
-std::optional<double> parse_number(const std::string& text) { return parsed<double>(text); }
-std::optional<double> number_of(const std::string& text) {
-  const std::optional<double> value = parse_number(text);
-  return value && std::isfinite(*value) ? value : std::nullopt;
-}
-std::optional<int> parse_integer(const std::string& text) { return parsed<int>(text); }
 
 namespace parameter_detail {
 

@@ -8,13 +8,6 @@
 
 namespace drape {
 
-/// The decimal number that the whole text spells ("+1", "1e-3", ".5"), or nothing.
-std::optional<double> parse_number(const std::string& text);
-/// The finite number that the whole text spells, or nothing.
-std::optional<double> number_of(const std::string& text);
-/// The integer that the whole text spells, or nothing.
-std::optional<int> parse_integer(const std::string& text);
-
 namespace parameter_detail {
 
 // Conversions of nodes that Schema::read has validated.

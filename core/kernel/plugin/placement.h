@@ -1,7 +1,7 @@
 #pragma once
 
 #include "core/kernel/plugin/bounds.h"
-#include "core/kernel/plugin/parameters.h"
+#include "core/kernel/plugin/declaration.h"
 
 namespace drape {
 
@@ -17,7 +17,7 @@ void declare_file_coordinates(Declaration<Struct>& d) {
 
 /// Declares `scale`, one factor on all coordinates of a mesh.
 template <class Struct>
-ParameterHandle declare_scale(Declaration<Struct>& d) {
+auto declare_scale(Declaration<Struct>& d) {
   return d.add("scale", &Struct::scale, "scale factor, applied before `rotate` and `translate`")
       .unit("1")
       .between(1 / bounds::largest_scale, bounds::largest_scale);
@@ -25,7 +25,7 @@ ParameterHandle declare_scale(Declaration<Struct>& d) {
 
 /// Declares `rotate`, a rotation about the origin.
 template <class Struct>
-ParameterHandle declare_rotate(Declaration<Struct>& d) {
+auto declare_rotate(Declaration<Struct>& d) {
   return d
       .add("rotate", &Struct::rotate, "rotation about the x, then y, then z axis, applied before `translate`")
       .unit("degree")
@@ -35,7 +35,7 @@ ParameterHandle declare_rotate(Declaration<Struct>& d) {
 /// Declares `rotate` and `translate`, the members by which a struct places the cloth or an obstacle: scaled
 /// where it has a scale, then rotated about the origin, then translated. Returns the handle of `translate`.
 template <class Struct>
-ParameterHandle declare_placement(Declaration<Struct>& d) {
+auto declare_placement(Declaration<Struct>& d) {
   declare_rotate(d);
   return d.add("translate", &Struct::translate, "translation, applied last")
       .unit("m")

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "core/kernel/plugin/bounds.h"
-#include "core/kernel/plugin/parameters.h"
+#include "core/kernel/plugin/declaration.h"
 #include "core/kernel/plugin/placement.h"
 #include "core/numerics/contact_forces/barrier.h"
 #include "core/numerics/contact_forces/contact_stiffness.h"
@@ -31,7 +31,7 @@ struct ContactParameters {
 /// Declares `friction`: of an experiment, of a contact model, which takes the experiment's, or of an
 /// obstacle.
 template <class Struct>
-ParameterHandle declare_friction(Declaration<Struct>& d) {
+auto declare_friction(Declaration<Struct>& d) {
   return d
       .add("friction", &Struct::friction,
            "Coulomb's friction coefficient μ, where an obstacle does not have its own")
@@ -76,7 +76,7 @@ struct CommonObstacleParameters {
 
 /// Declares its members. Returns the handle of `translate`.
 template <class Derived>
-ParameterHandle declare_obstacle(Declaration<Derived>& d) {
+auto declare_obstacle(Declaration<Derived>& d) {
   d.add("name", &Derived::name,
         "name, for messages and paths; messages call an unnamed obstacle by its kind and number");
   declare_friction(d).description("its own friction coefficient μ; null: the experiment's `friction`");
@@ -85,7 +85,7 @@ ParameterHandle declare_obstacle(Declaration<Derived>& d) {
 
 /// Declares a contact model's list of obstacles, which the experiment reads.
 template <class Derived>
-ParameterHandle declare_obstacles(Declaration<Derived>& d) {
+auto declare_obstacles(Declaration<Derived>& d) {
   return d.add_sections("obstacles", &Derived::obstacles).from_experiment();
 }
 

@@ -5,7 +5,6 @@
 
 #include "core/kernel/interfaces/material.h"
 #include "core/kernel/plugin/number_parameters.h"
-#include "core/kernel/plugin/parameters.h"
 #include "core/numerics/elements/orthotropic_stiffness.h"
 #include "core/numerics/linear_algebra/pack_functions.h"
 

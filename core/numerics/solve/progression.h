@@ -1,7 +1,7 @@
 #pragma once
 
 #include "core/kernel/interfaces/solver.h"
-#include "core/kernel/plugin/parameters.h"
+#include "core/kernel/plugin/declaration.h"
 #include "core/numerics/solve/newton.h"
 
 namespace drape {

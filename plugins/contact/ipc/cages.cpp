@@ -4,6 +4,7 @@
 #include <stdexcept>
 #include <vector>
 
+#include "core/kernel/plugin/parameters.h"
 #include "core/numerics/collision_detection/components.h"
 #include "core/numerics/collision_detection/intersections.h"
 #include "core/numerics/mesh/check.h"

@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "core/kernel/plugin/parameters.h"
+#include "core/kernel/plugin/declaration.h"
 #include "plugins/contact/ipc/validated_mesh.h"
 
 namespace drape::ipc {

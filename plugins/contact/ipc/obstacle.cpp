@@ -6,6 +6,7 @@
 
 #include "core/kernel/files/message_text.h"
 #include "core/kernel/plugin/bounds.h"
+#include "core/kernel/plugin/parameters.h"
 #include "core/kernel/plugin/refused_parameters.h"
 #include "core/numerics/dressing/implicit_smoothing.h"
 #include "core/numerics/mesh/check.h"

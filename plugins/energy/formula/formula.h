@@ -5,7 +5,8 @@
 #include <string>
 
 #include "core/kernel/interfaces/energy.h"
-#include "core/kernel/plugin/parameters.h"
+#include "core/kernel/plugin/config_node.h"
+#include "core/kernel/plugin/declaration.h"
 #include "plugins/energy/formula/law.h"
 
 namespace drape::formula {

@@ -8,7 +8,6 @@
 #include <string_view>
 #include <vector>
 
-#include "core/kernel/plugin/parameters.h"
 #include "core/numerics/formulas/formula_law.h"
 
 namespace drape::formula {

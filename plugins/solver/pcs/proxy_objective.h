@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "core/kernel/interfaces/solver.h"
-#include "core/kernel/plugin/parameters.h"
+#include "core/kernel/plugin/declaration.h"
 #include "core/numerics/hierarchy/transfer.h"
 #include "core/numerics/linear_algebra/galerkin.h"
 #include "core/numerics/model/objective.h"

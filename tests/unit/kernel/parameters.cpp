@@ -4,6 +4,7 @@
 #include <random>
 
 #include "core/app/experiment/describe.h"
+#include "core/kernel/files/number_text.h"
 #include "tests/unit/kernel/config_faults.h"
 
 using namespace drape;
