@@ -8,8 +8,8 @@
 #include "core/app/cli/commands.h"
 #include "core/app/scene/scene_summary.h"
 #include "core/kernel/files/message_text.h"
-#include "core/kernel/plugin/config_node.h"
 #include "core/kernel/files/number_text.h"
+#include "core/kernel/plugin/config_node.h"
 
 namespace drape {
 

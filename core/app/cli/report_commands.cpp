@@ -20,9 +20,9 @@
 #include "core/app/sweep/process.h"
 #include "core/kernel/files/file.h"
 #include "core/kernel/files/message_text.h"
+#include "core/kernel/files/number_text.h"
 #include "core/kernel/files/string_utils.h"
 #include "core/kernel/plugin/loader.h"
-#include "core/kernel/files/number_text.h"
 
 namespace drape {
 

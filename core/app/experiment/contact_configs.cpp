@@ -5,10 +5,10 @@
 #include "core/app/experiment/read_experiment.h"
 #include "core/app/files/yaml_file.h"
 #include "core/kernel/files/message_text.h"
+#include "core/kernel/files/number_text.h"
 #include "core/kernel/files/string_utils.h"
 #include "core/kernel/plugin/parameters.h"
 #include "core/kernel/plugin/registry.h"
-#include "core/kernel/files/number_text.h"
 
 namespace drape {
 
@@ -122,48 +122,37 @@ void share_obstacles(const Registry& registry, const std::vector<ConfigNode>& ob
   }
 }
 
-/// Reads the parameters of a contact model, its obstacles and friction among them. Returns its section, and
-/// sets its `obstacles`, with every parameter.
-ConfigNode read_contact(const Experiment& e, const ConfigNode& written, const RegistryEntry* model,
-                        ContactConfig& config, std::vector<ConfigNode>& obstacles, ConfigErrors& errors) {
-  const auto read_shared = [&](const Schema& schema, void* values) {
-    for (const Parameter& shared : schema.parameters) {
-      if (!shared.from_experiment) continue;
-      if (!shared.section) *shared.number(values, 0) = e.parameters.friction;
-      for (std::size_t i = 0; shared.section && i < config.obstacles.size(); ++i) {
-        ConfigNode& obstacle = obstacles[config.obstacles[i]];
-        void* item = shared.append(values);
-        shared.section->read(item, obstacle, errors);
-        obstacle = shared.section->write(item);
-      }
-    }
-  };
-  std::vector<std::string> shared_keys;
-  if (model)
-    for (const Parameter& p : model->schema.parameters)
-      if (p.from_experiment) shared_keys.push_back(p.name);
-  ConfigNode section = written, all;
-  for (const std::string& key : shared_keys)
-    while (const std::optional<Location> where = section.remove(key))
-      errors.push_back({*where, "\"" + key + "\" in " + model->name +
+/// The section of a contact model as its schema has it: with its obstacles and the experiment's friction.
+ConfigNode completed_section(const Experiment& e, const ConfigNode& written, const RegistryEntry* model,
+                             const ContactConfig& config, ConfigErrors& errors) {
+  ConfigNode section = written.as_map("type");
+  if (!model) return section;
+  for (const Parameter& shared : model->schema.parameters) {
+    if (!shared.from_experiment) continue;
+    while (const std::optional<Location> where = section.remove(shared.name))
+      errors.push_back({*where, "\"" + shared.name + "\" in " + model->name +
                                     " belongs at the top of the experiment, once for all contact models"});
-  config.parameters = read_plugin_parameters(*e.registry, "contact", section, errors, &all, read_shared);
-  for (const std::string& key : shared_keys) all.remove(key);
-  return all;
+    ConfigNode value = ConfigNode::of(e.parameters.friction);
+    if (shared.section) {
+      value = ConfigNode();
+      value.kind = NodeKind::list;
+      for (const std::size_t i : config.obstacles) value.items.push_back(e.parameters.obstacles[i]);
+    }
+    section.add(shared.name, value);
+  }
+  return section;
 }
 
-/// The location of a model's refused parameter, in its own section or in one of its obstacles. Refers to all
-/// arguments.
-LocateFault locate_in_contact(const ContactConfig& config, const ConfigNode& section,
-                              const std::vector<ConfigNode>& obstacles) {
-  return [&](const std::string& path, const std::optional<std::size_t>& at) {
-    const std::string list = "obstacles.";
-    if (!path.starts_with(list)) return locate_in(section)(path, at);
-    const std::size_t dot = std::min(path.find('.', list.size()), path.size());
-    const std::size_t item = std::stoul(path.substr(list.size(), dot - list.size()));
-    return locate_in(obstacles.at(config.obstacles.at(item)))(path.substr(std::min(dot + 1, path.size())),
-                                                              at);
-  };
+/// Takes out of a model's resolved section what is the experiment's: its obstacles go back to their places.
+void take_shared(const RegistryEntry& model, const ContactConfig& config, ConfigNode& section,
+                 std::vector<ConfigNode>& obstacles) {
+  for (const Parameter& shared : model.schema.parameters) {
+    if (!shared.from_experiment) continue;
+    const ConfigNode* list = shared.section ? section.find(shared.name) : nullptr;
+    for (std::size_t k = 0; list && k < list->items.size(); ++k)
+      obstacles[config.obstacles[k]] = list->items[k];
+    section.remove(shared.name);
+  }
 }
 
 }  // namespace
@@ -197,10 +186,12 @@ void make_contacts(Experiment& e, ConfigErrors& errors) {
   obstacles.items = p.obstacles;
   for (std::size_t k = 0; k < written.size(); ++k) {
     ContactConfig& config = e.contact_configs[k];
-    sections.items.push_back(read_contact(e, written[k], models[k], config, obstacles.items, errors));
-    const LocateFault locate = locate_in_contact(config, written[k], p.obstacles);
+    const ConfigNode section = completed_section(e, written[k], models[k], config, errors);
+    ConfigNode& resolved = sections.items.emplace_back();
+    config.parameters = read_plugin_parameters(*e.registry, "contact", section, errors, &resolved);
+    if (models[k]) take_shared(*models[k], config, resolved, obstacles.items);
     e.contacts.push_back(
-        std::static_pointer_cast<ContactModel>(make_plugin(config.parameters, locate, errors)));
+        std::static_pointer_cast<ContactModel>(make_plugin(config.parameters, locate_in(section), errors)));
   }
   const bool is_one = p.contact.kind != NodeKind::list && !sections.items.empty();
   set_path(e.resolved, "contact", is_one ? sections.items[0] : sections);

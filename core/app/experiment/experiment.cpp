@@ -13,10 +13,10 @@
 #include "core/app/files/json_file.h"
 #include "core/app/files/yaml_file.h"
 #include "core/kernel/files/message_text.h"
+#include "core/kernel/files/number_text.h"
 #include "core/kernel/files/string_utils.h"
 #include "core/kernel/plugin/registry.h"
 #include "core/numerics/elements/orthotropic_stiffness.h"
-#include "core/kernel/files/number_text.h"
 
 namespace drape {
 

@@ -8,12 +8,12 @@
 
 #include "core/kernel/files/file.h"
 #include "core/kernel/files/message_text.h"
+#include "core/kernel/files/number_text.h"
 #include "core/kernel/files/string_utils.h"
 #include "core/kernel/interfaces/material.h"
 #include "core/kernel/plugin/bounds.h"
 #include "core/kernel/plugin/config_node.h"
 #include "core/numerics/mesh_files/text_reader.h"
-#include "core/kernel/files/number_text.h"
 
 namespace drape {
 namespace {

@@ -3,8 +3,8 @@
 
 #include "core/app/experiment/describe.h"
 #include "core/app/experiment/experiment_parameters.h"
-#include "core/kernel/plugin/parameters.h"
 #include "core/kernel/files/number_text.h"
+#include "core/kernel/plugin/parameters.h"
 
 namespace drape {
 namespace {

@@ -23,13 +23,15 @@ const Parameter* newton_of(const Schema& solver) {
   return section && section->type && *section->type == typeid(NewtonParameters) ? newton : nullptr;
 }
 
-/// Gives a solver's `newton` what the experiment's own sets, as defaults for the solver's.
-void take_newton(const ConfigNode& written, const NewtonParameters& common, const Schema& schema,
-                 void* solver) {
-  const Parameter* newton = newton_of(schema);
-  if (!newton) return;
-  for (const Parameter& p : newton->section->parameters)
-    if (written.find(p.name)) p.assign(&common, newton->section_in(solver, 0));
+/// Gives a solver's `newton` what the experiment's own sets and the solver's does not.
+void take_newton(const ConfigNode& common, ConfigNode& solver) {
+  ConfigNode newton;
+  if (const ConfigNode* own = solver.find("newton")) newton = *own;
+  if (newton.kind != ConfigNode::Kind::map && newton.kind != ConfigNode::Kind::null) return;  // is refused
+  for (const auto& [key, value] : common.entries)
+    if (!newton.find(key)) newton.add(key, value);
+  solver.remove("newton");
+  solver.add("newton", newton);
 }
 
 /// Leaves out of a resolved solver's `newton` what it shares with the experiment's, so that a change of the
@@ -111,6 +113,10 @@ void check_reference(const Experiment& e, const std::set<std::string>& methods, 
 void make_methods(Experiment& e, ConfigErrors& errors) {
   const ConfigNode& methods = e.parameters.methods;
   const ConfigNode* common = e.source.find("newton");
+  ConfigErrors faults;  // reported with the experiment's own keys
+  NewtonParameters read;
+  if (common) schema_of<NewtonParameters>().read(&read, *common, faults);
+  const bool common_is_valid = common && faults.empty();
   if (methods.kind != ConfigNode::Kind::map || methods.entries.empty()) {
     if (e.source.find("methods"))
       errors.push_back({methods.where,
@@ -121,7 +127,7 @@ void make_methods(Experiment& e, ConfigErrors& errors) {
   ConfigNode resolved_map;
   std::set<std::string> names;
   for (const auto& [name, written] : methods.entries) {
-    ConfigNode node = written;
+    ConfigNode node = written.as_map("type");
     const bool is_map = node.kind == ConfigNode::Kind::map || node.kind == ConfigNode::Kind::null;
     if (is_map && !node.find("type")) {
       ConfigNode type = ConfigNode::of(name);
@@ -137,10 +143,9 @@ void make_methods(Experiment& e, ConfigErrors& errors) {
     if (!names.insert(name).second)
       errors.push_back(
           {written.where, "method \"" + excerpt(name) + "\" is given twice; rename one of them"});
-    const PluginParameters own = read_plugin_parameters(
-        *e.registry, "solver", node, errors, &resolved, [&](const Schema& schema, void* solver) {
-          if (common) take_newton(*common, e.parameters.newton, schema, solver);
-        });
+    const RegistryEntry* solver_entry = e.registry->find("solver", node.plugin_name());
+    if (common_is_valid && solver_entry && newton_of(solver_entry->schema)) take_newton(*common, node);
+    const PluginParameters own = read_plugin_parameters(*e.registry, "solver", node, errors, &resolved);
     if (own.values && newton_of(own.entry->schema)) leave_out_shared(*e.resolved.find("newton"), resolved);
     if (auto solver = make_plugin(own, locate_in(node), errors))
       e.methods.emplace_back(name, std::static_pointer_cast<Solver>(solver));

@@ -6,10 +6,10 @@
 #include <set>
 
 #include "core/kernel/files/message_text.h"
+#include "core/kernel/files/number_text.h"
 #include "core/kernel/files/string_utils.h"
 #include "core/kernel/plugin/bounds.h"
 #include "core/kernel/plugin/parameters.h"
-#include "core/kernel/files/number_text.h"
 
 namespace drape {
 

@@ -5,10 +5,10 @@
 #include "core/app/experiment/experiment_path.h"
 #include "core/app/experiment/read_experiment.h"
 #include "core/kernel/files/message_text.h"
+#include "core/kernel/files/number_text.h"
 #include "core/kernel/files/string_utils.h"
 #include "core/kernel/plugin/parameters.h"
 #include "core/kernel/plugin/registry.h"
-#include "core/kernel/files/number_text.h"
 
 namespace drape {
 

@@ -5,8 +5,8 @@
 #include <stdexcept>
 
 #include "core/kernel/files/file.h"
-#include "core/kernel/files/string_utils.h"
 #include "core/kernel/files/number_text.h"
+#include "core/kernel/files/string_utils.h"
 
 namespace drape {
 

@@ -9,9 +9,9 @@
 
 #include "core/kernel/files/file.h"
 #include "core/kernel/files/message_text.h"
+#include "core/kernel/files/number_text.h"
 #include "core/kernel/files/string_utils.h"
 #include "core/kernel/plugin/config_node.h"
-#include "core/kernel/files/number_text.h"
 
 namespace drape {
 namespace {

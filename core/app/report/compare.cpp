@@ -8,10 +8,10 @@
 #include "core/app/experiment/exit_codes.h"
 #include "core/app/report/run_table.h"
 #include "core/kernel/files/message_text.h"
+#include "core/kernel/files/number_text.h"
 #include "core/kernel/files/string_utils.h"
 #include "core/kernel/interfaces/solver.h"
 #include "core/kernel/plugin/config_node.h"
-#include "core/kernel/files/number_text.h"
 
 namespace drape {
 

@@ -10,8 +10,8 @@
 #include "core/app/files/yaml_file.h"
 #include "core/kernel/files/file.h"
 #include "core/kernel/files/message_text.h"
-#include "core/kernel/plugin/config_node.h"
 #include "core/kernel/files/number_text.h"
+#include "core/kernel/plugin/config_node.h"
 
 namespace drape {
 

@@ -73,11 +73,9 @@ TriangleMesh cloth_mesh(const RunData& run, const LevelRecord& level) {
 TriangleMesh mesh_as_read(const RunData& run, int level, TriangleMesh mesh) {
   ClothParameters cloth;
   ConfigErrors unread;
-  if (const ConfigNode* written = run.config.find("cloth"))
-    read_section(*written, cloth, unread);
+  if (const ConfigNode* written = run.config.find("cloth")) read_section(*written, cloth, unread);
   HierarchyParameters hierarchy;
-  if (const ConfigNode* written = run.config.find("hierarchy"))
-    read_section(*written, hierarchy, unread);
+  if (const ConfigNode* written = run.config.find("hierarchy")) read_section(*written, hierarchy, unread);
   const AsReadParameters& read = cloth.as_read;
   if (read.file.empty()) throw std::runtime_error("--as-read: the run's cloth is not of a file");
   mesh.vertices = read.in_file(mesh.vertices);

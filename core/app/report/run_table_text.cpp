@@ -10,7 +10,6 @@
 #include "core/kernel/files/number_text.h"
 #include "core/kernel/files/string_utils.h"
 #include "core/kernel/plugin/config_node.h"
-#include "core/kernel/plugin/config_node.h"
 
 namespace drape {
 

@@ -5,8 +5,8 @@
 
 namespace drape {
 
-/// Argument of a parameter struct's `static void declare(Declaration<Self>&)`. Whoever uses `declare` includes
-/// parameters.h.
+/// Argument of a parameter struct's `static void declare(Declaration<Self>&)`. Whoever uses `declare`
+/// includes parameters.h.
 ///
 ///     struct NewtonParameters {
 ///       double step_size = 0.5;

@@ -11,18 +11,17 @@ namespace drape {
 
 class Registry;
 struct RegistryEntry;
-class Schema;
 
 /// A plugin's parameters, before the object is made from them.
 struct PluginParameters {
   const RegistryEntry* entry = nullptr;  ///< that the node names, by itself or as `type`; null without one
   std::shared_ptr<void> values;          ///< the entry's parameter struct; null if the node is not valid
 };
-/// Reads them. `prepare(schema, values)`, if given, may change the defaults before the node is read.
+
+/// Reads them; `resolved` receives the node with every parameter.
 PluginParameters read_plugin_parameters(const Registry& registry, const std::string& kind,
                                         const ConfigNode& node, ConfigErrors& errors,
-                                        ConfigNode* resolved = nullptr,
-                                        const std::function<void(const Schema&, void*)>& prepare = {});
+                                        ConfigNode* resolved = nullptr);
 
 /// The location of a plugin's refused parameter: its path in the plugin's section, and its place in a text.
 using LocateFault = std::function<Location(const std::string& path, const std::optional<std::size_t>& at)>;

@@ -62,13 +62,11 @@ struct Parameter {
   // Type-erased access to the member of a struct; `read` receives only validated nodes.
   std::function<void(void* object, const ConfigNode&, ConfigErrors&)> read;
   std::function<ConfigNode(const void* object)> write;
-  std::function<void(const void* from, void* to)> assign;  ///< between two structs
   /// Number k of a number, a list or a map of numbers; null beyond the last one, and without a value.
   std::function<double*(void* object, std::size_t k)> number;
   std::shared_ptr<const class Schema> section;  ///< of a section, or of the items of a list of sections
   /// The struct of a section, or of an item of a list of sections; for these types only.
   std::function<void*(void* object, std::size_t item)> section_in;
-  std::function<void*(void* object)> append;  ///< a list of sections: adds an item, and returns it
 };
 
 /// Reads a value of one parameter into the struct `object`. Appends an error if the value is not valid.

@@ -125,7 +125,7 @@ class Declaration {
   template <class Member, class Owner>
   ParameterHandle add(const std::string& name, Member Owner::*member, const std::string& description = "") {
     const ParameterType type = parameter_detail::type_of(static_cast<const Member*>(nullptr));
-    Parameter& p = append(name, type, member, description);
+    Parameter& p = append(name, type, description);
     p.number = [member](void* object, std::size_t k) {
       return parameter_detail::number(static_cast<Struct*>(object)->*member, k);
     };
@@ -145,7 +145,7 @@ class Declaration {
   ParameterHandle add_choice(const std::string& name, Enum Owner::*member,
                              std::vector<std::pair<std::string, Enum>> words,
                              const std::string& description = "") {
-    Parameter& p = append(name, {ValueKind::text}, member, description);
+    Parameter& p = append(name, {ValueKind::text}, description);
     for (const auto& [word, value] : words) p.choices.push_back(word);
     p.read = [member, words](void* object, const ConfigNode& node, ConfigErrors&) {
       for (const auto& [word, value] : words)
@@ -163,7 +163,7 @@ class Declaration {
   template <class Section, class Owner>
   ParameterHandle add_section(const std::string& name, Section Owner::*member,
                               const std::string& description = "") {
-    Parameter& p = append(name, {ValueKind::section}, member, description);
+    Parameter& p = append(name, {ValueKind::section}, description);
     const auto section = std::make_shared<const Schema>(schema_of<Section>(name));
     p.section = section;
     p.read = [member, section](void* object, const ConfigNode& node, ConfigErrors& errors) {
@@ -181,7 +181,7 @@ class Declaration {
   ParameterHandle add_sections(const std::string& name, std::vector<Section> Struct::*member,
                                const std::string& description = "") {
     const ParameterType type{ValueKind::section, ParameterType::Shape::list};
-    Parameter& p = append(name, type, member, description);
+    Parameter& p = append(name, type, description);
     const auto section = std::make_shared<const Schema>(schema_of<Section>(name));
     p.section = section;
     p.read = [member, section](void* object, const ConfigNode& node, ConfigErrors& errors) {
@@ -200,7 +200,6 @@ class Declaration {
     p.section_in = [member](void* object, std::size_t item) {
       return &(static_cast<Struct*>(object)->*member)[item];
     };
-    p.append = [member](void* object) { return &(static_cast<Struct*>(object)->*member).emplace_back(); };
     return ParameterHandle(p);
   }
 
@@ -213,18 +212,13 @@ class Declaration {
   }
 
  private:
-  template <class Member, class Owner>
-  Parameter& append(const std::string& name, ParameterType type, Member Owner::*member,
-                    const std::string& description) {
+  Parameter& append(const std::string& name, ParameterType type, const std::string& description) {
     if (parameter_named(schema, name))
       throw std::runtime_error("parameter \"" + name + "\" is declared twice");
     Parameter& p = schema.parameters.emplace_back();
     p.name = name;
     p.type = type;
     p.description = description;
-    p.assign = [member](const void* from, void* to) {
-      static_cast<Struct*>(to)->*member = static_cast<const Struct*>(from)->*member;
-    };
     return p;
   }
 };

@@ -132,14 +132,12 @@ std::unique_ptr<RegistryEntry> Registry::remove(const std::string& kind, const s
 }
 
 PluginParameters read_plugin_parameters(const Registry& registry, const std::string& kind,
-                                        const ConfigNode& node, ConfigErrors& errors, ConfigNode* resolved,
-                                        const std::function<void(const Schema&, void*)>& prepare) {
+                                        const ConfigNode& node, ConfigErrors& errors, ConfigNode* resolved) {
   PluginParameters read{find_plugin(registry, kind, node, errors), nullptr};
   if (!read.entry) return read;
   const Schema schema = section_schema(*read.entry);
   const std::shared_ptr<void> values = read.entry->schema.fresh();
   const size_t before = errors.size();
-  if (prepare) prepare(read.entry->schema, values.get());
   schema.read(values.get(), node.as_map("type"), errors);
   if (resolved) *resolved = schema.write(values.get());
   if (errors.size() == before) read.values = values;
