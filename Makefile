@@ -12,7 +12,7 @@ LINTED := $(if $(LINT),/unity_$(notdir $(LINT:/=))_cxx\.,(core|plugins)/)
 BUILD := $(if $(filter release ci,$(PRESET)),build,build-$(PRESET))
 SOURCES = $(shell find core plugins examples tests benchmarks -name '*.cpp' -o -name '*.h')
 
-.PHONY: all setup setup-to-develop configure build build-tests benchmarks python deb wheel notebooks demo test fuzz extremes data results figures \
+.PHONY: all setup setup-to-develop configure build build-tests benchmarks python deb wheel notebooks demo test golden fuzz extremes data results figures \
         pictures api site format fix-format lint clean
 all: build
 
@@ -75,6 +75,11 @@ demo: build
 # Runs every test.
 test: build-tests
 	@ctest --preset $(PRESET) -j $(JOBS)
+
+# Writes what the shipped experiments run to now into the record that the tests compare, and shows what changed.
+golden: build-tests
+	@DRAPE_GOLDEN=1 ctest --preset $(PRESET) -R configs.shipped_configs
+	@git diff --stat tests/configs/data
 
 # Fuzzes the readers of configs, --set, meshes and checkpoints for FUZZ_SECONDS each (20), or FUZZ_RUNS inputs each;
 # FUZZ_TARGETS="mesh config" chooses some; what ends one is kept in build-fuzz/artifacts.

@@ -2,6 +2,9 @@
 // to when a vertex had one rest position in space.
 
 #include <algorithm>
+#include <cstdlib>
+#include <fstream>
+#include <regex>
 
 #include "tests/configs/runs.h"
 
@@ -45,30 +48,49 @@ constexpr bool recorded_build = __GNUC__ == 12 && !DRAPE_SANITIZED;
 constexpr bool recorded_build = false;
 #endif
 
-/// former_runs.json has the start's energy, and of each level the iterations, the energy and the checksum of
-/// the mesh, as commit 13925e90 ran the experiments that there were: the last one before rest shapes lay on
-/// corners. A change of results writes its own rows there, and says why. So did exits from saddles, of
-/// which the cube has one, and the tablecloth's cylinder, whose curved side was taken from its axis.
-void check_former(const nlohmann::json& former, const fs::path& run) {
+const fs::path former_runs = folders::source() / "tests/configs/data/former_runs.json";
+
+/// A row of former_runs.json: the start's energy, and of each level the iterations, the energy and the
+/// checksum of the mesh.
+nlohmann::json row_of(const fs::path& run) {
   std::ifstream iterations(run / "iterations.csv");
   std::string word;
   std::getline(iterations, word);
   const auto at = std::count(word.begin(), word.begin() + static_cast<long>(word.find(",energy,")), ',') + 1;
   for (int k = 0; k <= at; ++k) std::getline(iterations, word, ',');
-  CHECK(std::stod(word) == Approx(former["start"].get<double>()).epsilon(1e-12));
   auto levels = nlohmann::json::array();
   const auto methods = results_in(run)["methods"];
   for (const auto& level : methods.front()["levels"])
     levels.push_back({level["iterations"], level["energy"], level["mesh_checksum"]});
-  INFO("as it runs now: " << levels);
-  if (recorded_build) CHECK((levels == former["levels"]));
+  return {{"start", std::stod(word)}, {"levels", levels}};
+}
+
+/// Compares a run with its row. `make golden` writes the rows, whose change git shows; a change of results
+/// says why in its commit.
+void check_former(const nlohmann::json& former, const nlohmann::json& now) {
+  CHECK(now["start"].get<double>() == Approx(former["start"].get<double>()).epsilon(1e-12));
+  INFO("as it runs now: " << now);
+  if (recorded_build) CHECK((now["levels"] == former["levels"]));
+}
+
+void write_rows(const nlohmann::json& rows) {
+  std::ofstream file(former_runs);
+  std::string before = "{\n  ";
+  for (const auto& [config, row] : rows.items()) {
+    const std::string levels = std::regex_replace(row["levels"].dump(), std::regex(","), ", ");
+    file << before << '"' << config << "\": {\"start\": " << row["start"] << ", \"levels\": " << levels
+         << "}";
+    before = ",\n  ";
+  }
+  file << "\n}\n";
 }
 
 }  // namespace
 
 // By one method: `drape check` reads the others' settings, and other tests solve by every method.
 TEST_CASE("every shipped experiment passes drape check as it is, and converges, made small") {
-  const auto former = json_in(folders::source() / "tests/configs/data/former_runs.json");
+  auto former = json_in(former_runs);
+  const bool writes = std::getenv("DRAPE_GOLDEN") != nullptr;
   std::size_t compared = 0;
   for (const fs::path& config : shipped(false)) {
     INFO(config);
@@ -80,9 +102,14 @@ TEST_CASE("every shipped experiment passes drape check as it is, and converges, 
     CHECK(fs::exists(folder / "out/results.json"));
     const auto row = former.find(config.lexically_relative(folders::source()).string());
     if (row == former.end()) continue;
-    check_former(*row, folder / "out");
+    const nlohmann::json now = row_of(folder / "out");
+    if (writes)
+      *row = now;
+    else
+      check_former(*row, now);
     ++compared;
   }
+  if (writes) write_rows(former);
   CHECK(compared == former.size());
 }
 
