@@ -73,8 +73,16 @@ int check_experiment(const ConfigArguments& arguments, const Registry& registry)
   std::cout << "\nMemory to solve them, at most about:";
   for (const Level& level : loaded.scene->hierarchy.levels)
     std::cout << (level.index ? ", " : " ") << memory_text(estimated_memory(level.vertex_count()));
-  std::cout << "; this machine has " << memory_text(machine_memory())
-            << "\nRead: " << printable(text_of(loaded.summary)) << "\n";
+  std::cout << "; this machine has " << memory_text(machine_memory()) << "\n";
+  if (estimated_seconds(loaded.summary, 1)) {
+    std::cout << "Time until the end of each, by pcs on one core of " << estimate_processor
+              << ", within about a factor of 3:";
+    for (const Level& level : loaded.scene->hierarchy.levels)
+      std::cout << (level.index ? ", " : " ")
+                << rounded_text(*estimated_seconds(loaded.summary, level.vertex_count()), 2) << " s";
+    std::cout << "\n";
+  }
+  std::cout << "Read: " << printable(text_of(loaded.summary)) << "\n";
   for (const Level& level : loaded.scene->hierarchy.levels)
     if (!level.cloth_vertices.empty())
       std::cout << "level " << level.index << " under the cloth's mesh: " << text_of(level) << "\n";

@@ -38,6 +38,12 @@ struct SceneSummary {
 
 SceneSummary summary_of(const Scene& scene);
 
+/// Seconds that PCS takes to bring the scene's cloth to rest on a mesh of so many vertices, those of coarser
+/// levels among them, on one core of `estimate_processor`; none without a bending length. A fit to
+/// docs/results/speed.md's record of every scene, which it meets within a factor of 3.
+std::optional<double> estimated_seconds(const SceneSummary& summary, double vertices);
+inline constexpr const char* estimate_processor = "an AMD EPYC (AVX-512)";
+
 /// Of a level's rest shape [m].
 double median_edge(const Level& level);
 
