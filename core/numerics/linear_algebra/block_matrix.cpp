@@ -9,8 +9,9 @@
 namespace drape {
 namespace {
 
-void require_vertices(int vertex_count, const Stencils& stencils) {
-  for (Eigen::Index e = 0; e < stencils.rows(); ++e)
+/// Of the elements [begin, end).
+void require_vertices(int vertex_count, const Stencils& stencils, Eigen::Index begin, Eigen::Index end) {
+  for (Eigen::Index e = begin; e < end; ++e)
     for (Eigen::Index a = 0; a < stencils.cols(); ++a) {
       const int v = stencils(e, a);
       if (v == -1) continue;
@@ -30,7 +31,7 @@ std::shared_ptr<const BlockPattern> BlockPattern::of(int vertex_count,
                                                      const std::vector<Stencils>& stencils) {
   std::vector<AdjacencyList> elements;  // of each vertex, for each stencil array
   for (const Stencils& s : stencils) {
-    require_vertices(vertex_count, s);
+    require_vertices(vertex_count, s, 0, s.rows());
     elements.push_back(AdjacencyList::of(vertex_count, [&](const auto& add) {
       for (int e = 0; e < s.rows(); ++e)
         for (const int v : s.row(e))
@@ -118,8 +119,8 @@ Eigen::MatrixXd dense(const BlockMatrix& matrix) {
 BlockSlots::BlockSlots(const BlockPattern& pattern, const Stencils& stencils)
     : pairs_(static_cast<int>(stencils.cols() * (stencils.cols() + 1) / 2)),
       slots_(static_cast<std::size_t>(stencils.rows()) * pairs_) {
-  require_vertices(pattern.rows(), stencils);
-  parallel_for(static_cast<int>(stencils.rows()), 4096, [&](int begin, int end) {
+  parallel_for(static_cast<int>(stencils.rows()), 512, [&](int begin, int end) {
+    require_vertices(pattern.rows(), stencils, begin, end);
     for (int e = begin; e < end; ++e) {
       int* slots = slots_.data() + static_cast<std::size_t>(e) * pairs_;
       for (Eigen::Index b = 0; b < stencils.cols(); ++b)

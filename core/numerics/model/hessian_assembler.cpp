@@ -15,15 +15,23 @@ using Pairs = std::vector<std::pair<int, int>>;
 
 /// The pairs i < j of an element's vertices that the pattern has no block for, ascending, each once.
 Pairs missing_in(const BlockPattern& pattern, const std::vector<Stencils>& stencils) {
+  constexpr int grain = 512;
   Pairs missing;
-  for (const Stencils& s : stencils)
-    for (Eigen::Index e = 0; e < s.rows(); ++e)
-      for (Eigen::Index b = 1; b < s.cols(); ++b)
-        for (Eigen::Index a = 0; a < b; ++a) {
-          if (s(e, a) < 0 || s(e, b) < 0) continue;
-          const std::pair<int, int> pair = std::minmax(s(e, a), s(e, b));
-          if (pattern.find(pair.first, pair.second) < 0) missing.push_back(pair);
-        }
+  for (const Stencils& s : stencils) {
+    const int rows = static_cast<int>(s.rows());
+    std::vector<Pairs> pieces((rows + grain - 1) / grain);
+    parallel_for(rows, grain, [&](int begin, int end) {
+      Pairs& own = pieces[begin / grain];
+      for (int e = begin; e < end; ++e)
+        for (Eigen::Index b = 1; b < s.cols(); ++b)
+          for (Eigen::Index a = 0; a < b; ++a) {
+            if (s(e, a) < 0 || s(e, b) < 0) continue;
+            const std::pair<int, int> pair = std::minmax(s(e, a), s(e, b));
+            if (pattern.find(pair.first, pair.second) < 0) own.push_back(pair);
+          }
+    });
+    for (const Pairs& own : pieces) missing.insert(missing.end(), own.begin(), own.end());
+  }
   std::sort(missing.begin(), missing.end());
   missing.erase(std::unique(missing.begin(), missing.end()), missing.end());
   return missing;
