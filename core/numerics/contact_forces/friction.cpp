@@ -86,6 +86,17 @@ TangentialDisplacements sorted(TangentialDisplacements displacements) {
   return displacements;
 }
 
+/// compute(i) of each of `count` contacts. All threads compute, and one then adds in order, which makes
+/// results independent of the thread count.
+template <class T, class Compute>
+std::vector<T> of_each(int count, const Compute& compute) {
+  std::vector<T> all(count);
+  parallel_for(count, 256, [&](int begin, int end) {
+    for (int i = begin; i < end; ++i) all[i] = compute(i);
+  });
+  return all;
+}
+
 }  // namespace
 
 LaggedFriction::LaggedFriction(FrictionContacts groups, const Positions& reference,
@@ -122,11 +133,13 @@ double LaggedFriction::value(const Positions& x) const {
 }
 
 double LaggedFriction::add_gradient(const Positions& x, Positions& g) const {
-  for (int i = 0; i < size(); ++i) {
-    const Vector3d u = displacement(i, x), force = contacts_[i].force * ratio(u.norm()) * u;
+  const auto forces = of_each<Vector3d>(size(), [&](int i) {
+    const Vector3d u = displacement(i, x);
+    return Vector3d(contacts_[i].force * ratio(u.norm()) * u);
+  });
+  for (int i = 0; i < size(); ++i)
     for (int k = 0; k < 4; ++k)
-      if (contacts_[i].vertices[k] >= 0) g.row(contacts_[i].vertices[k]) += contacts_[i].c[k] * force;
-  }
+      if (contacts_[i].vertices[k] >= 0) g.row(contacts_[i].vertices[k]) += contacts_[i].c[k] * forces[i];
   return value(x);
 }
 
@@ -138,9 +151,11 @@ Stencils LaggedFriction::stencils() const {
 }
 
 void LaggedFriction::add_hessian(const Positions& x, Projection, BlockSink& sink) const {
+  const auto stiffnesses =
+      of_each<Eigen::Matrix3d>(size(), [&](int i) { return stiffness(i, displacement(i, x)); });
   for (int i = 0; i < size(); ++i) {
     const FrictionContact& contact = contacts_[i];
-    const Eigen::Matrix3d h = stiffness(i, displacement(i, x));
+    const Eigen::Matrix3d& h = stiffnesses[i];
     for (int b = 0; b < 4; ++b)
       for (int a = 0; a <= b; ++a) {
         if (contact.vertices[a] < 0 || contact.vertices[b] < 0) continue;
