@@ -97,20 +97,22 @@ bool Front<Scalar>::eliminate() const {
     const int end = std::min(begin + tile<Scalar>, pivot_panels);
     if (!factorise_diagonal(*this, begin, end)) return false;
     const int first = begin * row_panel_height, last = std::min(end * row_panel_height, 3 * pivots);
-    parallel_kernels<Scalar>(panels - end, 2, [&](int b, int e) {
+    parallel_kernels<Scalar>(panels - end, 1, [&](int b, int e) {
       for (int i = end + b; i < end + e; ++i)
         for (int column = first; column < last; column += tile_columns)
           factorise_columns_below(panel_rows(i), panel_rows(column / row_panel_height),
                                   column % row_panel_height, first, column);
     });
-    const int tiles = (panels - end + tile<Scalar> - 1) / tile<Scalar>;
+    // Of a small front smaller tiles, so that there are enough for threads to share.
+    const int height = std::clamp((panels - end) / 4, 1, tile<Scalar>);
+    const int tiles = (panels - end + height - 1) / height;
     parallel_kernels<Scalar>(tiles * (tiles + 1) / 2, 1, [&](int pair, int) {
       int row = 0;
       while ((row + 1) * (row + 2) / 2 <= pair) ++row;
       const int column = pair - row * (row + 1) / 2;
-      const int row_begin = end + row * tile<Scalar>, column_begin = end + column * tile<Scalar>;
-      for (int i = row_begin; i < std::min(row_begin + tile<Scalar>, panels); ++i)
-        for (int k = column_begin; k < std::min(column_begin + tile<Scalar>, i + 1); ++k)
+      const int row_begin = end + row * height, column_begin = end + column * height;
+      for (int i = row_begin; i < std::min(row_begin + height, panels); ++i)
+        for (int k = column_begin; k < std::min(column_begin + height, i + 1); ++k)
           subtract_product(panel_rows(i), panel_rows(k), first, last, block(i, k));
     });
   }
