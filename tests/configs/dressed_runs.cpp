@@ -259,16 +259,25 @@ TEST_CASE("A dressing starts from the noise of its seed") {
   CHECK((one - two).cwiseAbs().maxCoeff() > 1e-4);
 }
 
-TEST_CASE("A garment that is dressed anew on a finer level has its pins where the sewing has left it") {
+TEST_CASE("A garment that is dressed anew on a finer level has its pins where the sewing has left it there") {
   const Scratch folder;
   small_tube().write(folder, held);
-  Solved s{experiment_in(folder / "e.yaml", {{"levels", "2"}}), nullptr, {}};
-  s.scene = scene_of(s.experiment);
-  run_method(s);
-  REQUIRE(s.levels.size() == 2);
-  REQUIRE_FALSE(s.model().dirichlet().empty());
-  for (const DirichletVertex& d : s.model().dirichlet())
-    CHECK(std::abs(d.target.y()) < 0.7 * TubeDress().apart);  // not where it was placed
+  for (const Overrides& levels : {Overrides{{"levels", "2"}}, Overrides{{"hierarchy", "{coarsen: 1}"}},
+                                  Overrides{{"levels", "2"}, {"hierarchy", "{coarsen: 1}"}}}) {
+    Solved s{experiment_in(folder / "e.yaml", levels), nullptr, {}};
+    s.scene = scene_of(s.experiment);
+    run_method(s);
+    for (const LevelResult& level : s.levels) {
+      INFO("level " << level.level << " of " << s.levels.size() << ": " << level.message);
+      CHECK(level.outcome == Outcome::converged);
+    }
+    REQUIRE_FALSE(s.model().dirichlet().empty());
+    for (const DirichletVertex& d : s.model().dirichlet()) {
+      CHECK(s.x().row(d.vertex) == d.target.transpose());
+      CHECK(std::abs(d.target.y()) < 0.7 * TubeDress().apart);  // not where it was placed
+      CHECK(std::hypot(d.target.x(), d.target.y()) > TubeDress().radius);  // not on a chord through the body
+    }
+  }
 }
 
 TEST_CASE("A dressing has the same bits on any number of threads") {

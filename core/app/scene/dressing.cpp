@@ -107,6 +107,7 @@ void find_dressing_start(const Experiment& e, Scene& scene, ConfigErrors& errors
   };
   if (!body.intersects(own)) return refuse("nowhere near");
   std::vector<Intersection> least;
+  bool inside = false;  // of the starts without intersections, which smoothing has drawn into the body
   for (const double inflation : inflations) {
     const double way = inflation * median_edge(level);
     std::vector<DressingStart> shapes;
@@ -125,7 +126,10 @@ void find_dressing_start(const Experiment& e, Scene& scene, ConfigErrors& errors
         if (crossed.contains(k)) continue;
         const Positions& x = shapes[k].garments[0];
         std::vector<Intersection> found = intersections_of(*model, x);
-        if (found.empty() && is_inside(x.topRows(1), small)) return refuse("inside");
+        if (found.empty() && is_inside(x.topRows(1), small)) {
+          inside = true;
+          continue;
+        }
         if (found.empty()) {
           take(std::move(shapes[k]), contraction, scene);
           return;
@@ -136,6 +140,7 @@ void find_dressing_start(const Experiment& e, Scene& scene, ConfigErrors& errors
     }
     if (crossed.size() < shapes.size()) break;
   }
+  if (least.empty() && inside) return refuse("inside");
   errors.push_back(refusal(e, least, level));
 }
 

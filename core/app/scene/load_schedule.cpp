@@ -36,6 +36,13 @@ std::shared_ptr<const Level> IntermediateRests::level(int level) const {
   return own;
 }
 
+Positions own_of(const Hierarchy& hierarchy, const Positions& x, int fine, int coarse) {
+  const Level &from = hierarchy.levels[fine], &to = hierarchy.levels[coarse];
+  Positions own(to.vertex_count(), 3);
+  for (int v = 0; v < to.vertex_count(); ++v) own.row(v) = x.row(from.own_vertex(to.cloth_vertex(v)));
+  return own;
+}
+
 LoadSchedule::LoadSchedule(const Experiment& e, const Scene& scene)
     : scene_(scene), keys_([&] {
         ScheduleParameters keys = e.parameters.schedule;
@@ -98,8 +105,7 @@ std::shared_ptr<const LoadState> LoadSchedule::at(std::vector<double> values, co
 
 Positions LoadSchedule::placed(const LoadState& load, int level) const {
   if (!load.sewn) return scene_.placed[level];
-  const Hierarchy& hierarchy = scene_.hierarchy;
-  return hierarchy.prolong(*load.sewn, 0, level, hierarchy.linear);
+  return own_of(scene_.hierarchy, *load.sewn, scene_.hierarchy.level_count() - 1, level);
 }
 
 /// Gives a load the loads and the rest shapes of its phase.

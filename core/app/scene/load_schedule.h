@@ -31,8 +31,8 @@ struct LoadState {
   std::vector<NamedEnergy> energies;                       ///< handles last
   std::vector<std::shared_ptr<ContactModel>> contacts;
   std::shared_ptr<const IntermediateRests> rests;  ///< of membranes; null: those of the levels
-  /// Where pins hold a garment that has been sewn: the coarsest level's positions then, n×3 [m]; null: where
-  /// the scene placed it.
+  /// Where pins hold a garment that has been sewn: its positions then, prolonged to the finest level from the
+  /// one that it was sewn on, n×3 [m]; null: where the scene placed it.
   std::shared_ptr<const Positions> sewn;
 };
 
@@ -79,6 +79,9 @@ class LoadSchedule {
   std::vector<Change> changes_;
   std::shared_ptr<const LoadState> first_;
 };
+
+/// Of positions of a level's vertices (n×3), those of the vertices of a coarser one, which are among them.
+Positions own_of(const Hierarchy& hierarchy, const Positions& x, int fine, int coarse);
 
 /// Load stepping along the schedule of an experiment with keys; refers to the scene, which owns it. Null,
 /// with an error at the key's location appended, for every key at one of whose times a pin or handle selects

@@ -85,15 +85,6 @@ void check_on_levels(const Experiment& e, const Scene& scene, const LoadSchedule
   }
 }
 
-/// Of the positions of a level's vertices, those of level 0, which are among them.
-Positions at_coarsest(const Hierarchy& hierarchy, const Positions& x, int level) {
-  const Level& coarsest = hierarchy.levels[0];
-  Positions own(coarsest.vertex_count(), 3);
-  for (int v = 0; v < coarsest.vertex_count(); ++v)
-    own.row(v) = x.row(hierarchy.levels[level].own_vertex(coarsest.cloth_vertex(v)));
-  return own;
-}
-
 /// Load stepping along a scene's schedule: how far it has come, and the load and model of each level. A
 /// level's model is made when it is asked for.
 class ScheduleStepping final : public LoadStepping {
@@ -104,7 +95,7 @@ class ScheduleStepping final : public LoadStepping {
         cloth_(experiment.parameters.cloth),
         dress_(experiment.parameters.dress),
         has_sewn_pins_(dress_.is_asked() && !schedule_.first()->parameters->pins.empty()),
-        first_start_(scene.starts[0]),
+        finest_start_(scene.starts.back()),
         hierarchy_(scene.hierarchy),
         load_(schedule_.first()) {
     for (const auto& model : scene.models) levels_.push_back({load_, load_, model});
@@ -135,9 +126,9 @@ class ScheduleStepping final : public LoadStepping {
                                state.values.begin() + static_cast<std::ptrdiff_t>(count));
     std::shared_ptr<const LoadState> load = load_at(std::move(values));
     if (has_sewn_pins_ && load->parameters->dress.loads > 0 && state.values.size() > count) {
-      Positions sewn(first_start_.rows(), 3);
+      Positions sewn(finest_start_.rows(), 3);
       std::copy(state.values.begin() + static_cast<std::ptrdiff_t>(count), state.values.end(), sewn.data());
-      load = with_sewn_at(*load, sewn);
+      load = with_sewn_at(*load, std::move(sewn));
     }
     set_load(level, load);
   }
@@ -152,7 +143,7 @@ class ScheduleStepping final : public LoadStepping {
   }
 
   StepLimit advance(int level, const Positions& x) override {
-    if (dress_.is_asked()) refuse_if_too_tight(at_coarsest(hierarchy_, x, level));
+    if (dress_.is_asked()) refuse_if_too_tight(own_of(hierarchy_, x, level, 0));
     if (complete()) ++increment_;
     StepLimit limit{0, {}};
     double part = 1;
@@ -201,7 +192,7 @@ class ScheduleStepping final : public LoadStepping {
     if (fraction < 1 && values == load_->values) return {0, {}};  // less than the numbers can express
     std::shared_ptr<const LoadState> next = load_at(std::move(values));
     if (has_sewn_pins_ && next->parameters->dress.loads > 0 && load_->parameters->dress.loads == 0)
-      next = with_sewn_at(*next, at_coarsest(hierarchy_, x, level));
+      next = with_sewn_at(*next, hierarchy_.prolong(x, level, hierarchy_.level_count() - 1, hierarchy_.linear));
     const std::shared_ptr<const LevelModel> now = model(level);
     std::shared_ptr<const LevelModel> then = schedule_.model(*next, level, *now);
     if (std::string refused = strain_limit_violations(then->limits(), x, 1); !refused.empty())
@@ -224,16 +215,16 @@ class ScheduleStepping final : public LoadStepping {
     if (!fault.empty()) throw LoadRefused(fault);
   }
 
-  /// The load of a garment that was sewn at these positions of the coarsest level.
-  static std::shared_ptr<const LoadState> with_sewn_at(const LoadState& load, const Positions& sewn) {
+  /// The load of a garment that was sewn at these positions of the finest level.
+  static std::shared_ptr<const LoadState> with_sewn_at(const LoadState& load, Positions sewn) {
     LoadState own = load;
-    own.sewn = std::make_shared<const Positions>(sewn);
+    own.sewn = std::make_shared<const Positions>(std::move(sewn));
     return std::make_shared<const LoadState>(std::move(own));
   }
 
   /// A load's values, for a state, with where pins hold the garment.
   std::vector<double> with_sewn(std::vector<double> values) const {
-    const Positions& sewn = load_->sewn ? *load_->sewn : first_start_;
+    const Positions& sewn = load_->sewn ? *load_->sewn : finest_start_;
     if (has_sewn_pins_) values.insert(values.end(), sewn.data(), sewn.data() + sewn.size());
     return values;
   }
@@ -241,8 +232,8 @@ class ScheduleStepping final : public LoadStepping {
   const LoadSchedule schedule_;
   const ClothParameters cloth_;
   const DressParameters dress_;
-  const bool has_sewn_pins_;     // the dressing decides where pins hold
-  const Positions first_start_;  // of the coarsest level [m]
+  const bool has_sewn_pins_;      // the dressing decides where pins hold
+  const Positions finest_start_;  // of the finest level [m]
   const Hierarchy& hierarchy_;
   int increment_ = 0;
   std::shared_ptr<const LoadState> load_;
