@@ -192,7 +192,8 @@ class ScheduleStepping final : public LoadStepping {
     if (fraction < 1 && values == load_->values) return {0, {}};  // less than the numbers can express
     std::shared_ptr<const LoadState> next = load_at(std::move(values));
     if (has_sewn_pins_ && next->parameters->dress.loads > 0 && load_->parameters->dress.loads == 0)
-      next = with_sewn_at(*next, hierarchy_.prolong(x, level, hierarchy_.level_count() - 1, hierarchy_.linear));
+      next =
+          with_sewn_at(*next, hierarchy_.prolong(x, level, hierarchy_.level_count() - 1, hierarchy_.linear));
     const std::shared_ptr<const LevelModel> now = model(level);
     std::shared_ptr<const LevelModel> then = schedule_.model(*next, level, *now);
     if (std::string refused = strain_limit_violations(then->limits(), x, 1); !refused.empty())
