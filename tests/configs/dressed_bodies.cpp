@@ -1,8 +1,10 @@
-// One body, open at both ends, in every kind of file, unit and axis that bodies come in.
+// Bodies that are open: one in every kind of file, unit and axis that bodies come in, and one with cut limbs.
 
 #include <iomanip>
+#include <map>
 #include <sstream>
 
+#include "core/numerics/mesh/mesh_faults.h"
 #include "core/numerics/mesh_files/io.h"
 #include "tests/support/solve.h"
 #include "tests/support/tube_dress.h"
@@ -55,6 +57,23 @@ struct Form {
   }
 };
 
+/// The number of loops in which a surface ends.
+int border_loops(const TriangleMesh& mesh) {
+  std::map<int, int> next;
+  for (const int half : border_half_edges(mesh.triangles, static_cast<int>(mesh.vertices.rows()))) {
+    const auto corners = mesh.triangles.row(half / 3);
+    next[corners[(half + 1) % 3]] = corners[(half + 2) % 3];
+  }
+  int loops = 0;
+  for (; !next.empty(); ++loops)
+    for (auto at = next.begin(); at != next.end();) {
+      const int to = at->second;
+      next.erase(at);
+      at = next.find(to);
+    }
+  return loops;
+}
+
 }  // namespace
 
 TEST_CASE("An open body has the same energies from every kind of file, in any unit and with any axis up") {
@@ -98,5 +117,38 @@ TEST_CASE("An open body has the same energies from every kind of file, in any un
     const auto parts = model.energy_parts(worn);
     for (std::size_t k = 0; k < parts.size(); ++k)
       CHECK(parts[k].second == Approx(energies[k].second).epsilon(1e-9).margin(1e-15));
+  }
+}
+
+TEST_CASE("A shirt is dressed on a made body that is cut at neck, wrists and thighs, beyond its ends") {
+  const Scratch folder;
+  const std::string script = (folders::source() / "configs/garments/make_body").string();
+  const Ended made = Command(script + " --form --cut --cell 0.03 body.obj", folder.path).wait();
+  INFO(made.err);
+  REQUIRE(made.exit_code == 0);
+  CHECK(border_loops(read_mesh((folder / "body.obj").string())) == 5);
+  folder.write(
+      "e.yaml",
+      "name: shirt\nlevels: 2\ncloth: {shape: pattern, file: " +
+          (folders::source() / "configs/garments/shirt.yaml").string() +
+          ", edge_length: 0.05}\nmaterial: {density: 300, thickness: 4e-4, membrane_modulus: 8e5, "
+          "bending_modulus: 2e5}\nenergies: [neo_hookean, hinge, gravity]\ncontact: {type: ipc, dhat: "
+          "0.002}\nfriction: 0.4\ndress: {body: body.obj, up: y}\nmethods: {pcs: {}}\nmetrics: []\n");
+  Solved s{experiment_in(folder / "e.yaml"), nullptr, {}};
+  s.scene = scene_of(s.experiment);
+  run_method(s);
+  REQUIRE(s.levels.size() == 2);
+  for (const LevelResult& level : s.levels) {
+    INFO(level.message);
+    CHECK(level.message.empty());
+    CHECK(level.outcome == Outcome::converged);
+    for (const auto& contact : s.scene->models[level.level]->contacts())
+      CHECK(contact->intersections(level.x).empty());
+    // Of cuffs and collar, beyond the wrists, which arms reach at 45 degrees, and beyond the neck.
+    const auto farthest = [&](const Eigen::Vector3d& end, const Eigen::Vector3d& out) {
+      return ((level.x.rowwise() - end.transpose()) * out.normalized()).maxCoeff();
+    };
+    for (const double side : {-1, 1}) CHECK(farthest({side * 0.548, 0.01, 0.947}, {side, 0, -1}) > 0.02);
+    CHECK(farthest({0, 0, 1.44}, {0, 0, 1}) > 0.01);
   }
 }
