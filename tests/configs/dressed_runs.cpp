@@ -13,15 +13,21 @@ using namespace drape;
 
 namespace {
 
-/// A tube that would fall, held by the top of its front.
-const std::string held =
-    "pins: [{region: box, lower: [-1, -1, 0.099], upper: [1, -0.01, 1]}]\n"
-    "material: {density: 300, thickness: 5e-4, membrane_modulus: 4e5, bending_modulus: 1e5}\n"
-    "energies: [neo_hookean, hinge, gravity]\n";
-
 constexpr const char* cloth =
     "material: {density: 300, thickness: 5e-4, membrane_modulus: 4e5, bending_modulus: 1e5}\n"
     "energies: [neo_hookean, hinge, gravity]\n";
+
+/// A tube that would fall, held by the top of its front.
+const std::string held =
+    "pins: [{region: box, lower: [-1, -1, 0.099], upper: [1, -0.01, 1]}]\n" + std::string(cloth);
+
+/// The experiment in a folder with these changes, solved by its method.
+Solved dressed_in(const Scratch& folder, const Overrides& overrides = {}) {
+  Solved s{experiment_in(folder / "e.yaml", overrides), nullptr, {}};
+  s.scene = scene_of(s.experiment);
+  run_method(s);
+  return s;
+}
 
 TubeDress small_tube() { return {.columns = 8, .rows = 5, .facets = 24}; }
 
@@ -120,9 +126,7 @@ TEST_CASE("A garment that is narrower than its body is sewn without a struggle")
   narrow.width = 0.22;
   const Scratch folder;
   narrow.write(folder, cloth);
-  Solved s{experiment_in(folder / "e.yaml"), nullptr, {}};
-  s.scene = scene_of(s.experiment);
-  run_method(s);
+  const Solved s = dressed_in(folder);
   INFO(s.levels[0].message);
   CHECK(s.levels[0].outcome == Outcome::converged);
   CHECK(s.levels[0].iterations < 200);  // 685 where increments do not wait for a cloth that contact holds up
@@ -135,9 +139,7 @@ TEST_CASE("A garment that is too tight for its body is refused once it is sewn, 
   narrow.write(folder, cloth);
   folder.write("tube.yaml", mirrored_pattern(0.12));
   const auto message = [&](const Overrides& overrides) {
-    Solved s{experiment_in(folder / "e.yaml", overrides), nullptr, {}};
-    s.scene = scene_of(s.experiment);
-    run_method(s);
+    const Solved s = dressed_in(folder, overrides);
     for (const LevelResult& level : s.levels) {
       INFO("level " << level.level);
       REQUIRE(level.outcome == Outcome::infeasible);
@@ -203,9 +205,7 @@ TEST_CASE("A pin holds a garment that would fall where the sewing has left it") 
   loose.width = 0.4;
   const Scratch folder;
   loose.write(folder, held);
-  Solved s{experiment_in(folder / "e.yaml", {{"friction", "0"}}), nullptr, {}};
-  s.scene = scene_of(s.experiment);
-  run_method(s);
+  const Solved s = dressed_in(folder, {{"friction", "0"}});
   INFO(s.levels[0].message);
   REQUIRE(s.levels[0].outcome == Outcome::converged);
   const std::vector<DirichletVertex>& pinned = s.model().dirichlet();
@@ -273,9 +273,7 @@ TEST_CASE("A garment that is dressed anew on a finer level has its pins where th
   small_tube().write(folder, held);
   for (const Overrides& levels : {Overrides{{"levels", "2"}}, Overrides{{"hierarchy", "{coarsen: 1}"}},
                                   Overrides{{"levels", "2"}, {"hierarchy", "{coarsen: 1}"}}}) {
-    Solved s{experiment_in(folder / "e.yaml", levels), nullptr, {}};
-    s.scene = scene_of(s.experiment);
-    run_method(s);
+    const Solved s = dressed_in(folder, levels);
     for (const LevelResult& level : s.levels) {
       INFO("level " << level.level << " of " << s.levels.size() << ": " << level.message);
       CHECK(level.outcome == Outcome::converged);
@@ -293,9 +291,7 @@ TEST_CASE("A dressing has the same bits on any number of threads") {
   const Scratch folder;
   small_tube().write(folder, cloth);
   same_with_any_threads([&] {
-    Solved s{experiment_in(folder / "e.yaml"), nullptr, {}};
-    s.scene = scene_of(s.experiment);
-    run_method(s);
+    const Solved s = dressed_in(folder);
     CHECK(has_converged(s.levels[0].outcome));
     return s.x();
   });
@@ -308,10 +304,8 @@ TEST_CASE("A strain limit comes down once the garment is sewn, and holds at its 
       "material: {density: 3000, thickness: 5e-4, membrane_modulus: 1e5, bending_modulus: 1e5}\n"
       "energies: [neo_hookean, hinge, gravity, {type: strain_limit, limit: 50}]\n");
   const auto dressed = [&](const std::string& limit) {
-    Solved s{experiment_in(folder / "e.yaml", {{"energies.strain_limit.limit", limit}}), nullptr, {}};
-    s.scene = scene_of(s.experiment);
+    Solved s = dressed_in(folder, {{"energies.strain_limit.limit", limit}});
     CHECK(dressing_phase(s.experiment.parameters.dress, 41) == "limit");
-    run_method(s);
     return s;
   };
   const auto largest = [](const Solved& s) { return largest_stretch(s.level(), s.x()).maxCoeff(); };
