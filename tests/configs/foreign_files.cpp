@@ -160,3 +160,10 @@ TEST_CASE("an exit code of an error comes with a line, in a quiet run too") {
   CHECK(drape_ends("run --resume out -q", folder, 1).err == stuck.err);
   CHECK(run_into("good", folder, "--method newton").err == "");
 }
+
+TEST_CASE("no library of the current folder is loaded") {
+  const Scratch folder(small_experiment());
+  for (const char* library : {"libz.so.1", "libstdc++.so.6", "libm.so.6"})
+    folder.write(library, "no library");
+  drape_ends("check e.yaml", folder);
+}
