@@ -79,9 +79,11 @@ int export_states(const std::string& folder, const fs::path& file, const ExportO
 }
 
 // Python would look into the current folder first, and for an empty part of PYTHONPATH, which -E keeps from
-// it until here: what lies there is not to be run.
-constexpr const char* figures_program = R"(import sys
-sys.path = [part for part in [*sys.argv.pop(1).split(':'), *sys.path] if part]
+// it until here, and matplotlib evaluates a matplotlibrc of that folder: what lies there is not to be run.
+constexpr const char* figures_program = R"(import os, sys
+sys.path = [os.path.abspath(part) for part in [*sys.argv.pop(1).split(':'), *sys.path] if part]
+here = os.open('.', os.O_PATH)
+os.chdir('/')
 try:
     import matplotlib
     import drape.paper as figures
@@ -89,6 +91,7 @@ except ImportError as error:
     print(f'error: figures are made by the Python module of drape and matplotlib, which {sys.executable} lacks '
           f'({error}); build it with make python, or name its folder in PYTHONPATH', file=sys.stderr)
     sys.exit(2)
+os.fchdir(here)
 sys.exit(figures.main())
 )";
 

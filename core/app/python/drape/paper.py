@@ -1,6 +1,6 @@
 """What `drape figures RESULTS -o DIR` writes: a paper's figures (PDF, SVG, PNG, each with its CSV), tables (CSV, LaTeX) and pictures.
 
-The style is plots.STYLE, under the reader's own: a matplotlibrc in the working folder, or --style.
+The style is plots.STYLE, under the reader's own: matplotlib's matplotlibrc, or --style.
 """
 
 from __future__ import annotations
@@ -8,6 +8,7 @@ from __future__ import annotations
 import argparse
 import json
 import pathlib
+import re
 import sys
 import tempfile
 
@@ -69,6 +70,11 @@ def latex_table(table: dict) -> str:
     return "\n".join([*lines, r"\bottomrule", r"\end{tabular}", r"\par\smallskip{\footnotesize " + " ".join(notes) + "}", ""])
 
 
+def _file(folder: pathlib.Path, name: str) -> pathlib.Path:
+    """A file in the folder, whatever names of methods and measures the results of somebody else have."""
+    return folder / re.sub(r"[^\w.,=+-]", "_", name)
+
+
 def _save(figure, rows: pandas.DataFrame, file: pathlib.Path) -> list[pathlib.Path]:
     """The figure as PDF, SVG and PNG, and what it shows as CSV. Equal figures give equal files."""
     import matplotlib.pyplot
@@ -98,7 +104,7 @@ def _run_figures(folder: pathlib.Path, out: pathlib.Path) -> list[pathlib.Path]:
         if len(levels) > 1:
             pictures |= {"preview": {"level": levels[0]}, "outline": {"outline": True}}
         for name, options in pictures.items() if levels else ():
-            files.append(out / f"{method}_{name}.png")
+            files.append(_file(out, f"{method}_{name}.png"))
             _core._draw(folder, files[-1], method, **options)
     return files
 
@@ -115,7 +121,7 @@ def _sweep_figures(folder: pathlib.Path, table: dict, out: pathlib.Path, measure
         title = COLUMNS.get(name, name.replace("_", " ")) + (", on a busy machine" if busy and name in ("seconds", "preview_seconds") else "")
         for key in keys:
             figure, rows = paper_sweep.measure_figure(summary, name, title, key, names, styles, width, log)
-            files += _save(figure, rows, out / f"{name}_by_{names.short(key)}")
+            files += _save(figure, rows, _file(out, f"{name}_by_{names.short(key)}"))
     titles = {row["variation"]: ", ".join(names.text(key, row[key]) for key in keys) or row["variation"] for _, row in summary.iterrows()}
     runs: dict = {}
     for run in json.loads((folder / "sweep.json").read_text(encoding="utf-8"))["runs"]:
@@ -182,7 +188,7 @@ def main() -> int:
     given = vars(parser.parse_args())
     try:
         for file in figures(given.pop("results"), given.pop("out"), given.pop("overwrite"), **given):
-            print(file)
+            print("".join(c if c.isprintable() else ascii(c)[1:-1] for c in str(file)))
     except (RuntimeError, OSError) as error:
         print(f"error: {error}", file=sys.stderr)
         return 2

@@ -210,7 +210,7 @@ def pictures_figure(runs: dict, methods, width=None):
             for method in methods:
                 levels = [entry.level for entry in results[0][method].levels if vars(entry).get("mesh")] if method in results[0].methods else []
                 for level in dict.fromkeys([levels[0], levels[-1]] if levels else []):
-                    file = pathlib.Path(folder, f"{method}_{level}.png")
+                    file = pathlib.Path(folder, f"{len(drawn)}.png")
                     _core._draw(results[0].folder, file, method, level=level, width=pixels, edges=False)
                     drawn.append((method + (", preview" if level != levels[-1] else ", end"), matplotlib.pyplot.imread(file)))
             shown.append(dict(drawn))

@@ -13,7 +13,7 @@ COSTS = {"seconds": "time [s]", "iterations": "Newton iterations", "flops": "flo
 
 
 # What a page of a journal asks for: small type that stays type, thin lines, no frame, vectors. A style of the reader's own counts
-# first, whether from a matplotlibrc or by --style.
+# first, whether from matplotlib's matplotlibrc or by --style.
 STYLE = {"font.size": 8, "axes.titlesize": 8, "axes.labelsize": 8, "xtick.labelsize": 7, "ytick.labelsize": 7, "legend.fontsize": 8,
          "axes.spines.top": False, "axes.spines.right": False, "axes.linewidth": 0.6, "lines.linewidth": 1.2, "grid.linewidth": 0.4,
          "grid.color": "#d9d9d9", "axes.grid": True, "axes.axisbelow": True, "legend.frameon": False, "figure.dpi": 150, "savefig.dpi": 300,
