@@ -1,6 +1,7 @@
 """What an experiment refuses, and where it says the faults are."""
 
 import pathlib
+import pickle
 
 import numpy
 import pytest
@@ -140,3 +141,6 @@ def test_an_object_whose_init_has_not_run_is_refused(small):
     with pytest.raises(TypeError, match="__init__ has not run"):
         type(model).__new__(type(model)).level
     assert model.level.vertex_count > 0
+    for protocol in range(pickle.HIGHEST_PROTOCOL + 1):  # pybind11 would end the process at 0 and 1
+        with pytest.raises(TypeError, match="pickle"):
+            pickle.dumps(model.level, protocol)

@@ -71,10 +71,15 @@ void bind_errors(py::module_& m) {
 void refuse_half_made(const py::module_& m) {
   for (const auto& [name, entry] : py::dict(m.attr("__dict__")))
     if (PyType_Check(entry.ptr()) != 0)
-      if (auto* type = py::detail::get_type_info(reinterpret_cast<PyTypeObject*>(entry.ptr())))
+      if (auto* type = py::detail::get_type_info(reinterpret_cast<PyTypeObject*>(entry.ptr()))) {
         type->operator_new = [](std::size_t) -> void* {
           throw py::type_error("the object is not complete: its __init__ has not run");
         };
+        // Python's own would make an object of pybind11's base, which ends the process.
+        entry.attr("__reduce__") = py::cpp_function(
+            [](const py::args&) { throw py::type_error("objects of drape cannot be pickled"); },
+            py::is_method(entry));
+      }
 }
 
 }  // namespace
