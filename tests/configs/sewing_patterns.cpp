@@ -151,6 +151,25 @@ TEST_CASE("patterns that cannot be sewn are refused with file, line, panel and e
               "p.yaml:1:13: \"units_in_meter\" in properties is required and missing");
 }
 
+TEST_CASE("a panel's name may have blanks, and what a file of meshes could not hold is refused") {
+  const auto named = [](const std::string& left, const std::string& right) {
+    return "properties: {units_in_meter: 1}\npattern:\n  panels:\n    \"" + left +
+           "\": {vertices: [[0, 0], [1, 0], [1, 1], [0, 1]], edges: [[0, 1], [1, 2], [2, 3], [3, 0]]}\n    "
+           "\"" +
+           right +
+           "\": {vertices: [[0, 0], [1, 0], [1, 1], [0, 1]], edges: [[0, 1], [1, 2], [2, 3], [3, 0]],"
+           " translation: [1, 0, 0]}\n  stitches: [[\"" +
+           left + ".1\", \"" + right + ".3\"]]\n";
+  };
+  for (const std::string name : {"a\\nend_header", "a\\e[2J", "", " a"})
+    check_error(refused_pattern(named(name, "b")), ": a panel's name needs letters");
+  const Scratch folder(of_pattern);
+  folder.write("p.yaml", named("front left", "back"));
+  drape_ends("run e.yaml -o out -q --set cloth.edge_length=0.3 --set levels=1", folder);
+  drape_ends("export out --to a.obj", folder);
+  CHECK_THAT(text_of(folder / "a.obj"), Contains("\ng front_left\n") && Contains("\ng back\n"));
+}
+
 TEST_CASE("a pattern is meshed to a length of edges, or to about a number of vertices, within bounds") {
   const Scratch folder(of_pattern);
   folder.write("p.yaml", pattern({}));

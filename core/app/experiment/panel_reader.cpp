@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <boost/algorithm/string/trim.hpp>
 #include <cmath>
 #include <set>
 
@@ -43,6 +44,8 @@ class PanelReader {
   std::optional<ReadPanel> read() {
     Schema schema = schema_of<PanelParameters>("panel " + excerpt(read_.panel.name));
     schema.read(&p_, node_, errors_);
+    if (const std::string& name = read_.panel.name; name.empty() || printable(boost::trim_copy(name)) != name)
+      refuse(node_.where, "a panel's name needs letters, without control characters or blanks around them");
     if (failed()) return std::nullopt;
     read_.panel.translation = units_.length * p_.translation;
     read_.panel.rotation = p_.rotation;

@@ -57,7 +57,8 @@ PlyHeader read_ply_header(TextReader& reader) {
       reader.finish_line();
       return {*format, std::move(elements), std::move(pieces), uv_length};
     }
-    if (words[0] == "comment" && words.size() == 3 && words[1] == "piece") pieces.emplace_back(words[2]);
+    if (words[0] == "comment" && words.size() >= 3 && words[1] == "piece")
+      pieces.emplace_back(words[2].begin(), words.back().end());  // a name may have blanks
     if (words[0] == "comment" && words.size() == 3 && words[1] == "uv_length")
       uv_length = reader.number(words[2]);
     if (words[0] == "comment" || words[0] == "obj_info") continue;
