@@ -43,3 +43,20 @@ TEST_CASE("a data set has the garments that pass, and names where the others are
              Contains("set: exists already; name another folder"));
   drape_ends("export out --to set --overwrite", folder, 1);
 }
+
+TEST_CASE("a data set replaces nothing of its sweep, and no variation's name is that of an obstacle") {
+  const Scratch folder(
+      "name: e\nlevels: 1\ncloth: {shape: square, side: 1, vertices: 25}\nstart: {translate: [0, 0, 0.5]}\n"
+      "material: {density: 300, thickness: 5e-4, membrane_modulus: 4e5, bending_modulus: 1e5}\n"
+      "energies: [neo_hookean, hinge]\ncontact: shapes\nobstacles: [{shape: sphere, radius: 0.3}]\n"
+      "methods: {newton: {}}\n");
+  folder.write("s.yaml",
+               "name: s\nbase: e.yaml\nablation: [{name: sweep}, {name: obstacle_0, set: {friction: 0}}]\n");
+  drape_ends("sweep s.yaml -o out -q", folder);
+  for (const std::string place : {"out", "out/runs/sweep"})
+    CHECK_THAT(drape_ends("export out --overwrite --to " + place, folder, 2).err,
+               Contains(place + ": is in the sweep's own folder"));
+  CHECK(drape_ends("export out --to set", folder).out == "written: 2 of 2 to set/index.csv\n");
+  CHECK(read_mesh(folder / "set/obstacle_0,seed_1.obj").vertices.rows() == 25);
+  CHECK(read_mesh(folder / "set/obstacle_0.obj").vertices.rows() > 25);
+}

@@ -30,7 +30,8 @@ class FileNames {
   std::string of(const RunRecord& run, const std::string& method) {
     const std::string whole = run.folder.parent_path().filename().string();
     std::string more;
-    if (std::ranges::count(collection_.runs, run.name, &RunRecord::name) > 1)
+    const bool is_obstacles = whole.starts_with("obstacle_");  // whose names have no comma
+    if (is_obstacles || std::ranges::count(collection_.runs, run.name, &RunRecord::name) > 1)
       more += "," + run.folder.filename().string();
     if (run.data->methods.size() > 1) more += "," + method;
     const std::string name =
@@ -83,6 +84,9 @@ Json description_of(const RunData& run, const LevelRecord& end, const TableRow& 
 }  // namespace
 
 RunTable export_data_set(const fs::path& sweep, const fs::path& folder, const ExportOptions& options) {
+  const fs::path inside = fs::weakly_canonical(folder).lexically_relative(fs::canonical(sweep));
+  if (!inside.empty() && *inside.begin() != "..")
+    refuse_path(folder, "is in the sweep's own folder, whose files it would replace; name another folder");
   if (!options.overwrite && fs::exists(folder) && !fs::is_empty(folder))
     refuse_path(folder, "exists already; name another folder, or write into it with --overwrite");
   make_folder(folder);
