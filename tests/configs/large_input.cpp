@@ -5,24 +5,13 @@
 
 #include "core/numerics/mesh_files/io.h"
 #include "core/numerics/patterns/generate.h"
-#include "tests/configs/runs.h"
+#include "tests/configs/large.h"
 
 using namespace drape;
 
 namespace {
 
-const std::string rest_of_experiment = "energies: [neo_hookean, hinge]\nmethods: {newton: {}}\n";
-
-/// `drape check e.yaml`, which gets ten times the processor time that it may take, and a small part of what
-/// it would take with a time that grows with the square.
-Ended checked(const Scratch& folder) {
-  const Ended ended = Command("ulimit -t 20; exec " + drape_command + " check e.yaml", folder.path).wait();
-  INFO(ended.err.substr(0, 1000));
-  CHECK((ended.exit_code == 0 || ended.exit_code == 2));  // else a signal ended it
-  return ended;
-}
-
-/// The same of a cloth of this file.
+/// checked() of a cloth of this file.
 Ended checked_mesh(const std::string& name, const std::string& bytes) {
   const Scratch folder("name: large\nlevels: 1\ncloth: {shape: file, file: " + name + "}\n" +
                        rest_of_experiment);
@@ -34,12 +23,6 @@ Ended checked_mesh(const std::string& name, const std::string& bytes) {
 Ended checked_square(const std::string& sections) {
   return checked(
       Scratch("name: large\nlevels: 2\ncloth: {shape: square, side: 1, columns: 50, rows: 50}\n" + sections));
-}
-
-std::string repeated(int count, const std::function<std::string(int)>& line) {
-  std::string text;
-  for (int k = 0; k < count; ++k) text += line(k);
-  return text;
 }
 
 std::string ply(const std::string& more_properties, const std::string& more_elements) {
@@ -236,29 +219,6 @@ TEST_CASE("A vertex or an edge of very many triangles is refused") {
     folder.write("a.off", around(30000, upright));
     CHECK_THAT(checked(folder).err, Contains("vertex 0 has 30000" + most));
   }
-}
-
-TEST_CASE("A pattern of very many edges, darts or seams is read in time") {
-  const auto pattern = [](const std::string& panel, const std::string& stitches) {
-    const Scratch folder("name: large\nlevels: 1\ncloth: {shape: pattern, file: p.yaml, edge_length: 1}\n" +
-                         rest_of_experiment);
-    folder.write("p.yaml", "properties: {units_in_meter: 1}\npattern:\n  panels: {a: " + panel +
-                               "}\n  stitches: [" + stitches + "]\n");
-    return checked(folder);
-  };
-  const auto ring = [](int count) {
-    std::ostringstream text;
-    text << "{vertices: {";
-    for (int k = 0; k < count; ++k)
-      text << "v" << k << ": [" << 50 * std::cos(2 * std::numbers::pi * k / count) << ", "
-           << 50 * std::sin(2 * std::numbers::pi * k / count) << "], ";
-    text << "}, edges: {";
-    for (int k = 0; k < count; ++k) text << "e" << k << ": [v" << k << ", v" << (k + 1) % count << "], ";
-    return text.str() + "}}";
-  };
-  CHECK(pattern(ring(30000), "").exit_code == 0);
-  const Ended faulty = pattern(ring(5000), repeated(20000, [](int) { return "[a.x, a.y], "; }));
-  CHECK_THAT(faulty.err, Contains("panel a has no edge \"x\"") && Contains("error: and "));
 }
 
 TEST_CASE("A mesh of very many parts, grain regions or crossing triangles is checked in time, or refused") {

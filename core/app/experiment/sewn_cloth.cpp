@@ -136,8 +136,15 @@ void find_label_edges(const ConfigNode& source, ExperimentParameters& p, ConfigE
   }
   std::vector<std::string> names;
   for (const auto& [name, edges] : labels) names.push_back(name);
+  constexpr std::size_t most_ends = 100'000;  // config.yaml names them
+  std::size_t ends = 0;
   for (const auto& [selection, where] : asked) {
-    selection->label_edges = labels[*selection->label];
+    const std::vector<int>& own = labels[*selection->label];
+    if (ends += own.size(); ends > most_ends)
+      return errors.push_back({*where, "the labels of pins and handles have more than " +
+                                           std::to_string(most_ends / 2) +
+                                           " edges of the mesh together; let fewer select the same"});
+    selection->label_edges = own;
     if (selection->label_edges.empty())
       errors.push_back({*where, "no edge of the cloth has the label \"" + excerpt(*selection->label) +
                                     "\"; " +

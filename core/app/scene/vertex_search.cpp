@@ -44,18 +44,28 @@ std::vector<int> vertices_of_label(const VertexSelection& selection, const Level
   for (int e = 0; e < level.topology.edges.rows(); ++e)
     if (is_seam(level.rest, level.topology, e))
       for (const int v : level.topology.edges.row(e)) at_edge[v] = 1;
+  const auto end = [&](std::size_t k) -> Eigen::Vector3d {
+    return coarsest.rest.vertices.row(selection.label_edges[k]);
+  };
+  std::vector<Box> boxes;
+  for (std::size_t i = 0; i + 1 < selection.label_edges.size(); i += 2)
+    boxes.push_back(Box::around(end(i), end(i + 1), rounding * (end(i + 1) - end(i)).norm()));
+  BoxTree edges;
+  edges.build(boxes);
   std::vector<int> vertices;
-  for (int v = 0; v < level.vertex_count(); ++v)
-    for (std::size_t i = 0; at_edge[v] && i + 1 < selection.label_edges.size(); i += 2) {
-      const auto end = [&](std::size_t k) -> Eigen::RowVector3d {
-        return coarsest.rest.vertices.row(selection.label_edges[k]);
-      };
-      const Eigen::RowVector3d a = end(i), along = end(i + 1) - a, p = level.rest.vertices.row(v);
-      const double t = std::clamp((p - a).dot(along) / along.squaredNorm(), 0.0, 1.0);
-      if ((p - a - t * along).squaredNorm() > rounding * rounding * along.squaredNorm()) continue;
-      vertices.push_back(v);
-      break;
-    }
+  for (int v = 0; v < level.vertex_count(); ++v) {
+    const Eigen::Vector3d p = level.rest.vertices.row(v);
+    const auto distance = [own = Box::around(p, p, 0)](const Box& box) { return box.squared_distance(own); };
+    bool found = false;
+    if (at_edge[v])
+      edges.visit_near(0, distance, [&](int i) {
+        const Eigen::Vector3d a = end(2 * i), along = end(2 * i + 1) - a;
+        const double t = std::clamp((p - a).dot(along) / along.squaredNorm(), 0.0, 1.0);
+        found = found || (p - a - t * along).squaredNorm() <= rounding * rounding * along.squaredNorm();
+        return found ? -1.0 : 0.0;
+      });
+    if (found) vertices.push_back(v);
+  }
   return vertices;
 }
 

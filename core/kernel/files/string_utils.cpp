@@ -35,7 +35,8 @@ std::string nearest_word(const std::string& typed, const std::vector<std::string
   for (const std::string& word : words) {
     // A third of the letters may be wrong; beyond that a guess only misleads.
     const size_t longer = std::max(typed.size(), word.size()), shorter = std::min(typed.size(), word.size());
-    if (longer - shorter > longer / 3) continue;  // also spares the work on a word of megabytes
+    constexpr size_t most_letters = 200;  // the work grows with the square
+    if (longer > most_letters || longer - shorter > longer / 3) continue;
     const size_t distance = edit_distance(folded(typed), folded(word));
     if (distance > longer / 3 || distance >= least) continue;
     least = distance;

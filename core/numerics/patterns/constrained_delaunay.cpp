@@ -42,12 +42,11 @@ std::vector<std::ptrdiff_t> order_of(const std::vector<Eigen::Vector2d>& points)
 /// The triangulation of what segments enclose.
 struct Enclosed {
   std::vector<std::array<int, 3>> triangles;
-  bool distinct =
-      true;           ///< no two points are at one place; otherwise the first stands for all that are there
-  bool whole = true;  ///< no point lies inside a segment
+  int doubled = -1;  ///< a point at the place of another, which stands for all that are there; or -1
+  int faulty = -1;   ///< the first segment that crosses another, has a point inside or no length; or -1
 
-  /// A segment that is passed an even number of times has the same on both of its sides. Throws CGAL's
-  /// Intersection_of_constraints_exception if two cross.
+  /// A segment that is passed an even number of times has the same on both of its sides. Has no triangles if
+  /// two cross.
   Enclosed(const std::vector<Eigen::Vector2d>& points, const std::vector<std::array<int, 2>>& segments) {
     Constrained all;
     std::vector<Constrained::Vertex_handle> at(points.size());
@@ -58,13 +57,22 @@ struct Enclosed {
       if (all.number_of_vertices() > before)
         at[i]->info() = static_cast<int>(i);
       else
-        distinct = false;
+        doubled = static_cast<int>(i);
       near = at[i]->face();
     }
     std::map<std::pair<int, int>, int> passes;
-    for (const auto& [a, b] : segments)
-      if (++passes[std::minmax(at[a]->info(), at[b]->info())] == 1) all.insert_constraint(at[a], at[b]);
-    for (const auto& [a, b] : segments) whole = whole && all.is_edge(at[a], at[b]);
+    for (int s = 0; s < std::ssize(segments); ++s) {
+      const auto [a, b] = segments[s];
+      bool crosses = false;
+      if (at[a] != at[b] && ++passes[std::minmax(at[a]->info(), at[b]->info())] == 1) try {
+          all.insert_constraint(at[a], at[b]);
+        } catch (const Constrained::Intersection_of_constraints_exception&) {
+          crosses = true;
+        }
+      if (at[a] != at[b] && !crosses && all.is_edge(at[a], at[b])) continue;
+      if (faulty < 0) faulty = s;
+      if (crosses) return;
+    }
     const auto parts = [&](const Constrained::Face_handle& f, int k) {
       if (!f->is_constrained(k)) return false;
       const auto pass = passes.find(
@@ -95,52 +103,51 @@ struct Enclosed {
 std::vector<std::array<int, 2>> crossing_segments(const std::vector<Eigen::Vector2d>& points,
                                                   const std::vector<std::array<int, 2>>& segments,
                                                   std::size_t most) {
-  struct Side {
-    int number;
-    within::Exact::Segment_2 segment;
-    CGAL::Bbox_2 box;
+  const within::Enclosed enclosed(points, segments);
+  const auto has_doubled = [&](const auto& s) {
+    return s[0] == enclosed.doubled || s[1] == enclosed.doubled;
   };
-  std::vector<Side> sides;
-  for (int i = 0; i < std::ssize(segments); ++i) {
+  const auto count = static_cast<int>(segments.size());
+  int faulty = enclosed.faulty;
+  if (faulty < 0 && enclosed.doubled >= 0)
+    faulty = static_cast<int>(std::ranges::find_if(segments, has_doubled) - segments.begin());
+  if (faulty < 0 || faulty == count) return {};
+  const auto segment_of = [&](int i) {
     const Eigen::Vector2d &a = points[segments[i][0]], &b = points[segments[i][1]];
-    const within::Exact::Segment_2 segment({a.x(), a.y()}, {b.x(), b.y()});
-    sides.push_back({i, segment, segment.bbox()});
-  }
-  std::ranges::stable_sort(sides, {}, [](const Side& side) { return side.box.xmin(); });
-  const auto meet = [&](const Side& one, const Side& other) {
-    const auto [a, b] = segments[one.number];
-    const auto [c, d] = segments[other.number];
-    const bool from = a == c || a == d, to = b == c || b == d;
-    if (!from && !to) return CGAL::do_intersect(one.segment, other.segment);
-    return from != to && (one.segment.has_on(other.segment[a == c || b == c]) ||
-                          other.segment.has_on(one.segment[from]));  // one runs back along the other
+    return within::Exact::Segment_2({a.x(), a.y()}, {b.x(), b.y()});
   };
   std::vector<std::array<int, 2>> pairs;
-  for (auto one = sides.begin(); one != sides.end(); ++one)
-    for (auto other = one + 1; other != sides.end() && other->box.xmin() <= one->box.xmax(); ++other) {
-      if (!CGAL::do_overlap(one->box, other->box) || !meet(*one, *other)) continue;
-      pairs.push_back({std::min(one->number, other->number), std::max(one->number, other->number)});
-      if (pairs.size() == most) return pairs;
-    }
+  const auto add = [&](int i, int j) {
+    const within::Exact::Segment_2 one = segment_of(i), other = segment_of(j);
+    const auto [a, b] = segments[i];
+    const auto [c, d] = segments[j];
+    const bool from = a == c || a == d, to = b == c || b == d;
+    const bool meet = !CGAL::do_overlap(one.bbox(), other.bbox()) ? false
+                      : !from && !to
+                          ? CGAL::do_intersect(one, other)
+                          : from != to && (one.has_on(other[a == c || b == c]) || other.has_on(one[from]));
+    if (meet && i != j && pairs.size() < most) pairs.push_back({std::min(i, j), std::max(i, j)});
+  };
+  // All pairs take a time that grows with the square: where one is enough, that of the first faulty segment.
+  for (int i = most == 1 ? faulty : 0; i < (most == 1 ? faulty + 1 : count); ++i)
+    for (int j = most == 1 ? 0 : i + 1; j < count; ++j) add(i, j);
   return pairs;
 }
 
 Triangles triangles_within(const std::vector<Eigen::Vector2d>& points,
                            const std::vector<std::array<int, 2>>& segments) {
   within::Enclosed enclosed(points, segments);
-  if (!enclosed.distinct) throw std::runtime_error("two vertices of a flat piece lie at one place");
+  if (enclosed.doubled >= 0 || enclosed.triangles.empty())
+    throw std::runtime_error("two vertices of a flat piece lie at one place, or sides of it cross");
   return in_order(std::move(enclosed.triangles));
 }
 
 std::vector<std::array<int, 3>> delaunay_cut(const std::vector<Eigen::Vector2d>& outline) {
   std::vector<std::array<int, 3>> triangles;
-  try {
-    const within::Enclosed enclosed(outline, sides_of({outline}).sides);
-    if (!enclosed.whole || enclosed.triangles.size() != outline.size() - 2) return {};
-    const Triangles sorted = in_order(enclosed.triangles);
-    for (const auto& t : sorted.rowwise()) triangles.push_back({t[0], t[1], t[2]});
-  } catch (const within::Constrained::Intersection_of_constraints_exception&) {
-  }
+  const within::Enclosed enclosed(outline, sides_of({outline}).sides);
+  if (enclosed.faulty >= 0 || enclosed.triangles.size() != outline.size() - 2) return {};
+  const Triangles sorted = in_order(enclosed.triangles);
+  for (const auto& t : sorted.rowwise()) triangles.push_back({t[0], t[1], t[2]});
   return triangles;
 }
 

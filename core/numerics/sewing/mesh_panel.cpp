@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <numbers>
 #include <optional>
 #include <utility>
@@ -39,62 +38,41 @@ bool leans_left(const Polygon& loop, double middle) {
   return moment < 0;
 }
 
-/// Whether a side from a to b crosses the line to the right of a point.
-bool crosses(const Vector2d& a, const Vector2d& b, const Vector2d& p) {
-  return (a.y() > p.y()) != (b.y() > p.y()) &&
-         p.x() < (b.x() - a.x()) * (p.y() - a.y()) / (b.y() - a.y()) + a.x();
+/// The x at which a side from a to b crosses the line of this y.
+std::optional<double> crossing(const Vector2d& a, const Vector2d& b, double y) {
+  if ((a.y() > y) == (b.y() > y)) return std::nullopt;
+  return (b.x() - a.x()) * (y - a.y()) / (b.y() - a.y()) + a.x();
 }
 
-/// The sides of a region's loops, by the rows of a lattice that they are near to.
-class RowsOfSides {
- public:
-  RowsOfSides(const std::vector<Polygon>& loops, double middle, double height, long rows, double gap)
-      : rows_(rows), of_row_(static_cast<std::size_t>(2 * rows + 1)), gap_(gap) {
-    for (const Polygon& loop : loops)
-      for (std::size_t i = 0; i < loop.size(); ++i) {
-        const Side side{loop[i], loop[(i + 1) % loop.size()]};
-        const auto [low, high] = std::minmax(side.a.y(), side.b.y());
-        const auto row_of = [&](double y) {
-          return std::clamp(std::round((y - middle) / height), -double(rows), double(rows));
-        };
-        // A row's points are moved by less than its height.
-        const auto first = static_cast<long>(row_of(low - gap)) - 1,
-                   last = static_cast<long>(row_of(high + gap)) + 1;
-        for (long j = std::max(first, -rows); j <= std::min(last, rows); ++j)
-          of_row_[j + rows_].push_back(side);
-      }
-  }
-
-  /// From the leftmost to the rightmost end of the row's sides; nothing without any.
-  std::optional<std::pair<double, double>> extent(long row) const {
-    if (of_row_[row + rows_].empty()) return std::nullopt;
-    double left = std::numeric_limits<double>::infinity(), right = -left;
-    for (const Side& side : of_row_[row + rows_]) {
-      left = std::min({left, side.a.x(), side.b.x()});
-      right = std::max({right, side.a.x(), side.b.x()});
-    }
-    return std::pair(left, right);
-  }
-
-  /// Whether a point of the row is in the region and farther from its border than the gap.
-  bool has_well_inside(long row, const Vector2d& p) const {
-    bool inside = false;
-    for (const auto& [a, b] : of_row_[row + rows_]) {
-      if (crosses(a, b, p)) inside = !inside;
-      const Vector2d along = b - a;
-      const double t = std::clamp((p - a).dot(along) / along.squaredNorm(), 0.0, 1.0);
-      if ((p - a - t * along).norm() < gap_) return false;
-    }
-    return inside;
-  }
-
- private:
+/// The sides of a region's loops near to a row of a lattice, and where they cross it.
+struct Row {
   struct Side {
     Vector2d a, b;
+    double left() const { return std::min(a.x(), b.x()); }
   };
-  long rows_;
-  std::vector<std::vector<Side>> of_row_;
-  double gap_;
+  std::vector<Side> sides;
+  std::vector<double> crossings;
+  double widest = 0;
+
+  void add(const Side& side, double y) {
+    sides.push_back(side);
+    widest = std::max(widest, std::abs(side.b.x() - side.a.x()));
+    if (const auto x = crossing(side.a, side.b, y)) crossings.push_back(*x);
+  }
+  void sort() {
+    std::ranges::sort(sides, {}, &Side::left);
+    std::ranges::sort(crossings);
+  }
+  /// Whether a side is nearer to the point than the gap.
+  bool is_near(const Vector2d& p, double gap) const {
+    for (auto side = std::ranges::lower_bound(sides, p.x() - gap - widest, {}, &Side::left);
+         side != sides.end() && side->left() <= p.x() + gap; ++side) {
+      const Vector2d along = side->b - side->a;
+      const double t = std::clamp((p - side->a).dot(along) / along.squaredNorm(), 0.0, 1.0);
+      if ((p - side->a - t * along).norm() < gap) return true;
+    }
+    return false;
+  }
 };
 
 /// A number from -1 to 1 that looks random, of two integers.
@@ -110,19 +88,37 @@ Polygon lattice(const std::vector<Polygon>& loops, const Eigen::AlignedBox2d& bo
   constexpr double gap = 0.6;     // of an edge: triangles at the border are about as high as others
   constexpr double moved = 0.02;  // of an edge
   Polygon points;
-  const double height = edge_length * std::numbers::sqrt3 / 2;
-  const auto rows = static_cast<long>(std::ceil(box.sizes().y() / (2 * height)));
-  const RowsOfSides sides(loops, box.center().y(), height, rows, gap * edge_length);
-  for (long j = -rows; j <= rows; ++j) {
-    const auto extent = sides.extent(j);
-    if (!extent) continue;
+  const double height = edge_length * std::numbers::sqrt3 / 2, near = gap * edge_length;
+  const auto last = static_cast<long>(std::ceil(box.sizes().y() / (2 * height)));
+  const auto y_of = [&](long j) { return box.center().y() + static_cast<double>(j) * height; };
+  std::vector<Row> rows(static_cast<std::size_t>(2 * last + 1));
+  for (const Polygon& loop : loops)
+    for (std::size_t i = 0; i < loop.size(); ++i) {
+      const Row::Side side{loop[i], loop[(i + 1) % loop.size()]};
+      const auto [low, high] = std::minmax(side.a.y(), side.b.y());
+      const auto row_of = [&](double y) {
+        return static_cast<long>(
+            std::clamp(std::round((y - box.center().y()) / height), -double(last), double(last)));
+      };
+      // A row's points are moved by less than its height.
+      for (long j = std::max(row_of(low - near) - 1, -last); j <= std::min(row_of(high + near) + 1, last);
+           ++j)
+        rows[j + last].add(side, y_of(j));
+    }
+  for (long j = -last; j <= last; ++j) {
+    Row& row = rows[j + last];
+    row.sort();
     const auto column = [&](double x) { return std::lround((x - box.center().x()) / (edge_length / 2)); };
-    for (long i = column(extent->first); i <= column(extent->second); ++i) {
-      if ((i + j) % 2 != 0) continue;  // i counts half edges
-      const double across = static_cast<double>(i) / 2 + moved * scattered(i, j);
-      const double along = static_cast<double>(j) + moved * scattered(j, i);
-      const Vector2d p = box.center() + Vector2d(across * edge_length, along * height);
-      if (sides.has_well_inside(j, p)) points.push_back(p);
+    for (std::size_t k = 0; k + 1 < row.crossings.size(); k += 2) {
+      const double left = row.crossings[k], right = row.crossings[k + 1];
+      for (long i = column(left) - 1; i <= column(right) + 1; ++i) {
+        if ((i + j) % 2 != 0) continue;  // i counts half edges
+        const double across = static_cast<double>(i) / 2 + moved * scattered(i, j);
+        const double along = static_cast<double>(j) + moved * scattered(j, i);
+        const Vector2d p = box.center() + Vector2d(across * edge_length, along * height);
+        // Between the row and a point that is far from all sides there is none: both are on one side of each.
+        if (left < p.x() && p.x() < right && !row.is_near(p, near)) points.push_back(p);
+      }
     }
   }
   return points;
@@ -144,7 +140,8 @@ void smooth(Polygon& points, std::size_t first_inner, const Triangles& triangles
 bool is_inside(const Polygon& loop, const Vector2d& p) {
   bool inside = false;
   for (std::size_t i = 0; i < loop.size(); ++i)
-    if (crosses(loop[i], loop[(i + 1) % loop.size()], p)) inside = !inside;
+    if (const auto x = crossing(loop[i], loop[(i + 1) % loop.size()], p.y()); x && p.x() < *x)
+      inside = !inside;
   return inside;
 }
 

@@ -85,10 +85,13 @@ void divide_doubled_edges(std::vector<PanelMesh>& panels, const Joints& joints) 
       if (edge.second < panels[p].border())
         uses[in_order(joints.of(p, edge.first), joints.of(p, edge.second))].push_back({p, edge});
   }
+  constexpr std::size_t most = 1000;  // each looks at a whole panel; what is left is refused as crowded
+  std::vector<Use> doubled;
   for (const auto& [joined, all] : uses)
-    for (const auto& [panel, edge] : all)
-      if (all.size() > 1 && !panels[panel].sewn.contains(edge))
-        split_edge(panels[panel].flat, edge.first, edge.second);
+    for (const Use& use : all)
+      if (all.size() > 1 && !panels[use.panel].sewn.contains(use.edge)) doubled.push_back(use);
+  if (doubled.size() > most) return;
+  for (const auto& [panel, edge] : doubled) split_edge(panels[panel].flat, edge.first, edge.second);
 }
 
 /// For each panel whether it is turned over, so that all have their right sides on the same side of the cloth
