@@ -10,6 +10,7 @@
 #include "core/numerics/model/stretch_limit.h"
 #include "core/numerics/solve/lift_off_folds.h"
 #include "core/numerics/solve/newton.h"
+#include "core/numerics/solve/within_limits.h"
 
 namespace drape {
 
@@ -197,6 +198,7 @@ LevelResult refine_safely(const Problem& problem, int level, const Positions& x,
         refined.x = target = std::move(*lifted);
         model.set_dirichlet(target);
       }
+      target = within_limits(model, std::move(target));
     } else {
       refined.x = problem.starts[level + 1];
       goal = target;

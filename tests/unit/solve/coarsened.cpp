@@ -3,6 +3,8 @@
 #include <catch2/catch.hpp>
 
 #include "core/kernel/threads/parallel.h"
+#include "core/numerics/model/stretch_limit.h"
+#include "core/numerics/solve/within_limits.h"
 #include "tests/support/solve.h"
 
 using namespace drape;
@@ -50,6 +52,30 @@ TEST_CASE(
     ends.push_back(s.x());
   }
   CHECK(ends[0] == ends[1]);
+}
+
+TEST_CASE("Interpolation between levels that stretches triangles is brought within the limit") {
+  const Solved s = scene_from(over_a_ball("pins: [{region: vertices, vertices: [0]}]\n"));
+  const Hierarchy& hierarchy = s.scene->hierarchy;
+  const LevelModel& model = s.model();
+  Positions folded = hierarchy.levels[1].rest.vertices;  // sharp pleats
+  for (Eigen::Index v = 0; v < folded.rows(); ++v) {
+    const double along = folded(v, 0) * 12, fold = along - std::floor(along);
+    folded(v, 0) = 0.6 * folded(v, 0);
+    folded(v, 2) = 0.8 / 12 * std::min(fold, 1 - fold);
+  }
+  const Positions start = hierarchy.linear[1] * folded;
+  const auto beyond = [&](const Positions& x) {
+    std::size_t count = 0;
+    for (const BoundEnergy* limit : model.limits()) count += limit->stretch_limit()->violations(x).size();
+    return count;
+  };
+  REQUIRE(beyond(start) > 5);
+  const Positions mended = within_limits(model, start);
+  CHECK(beyond(mended) == 0);
+  CHECK(mended.row(0) == start.row(0));  // the pin
+  CHECK((mended - start).rowwise().norm().maxCoeff() < 0.5 / std::sqrt(1500.0));
+  CHECK(within_limits(model, mended) == mended);
 }
 
 TEST_CASE("Coarsened levels: pins, starts and files name the cloth's own vertices") {
