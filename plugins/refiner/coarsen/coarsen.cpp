@@ -1,11 +1,13 @@
 #include <algorithm>
 #include <stdexcept>
+#include <utility>
 
 #include "core/kernel/plugin/parameters.h"
 #include "core/kernel/plugin/plugin.h"
 #include "core/numerics/hierarchy/midpoint.h"
 #include "core/numerics/mesh/grain.h"
 #include "plugins/refiner/coarsen/choose_vertices.h"
+#include "plugins/refiner/coarsen/former_pieces.h"
 #include "plugins/refiner/coarsen/interpolation.h"
 
 namespace drape {
@@ -25,7 +27,10 @@ class CoarsenRefiner : public Refiner {
 
   std::optional<CoarserMesh> coarser(const Level& fine) const override {
     const FlatCloth flat = FlatCloth::of(fine);
-    const CoarsePieces pieces = CoarsePieces::of(flat, chosen_vertices(fine, flat, ratio));
+    std::optional<CoarsePieces> former;
+    if (ratio == 4) former = former_pieces(fine, flat);
+    const CoarsePieces pieces =
+        former ? std::move(*former) : CoarsePieces::of(flat, chosen_vertices(fine, flat, ratio));
     CoarserMesh made;
     std::vector<int> number(fine.vertex_count(), -1);
     for (int v = 0; v < fine.vertex_count(); ++v)

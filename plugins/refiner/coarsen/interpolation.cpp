@@ -58,7 +58,8 @@ class PieceTriangles {
       if (outside < smallest || (outside == smallest && t < best)) smallest = outside, best = t;
     };
     grid_.for_each(p, p, consider);
-    if (smallest > 0)
+    constexpr double touching = 1e-9;  // of a triangle's size
+    if (smallest > touching * grid_.cell())
       for (int t = first_; t < end_; ++t) consider(t);
     return best;
   }
