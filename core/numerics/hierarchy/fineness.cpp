@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/numerics/hierarchy/matched_folds.h"
+
 namespace drape {
 namespace {
 
@@ -11,11 +13,24 @@ double rest_area(const TriangleMesh& rest, Eigen::Index t) {
   return (c.col(1) - c.col(0)).cross(c.col(2) - c.col(0)).norm() / 2;
 }
 
+/// Whether level l + 1 splits each triangle of level l into four at its edges' midpoints, in any order.
+bool halves_edges(const Hierarchy& hierarchy, int l) {
+  if (hierarchy.splits(l)) return true;
+  if (hierarchy.levels[l + 1].triangle_count() != 4 * hierarchy.levels[l].triangle_count()) return false;
+  const ProlongationMatrix& weights = hierarchy.linear[l];
+  for (Eigen::Index row = 0; row < weights.outerSize(); ++row)
+    for (ProlongationMatrix::InnerIterator entry(weights, row); entry; ++entry)
+      if (std::min(std::abs(entry.value() - 1), std::abs(entry.value() - 0.5)) > 1e-9) return false;
+  return true;
+}
+
 }  // namespace
 
 Fineness Fineness::of(const Hierarchy& hierarchy, int level) {
   const int finest = hierarchy.level_count() - 1;
-  if (hierarchy.splits(level)) return finest - level;
+  int halved = level;
+  while (halved < finest && halves_edges(hierarchy, halved)) ++halved;
+  if (halved == finest) return finest - level;
   const Level &own = hierarchy.levels[level], &fine = hierarchy.levels[finest];
   Fineness fineness(std::log2(static_cast<double>(fine.triangle_count()) / own.triangle_count()) / 2);
   // The finest level's triangles, a third at each corner, counted at the level's vertices that these follow.
@@ -32,6 +47,7 @@ Fineness Fineness::of(const Hierarchy& hierarchy, int level) {
     const double area = around[1] > 1 && around[0] > 0 ? around[0] / around[1] : mean;
     fineness.areas[t] = area / rest_area(own.rest, t);
   }
+  fineness.folds = matched_folds(hierarchy, level);
   return fineness;
 }
 

@@ -10,6 +10,7 @@ struct Fineness {
   /// m, area of the finest level's triangles around each triangle over its own area [1]; empty: 4^-levels for
   /// all of them.
   Eigen::VectorXd areas;
+  Eigen::VectorXd folds;  ///< matched_folds of the level; empty where `areas` is: all are 1
 
   /// Not explicit: a number of regular refinements stands for the fineness that they make.
   Fineness(double regular_levels) : levels(regular_levels) {}

@@ -71,15 +71,17 @@ LevelModel LevelModel::with_effective_membranes(const Fineness& finest,
   return model;
 }
 
-LevelModel LevelModel::with_local_folds(const Fineness& finest) const {
+LevelModel LevelModel::with_local_folds(const Fineness& finest, bool sharp) const {
   LevelModel model = *this;
+  if (finest.folds.size() == 0) return model;
   const Eigen::VectorXd lengths = finest.relative_lengths(*level_);
-  if (lengths.size() == 0) return model;
   for (Term& term : model.terms_) {
     const std::optional<double> factor = term.kind->midpoint_factor();
     if (term.role != EnergyRole::bending || !factor || !(*factor > 0)) continue;
     const auto bind = [&](const Level& own) { return bound_energy(*term.kind, own, material_); };
-    term.energy = bind_with_seams(*level_, bind, lengths.array().pow(std::log2(*factor)));
+    Eigen::VectorXd factors = finest.folds;
+    if (sharp) factors.array() *= lengths.array().pow(std::log2(*factor));
+    term.energy = bind_with_seams(*level_, bind, factors);
     term.slots = std::make_shared<BlockSlots>(*pattern_, term.energy->stencils());
   }
   return model;

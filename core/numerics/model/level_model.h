@@ -79,9 +79,10 @@ class LevelModel {
   /// (softening_at_pins), for a level below the finest. Its contacts and other energies are shared with this
   /// model.
   LevelModel with_effective_membranes(const Fineness& finest, const std::vector<int>& lone_pins = {}) const;
-  /// The model whose folds are as stiff as those of the finest level's mesh around them make them, over their
-  /// mean, which midpoint_factor gives: on uneven meshes a fold is that many times too soft or stiff.
-  LevelModel with_local_folds(const Fineness& finest) const;
+  /// The model whose hinges resist bending in each direction as the finest level's do (Fineness::folds). With
+  /// `sharp` each is also as much stiffer as that level's edges are shorter around it, over their mean, which
+  /// midpoint_factor gives: so stiff is a fold of this level's mesh on the finest one.
+  LevelModel with_local_folds(const Fineness& finest, bool sharp) const;
 
   /// The energies of role `limit`, S_l.
   const std::vector<const BoundEnergy*>& limits() const { return limits_; }

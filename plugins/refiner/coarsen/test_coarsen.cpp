@@ -1,6 +1,7 @@
 #include <Eigen/Geometry>
 #include <catch2/catch.hpp>
 
+#include "core/numerics/elements/seam_energy.h"
 #include "core/numerics/hierarchy/fineness.h"
 #include "core/numerics/hierarchy/hierarchy.h"
 #include "core/numerics/mesh/check.h"
@@ -162,6 +163,66 @@ TEST_CASE("How much finer the finest level is, by the operators") {
     CHECK(fineness.areas.maxCoeff() < 6 * std::pow(4, -fineness.levels));
     const Eigen::VectorXd lengths = fineness.relative_lengths(hierarchy.levels[l]);
     CHECK(lengths.array().log().mean() == Approx(0).margin(0.05));
+  }
+}
+
+TEST_CASE("A mesh that splits another one's triangles has that one below it, whatever its order") {
+  TriangleMesh with_hole =
+      delaunay_polygon({{{0, 0}, {1, 0}, {1, 1}, {0, 1}}, {{.3, .3}, {.3, .5}, {.5, .5}, {.5, .3}}}, 150, 1);
+  for (const TriangleMesh& former :
+       {random_triangulation({1, 1}, 200, 1), with_hole, grid({1, 0.8}, 11, 9, Diagonals::one_way),
+        as_piece(random_triangulation({1, 1}, 100, 2))}) {
+    const Hierarchy split = Hierarchy::of(former, *make_plugin_from<Refiner>("midpoint"), 3);
+    TriangleMesh fine = split.levels[2].rest;
+    const auto m = fine.triangles.rows(), n = fine.vertices.rows();
+    const auto turned = [](Eigen::Index i, Eigen::Index count) { return (i * 7919 + 13) % count; };
+    const TriangleMesh before = fine;
+    for (Eigen::Index v = 0; v < n; ++v) fine.vertices.row(turned(v, n)) = before.vertices.row(v);
+    for (Eigen::Index t = 0; t < m; ++t) {
+      for (int k = 0; k < 3; ++k)
+        fine.triangles(turned(t, m), k) = static_cast<int>(turned(before.triangles(t, k), n));
+      if (fine.uv.rows() > 0) fine.uv.row(turned(t, m)) = before.uv.row(t);
+    }
+    REQUIRE(check_mesh(fine).empty());
+    const Hierarchy hierarchy = coarsened(fine, 2);
+    check_operators(hierarchy);
+    for (int l = 0; l < 2; ++l) {
+      const Level& level = hierarchy.levels[l];
+      CHECK(level.vertex_count() == split.levels[l].vertex_count());
+      CHECK(level.triangle_count() == split.levels[l].triangle_count());
+      CHECK((hierarchy.linear[l] * level.rest.vertices - hierarchy.levels[l + 1].rest.vertices)
+                .cwiseAbs()
+                .maxCoeff() < 1e-14);
+      const Fineness fineness = Fineness::of(hierarchy, l);
+      CHECK(fineness.levels == 2 - l);
+      CHECK(fineness.areas.size() == 0);  // as on levels that drape refines
+    }
+  }
+}
+
+TEST_CASE("A coarse level resists bending in each direction as the finest mesh does") {
+  // Odd numbers of cells: not the refinement of another grid.
+  const Hierarchy hierarchy = coarsened(grid({1, 1}, 62, 62, Diagonals::one_way), 2);
+  const auto hinge = make_plugin_from<Energy>("hinge");
+  const auto bind = [&](const Level& own) { return hinge->bind(own, {}); };
+  const auto bent = [&](const Level& level, const Eigen::Vector2d& across, const Eigen::VectorXd& factors) {
+    Positions x = level.rest.vertices;
+    for (Eigen::Index v = 0; v < x.rows(); ++v)
+      x(v, 2) = 5e-4 * std::pow(across.dot(x.row(v).head<2>().transpose()), 2);
+    return bind_with_seams(level, bind, factors)->value(x);
+  };
+  for (int l = 0; l < 2; ++l) {
+    const Level& level = hierarchy.levels[l];
+    const Eigen::VectorXd folds = Fineness::of(hierarchy, l).folds;
+    double before = 0;
+    for (const Eigen::Vector2d& across :
+         {Eigen::Vector2d(1, 0), Eigen::Vector2d(0, 1), Eigen::Vector2d(1, 1).normalized(),
+          Eigen::Vector2d(1, -1).normalized()}) {
+      const double wanted = bent(hierarchy.levels[2], across, {});
+      before = std::max(before, std::abs(std::log(bent(level, across, {}) / wanted)));
+      CHECK(bent(level, across, folds) / wanted == Approx(1).margin(0.3));
+    }
+    CHECK(before > std::log(2));
   }
 }
 

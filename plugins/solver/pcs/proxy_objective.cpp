@@ -81,10 +81,12 @@ void ProxyObjective::model_changed() {
   if (options_.effective && options_.seen_by.membrane == Interpolation::midpoint)
     effective_ = std::make_shared<const LevelModel>(model().with_effective_membranes(
         finest_, lone_pins(model(), [&] { return problem_.model(problem_.finest()); })));
+  if (finest_.folds.size() > 0) {
+    const LevelModel& own = effective_ ? *effective_ : model();
+    if (!is_plain_) folded_ = std::make_shared<const LevelModel>(own.with_local_folds(finest_, true));
+    effective_ = std::make_shared<const LevelModel>(own.with_local_folds(finest_, false));
+  }
   if (is_plain_) return;
-  if (finest_.areas.size() > 0)
-    folded_ =
-        std::make_shared<const LevelModel>((effective_ ? *effective_ : model()).with_local_folds(finest_));
   std::vector<ProxyPart> parts = proxy_parts(problem_, level_, finest_.levels, options_);
   const bool differ = parts != parts_;
   if (differ) {

@@ -102,9 +102,11 @@ class ProxyObjective : public Objective {
   ProxyOptions options_;
   Fineness finest_;
   bool is_plain_ = false;
-  std::shared_ptr<const LevelModel> effective_;  // the level's model with effective membranes, or null
-  std::shared_ptr<const LevelModel> folded_;  // the former with the finest level's folds, while they differ
-  std::vector<ProxyPart> parts_, own_;        // all, and those of the level's own model
+  std::shared_ptr<const LevelModel>
+      effective_;  // the level's model that bends, and buckles, as the finest, or null
+  std::shared_ptr<const LevelModel>
+      folded_;  // the same with folds as sharp as on the finest level, while they differ
+  std::vector<ProxyPart> parts_, own_;  // all, and those of the level's own model
   std::vector<FinerPart> finer_;
   BlockMatrix own_matrix_, matrix_;  // of own_, if its pattern differs from the sum's; the sum
   std::vector<int> own_slots_;       // index in matrix_ of each block of own_matrix_
