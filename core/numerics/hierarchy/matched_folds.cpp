@@ -21,8 +21,8 @@ Symmetric vector_of(const Eigen::Matrix3d& m) {
 
 /// How a hinge of flat cloth answers curvature.
 struct BentHinge {
-  /// Its angle is a · K [rad] where the cloth has curvatures K [1/m], times √(3/2) ‖ē‖ / √area: a² is the
-  /// hinge energy's share. 0 at seams, which join planes.
+  /// a: where the cloth has curvatures K [1/m], the hinge's angle is a · K √area / ‖ē‖ [rad], and its energy
+  /// (a · K)², but for the bending stiffness. 0 at seams, which join planes.
   Symmetric angle = Symmetric::Zero();
   Eigen::Matrix<double, 6, 3> plane = Eigen::Matrix<double, 6, 3>::Zero();  ///< basis of K in its plane
   double area = 0;                                                          ///< of its triangles [m²]
@@ -43,7 +43,7 @@ struct BentHinge {
     const Eigen::Matrix3d ee = e * e.transpose(), nn = n * n.transpose(),
                           both = e * n.transpose() + n * e.transpose();
     area = length * (pn + qn) / 2;
-    angle = length * std::sqrt(1.5 / area) *
+    angle = length / std::sqrt(area) *
             vector_of((pn + qn) / 2 * nn + (pe - qe) / 2 * both +
                       (pe * (pe - length) / pn + qe * (qe - length) / qn) / 2 * ee);
     plane << vector_of(ee), vector_of(nn), vector_of(both / std::sqrt(2.0));
@@ -89,7 +89,7 @@ Eigen::VectorXd matched_folds(const Hierarchy& hierarchy, int level) {
   const std::vector<BentHinge> hinges = bent_hinges(own);
   Eigen::VectorXd factors = Eigen::VectorXd::Ones(own.hinges.rows());
   for (int round = 0; round < rounds; ++round) {
-    // Raises log det B + tr(B⁻¹ wanted)'s negative, whose maximum has B = wanted where factors allow that.
+    // Raises −log det B − tr(B⁻¹ wanted), whose maximum is B = wanted where positive factors reach that.
     const Eigen::MatrixXd around = bending_around(own, hinges, factors);
     for (Eigen::Index h = 0; h < factors.size(); ++h) {
       const Eigen::Vector3d a = hinges[h].plane.transpose() * hinges[h].angle,

@@ -14,10 +14,9 @@ namespace {
 
 using Eigen::Vector2d;
 
-/// Radius of empty discs over the square root of a coarse vertex's area, at first: a full random packing on
-/// a random mesh has about the wanted density then. On others it is corrected by the number that it gives.
-constexpr double disc_radius = 0.76;
-constexpr int packings = 4;
+/// Radius of empty discs around chosen vertices over the square root of a coarse vertex's area: at first, and
+/// from one round to the next while there are fewer than wanted. A grid's few distances leave gaps between.
+constexpr double disc_radius = 0.85, shrinking = 0.95;
 /// Moves of inner vertices to the centroids of their cells (Lloyd's method).
 constexpr int moves = 4;
 
@@ -36,22 +35,18 @@ class InnerVertices {
 
   void choose(std::vector<char>& kept) {
     for (const int i : images_)
-      if (kept[vertex(i)]) fixed_.push_back(i);
+      if (kept[vertex(i)]) fixed_.push_back(i), chosen_.add(i, place(i), place(i));
     std::vector<int> order;
     for (const int i : images_)
       if (!flat_.on_outline[vertex(i)]) order.push_back(i);
     Random random(1);
     for (std::size_t k = order.size(); k > 1; --k)
       std::swap(order[k - 1], order[static_cast<std::size_t>(random.unit() * static_cast<double>(k))]);
-    const double wanted = static_cast<double>(order.size()) / ratio_;
-    double least = std::numeric_limits<double>::infinity();
-    for (int k = 0; k < packings; ++k) {  // a grid's distances allow few numbers: keep the best
-      std::vector<int> packed = packing(order);
-      const double off = std::log(std::max(1.0, static_cast<double>(packed.size())) / wanted);
-      if (std::abs(off) < least) least = std::abs(off), inner_ = std::move(packed);
-      radius_ *= std::exp(off / 2);
-    }
-    place_chosen();
+    const auto wanted = static_cast<std::size_t>(static_cast<double>(order.size()) / ratio_);
+    for (double radius = disc_radius; inner_.size() < wanted && radius > 0.1; radius *= shrinking)
+      for (const int i : order)
+        if (inner_.size() < wanted && is_free(i, radius))
+          inner_.push_back(i), chosen_.add(i, place(i), place(i));
     for (int k = 0; k < moves; ++k) move_to_centroids();
     for (const int i : inner_) kept[vertex(i)] = 1;
   }
@@ -73,24 +68,8 @@ class InnerVertices {
     return {lower, upper, sum / static_cast<double>(images_.size())};
   }
 
-  /// Each of the images unless a fixed or an earlier one is nearer than the discs' radius.
-  std::vector<int> packing(const std::vector<int>& order) {
-    std::vector<int> packed;
-    chosen_ = grid();
-    for (const int i : fixed_) chosen_.add(i, place(i), place(i));
-    for (const int i : order)
-      if (is_free(i)) packed.push_back(i), chosen_.add(i, place(i), place(i));
-    return packed;
-  }
-
-  void place_chosen() {
-    chosen_ = grid();
-    for (const auto* list : {&fixed_, &inner_})
-      for (const int i : *list) chosen_.add(i, place(i), place(i));
-  }
-
-  bool is_free(int i) const {
-    const double radius = radius_ * spacing(i);
+  bool is_free(int i, double relative_radius) const {
+    const double radius = relative_radius * spacing(i);
     const Vector2d reach(radius, radius);
     bool free = true;
     chosen_.for_each(place(i) - reach, place(i) + reach,
@@ -130,13 +109,15 @@ class InnerVertices {
       if (moved >= 0) i = moved;
       taken[i] = 1;
     }
-    place_chosen();
+    chosen_ = grid();
+    for (const auto* list : {&fixed_, &inner_})
+      for (const int i : *list) chosen_.add(i, place(i), place(i));
   }
 
   const Level& level_;
   const FlatCloth& flat_;
   std::vector<int> images_;
-  double ratio_, radius_ = disc_radius;
+  double ratio_;
   PlaneGrid fine_, chosen_;  // all images; the chosen ones
   std::vector<int> fixed_, inner_;
 };
