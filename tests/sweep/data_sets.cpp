@@ -50,8 +50,9 @@ TEST_CASE("a data set replaces nothing of its sweep, and no variation's name is 
       "material: {density: 300, thickness: 5e-4, membrane_modulus: 4e5, bending_modulus: 1e5}\n"
       "energies: [neo_hookean, hinge]\ncontact: shapes\nobstacles: [{shape: sphere, radius: 0.3}]\n"
       "methods: {newton: {}}\n");
-  folder.write("s.yaml",
-               "name: s\nbase: e.yaml\nablation: [{name: sweep}, {name: obstacle_0, set: {friction: 0}}]\n");
+  folder.write(
+      "s.yaml",
+      "name: s\nbase: e.yaml\nablation: [{name: sweep}, {name: obstacle_0, set: {friction: 0.1}}]\n");
   drape_ends("sweep s.yaml -o out -q", folder);
   for (const std::string place : {"out", "out/runs/sweep"})
     CHECK_THAT(drape_ends("export out --overwrite --to " + place, folder, 2).err,

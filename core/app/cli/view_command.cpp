@@ -45,12 +45,6 @@ bool open_in_browser(const fs::path& page) {
   return error == 0;
 }
 
-bool is_current(const fs::path& page, const fs::path& results) {
-  std::error_code error;
-  return fs::exists(page, error) && fs::exists(results, error) &&
-         fs::last_write_time(page, error) >= fs::last_write_time(results, error);
-}
-
 /// Opens the report of a run or a sweep, and writes it if it is missing or older than the results. Without a
 /// display or without xdg-open it prints the page's address instead.
 int view(const fs::path& folder) {

@@ -20,52 +20,20 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Names of the files of a data set.
-class FileNames {
- public:
-  explicit FileNames(const RunCollection& collection) : collection_(collection) {}
-
-  /// After the variation, without the endings of files in it; then the seed and the method where there are
-  /// several.
-  std::string of(const RunRecord& run, const std::string& method) {
-    const std::string whole = run.folder.parent_path().filename().string();
-    std::string more;
-    const bool is_obstacles = whole.starts_with("obstacle_");  // whose names have no comma
-    if (is_obstacles || std::ranges::count(collection_.runs, run.name, &RunRecord::name) > 1)
-      more += "," + run.folder.filename().string();
-    if (run.data->methods.size() > 1) more += "," + method;
-    const std::string name =
-        std::regex_replace(whole, std::regex(R"(\.[A-Za-z]\w*(?=,|$))"), std::string()) + more;
-    return taken_.insert(name).second ? name : whole + more;
-  }
-
- private:
-  const RunCollection& collection_;
-  std::set<std::string> taken_;
-};
-
-/// The obstacles that a data set has, by their texts.
-class ObstacleFiles {
- public:
-  ObstacleFiles(fs::path folder, Existing existing) : folder_(std::move(folder)), existing_(existing) {}
-
-  Json names_of(const RunData& run) {
-    Json all = Json::array();
-    for (const ObstacleRecord& obstacle : run.obstacles) {
-      std::string text = obj_text(run.mesh(obstacle.mesh));
-      const std::string next = "obstacle_" + std::to_string(names_.size()) + ".obj";
-      const auto [file, is_new] = names_.try_emplace(std::move(text), next);
-      if (is_new) write_file(folder_ / next, file->first, existing_);
-      all.push_back(file->second);
-    }
-    return all;
-  }
-
- private:
-  const fs::path folder_;
-  const Existing existing_;
-  std::map<std::string, std::string> names_;
-};
+/// The name of a garment's files: after the variation, without the endings of files in it; then the seed and
+/// the method where there are several.
+std::string name_of(const RunRecord& run, const std::string& method, const RunCollection& collection,
+                    std::set<std::string>& taken) {
+  const std::string whole = run.folder.parent_path().filename().string();
+  std::string more;
+  const bool is_obstacles = whole.starts_with("obstacle_");  // whose names have no comma
+  if (is_obstacles || std::ranges::count(collection.runs, run.name, &RunRecord::name) > 1)
+    more += "," + run.folder.filename().string();
+  if (run.data->methods.size() > 1) more += "," + method;
+  const std::string name =
+      std::regex_replace(whole, std::regex(R"(\.[A-Za-z]\w*(?=,|$))"), std::string()) + more;
+  return taken.insert(name).second ? name : whole + more;
+}
 
 /// What belongs to the OBJ of a method's end.
 Json description_of(const RunData& run, const LevelRecord& end, const TableRow& row) {
@@ -93,8 +61,8 @@ RunTable export_data_set(const fs::path& sweep, const fs::path& folder, const Ex
   const RunCollection collection = read_runs({sweep});
   RunTable table = table_of(collection);
   table.columns.insert(table.columns.begin() + 2, "mesh");
-  FileNames names(collection);
-  ObstacleFiles obstacles(folder, options.existing());
+  std::set<std::string> taken;
+  std::map<std::string, std::string> obstacles;  // names of their files, by what these hold
   std::size_t next = 0;
   for (const RunRecord& run : collection.runs) {
     if (!run.data) ++next;
@@ -103,13 +71,19 @@ RunTable export_data_set(const fs::path& sweep, const fs::path& folder, const Ex
       TableRow& row = table.rows[next++];
       const std::vector<const LevelRecord*> levels = method.recorded_levels();
       if (row["pass"] != true || levels.empty()) continue;
-      const std::string name = names.of(run, method.name);
+      const std::string name = name_of(run, method.name, collection, taken);
       ExportOptions own = options;
       own.method = method.name;
       export_run(run.folder, folder / (name + ".obj"), own);
       row["mesh"] = name + ".obj";
       Json description = description_of(*run.data, *levels.back(), row);
-      description["obstacles"] = obstacles.names_of(*run.data);
+      description["obstacles"] = Json::array();
+      for (const ObstacleRecord& obstacle : run.data->obstacles) {
+        const std::string next = "obstacle_" + std::to_string(obstacles.size()) + ".obj";
+        const auto [file, is_new] = obstacles.try_emplace(obj_text(run.data->mesh(obstacle.mesh)), next);
+        if (is_new) write_file(folder / next, file->first, options.existing());
+        description["obstacles"].push_back(file->second);
+      }
       write_file(folder / (name + ".json"), json_text(description) + "\n", options.existing());
     }
   }

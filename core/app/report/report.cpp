@@ -116,10 +116,7 @@ fs::path own_report(const RunRecord& run) {
 /// older than its results.
 Json run_json(const RunRecord& run, const fs::path& from) {
   const fs::path report = own_report(run), results = run.folder / "results.json";
-  if (std::error_code none;
-      run.data && access(run.folder.c_str(), W_OK) == 0 &&
-      (!fs::exists(report) || fs::last_write_time(report, none) < fs::last_write_time(results, none)))
-    try {
+  if (run.data && access(run.folder.c_str(), W_OK) == 0 && !is_current(report, results)) try {
       write_report(run.folder, [] { return true; });  // without pictures, which take longest
     } catch (const std::exception&) {
       // There is no link to it then.
@@ -157,6 +154,12 @@ void refuse_unwritable(const fs::path& folder, const std::string& remedy) {
 }
 
 }  // namespace
+
+bool is_current(const fs::path& page, const fs::path& results) {
+  std::error_code error;
+  return fs::exists(page, error) && fs::exists(results, error) &&
+         fs::last_write_time(page, error) >= fs::last_write_time(results, error);
+}
 
 std::vector<std::string> write_report(const fs::path& folder, const std::function<bool()>& cancelled,
                                       std::optional<int> picture_width) {

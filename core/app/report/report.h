@@ -24,6 +24,9 @@ std::vector<std::string> write_report(const std::filesystem::path& run_directory
 /// neither, and for a page that is there and not one of drape's.
 void write_runs_report(const std::vector<std::filesystem::path>& folders, const std::filesystem::path& page);
 
+/// Whether a page is there that is not older than these results.
+bool is_current(const std::filesystem::path& page, const std::filesystem::path& results);
+
 /// A page with nothing but the 3D view of a run's states. Throws std::runtime_error with the reason if the
 /// run has nothing to show.
 std::string viewer_page(const RunData& run);
