@@ -37,6 +37,7 @@ class PanelReader {
   PanelReader(const std::string& name, const ConfigNode& node, const PatternUnits& units,
               ConfigErrors& errors)
       : node_(node), units_(units), errors_(errors), before_(errors.size()) {
+    own_ = "panel " + excerpt(name) + ": ";
     read_.panel.name = name;
     read_.panel.where = node.where;
   }
@@ -59,13 +60,10 @@ class PanelReader {
 
  private:
   bool failed() const { return errors_.size() > before_; }
-  void refuse(const Location& where, const std::string& what) {
-    errors_.push_back({where, "panel " + excerpt(read_.panel.name) + ": " + what});
-  }
+  void refuse(const Location& where, const std::string& what) { errors_.push_back({where, own_ + what}); }
 
   void read_vertices() {
-    for (const NamedNode& vertex : named_nodes(p_.vertices)) {
-      if (vertex.repeats) return refuse(vertex.where, excerpt(vertex.name) + given_twice);
+    for (const NamedNode& vertex : named_nodes(p_.vertices, own_, errors_)) {
       const auto place = numbers(*vertex.node, 2);
       if (!place)
         return refuse(vertex.where, "a vertex is [x, y], two numbers of at most " +
@@ -135,8 +133,7 @@ class PanelReader {
   }
 
   void read_edges() {
-    for (const NamedNode& written : named_nodes(p_.edges)) {
-      if (written.repeats) return refuse(written.where, excerpt(written.name) + given_twice);
+    for (const NamedNode& written : named_nodes(p_.edges, own_, errors_)) {
       PanelEdgeParameters e;
       const std::string number = std::to_string(ends_.size());
       schema_of<PanelEdgeParameters>("edge " + (written.name.empty() ? number : excerpt(written.name)) +
@@ -198,7 +195,7 @@ class PanelReader {
     for (std::vector<int>& loop : read_.panel.loops) {
       // Seen along an edge, a panel is on the left of an outline that runs counter-clockwise, and of its
       // holes'.
-      const double left = (&loop == &read_.panel.loops[0]) == clockwise_of(loop, written) ? -1 : 1;
+      const double left = (&loop == &read_.panel.loops[0]) == (area_of(loop, written) < 0) ? -1 : 1;
       std::vector<int> whole;
       for (const int e : loop) {
         std::vector<const DartParameters*>& darts = of_edge[e];
@@ -237,18 +234,8 @@ class PanelReader {
     }
   }
 
-  static bool clockwise_of(const std::vector<int>& loop, const std::vector<PanelEdge>& edges) {
-    constexpr int steps = 8;  // of a curve
-    double area = 0;
-    for (const int e : loop)
-      for (int i = 0; i < steps; ++i) {
-        const Vector2d a = edges[e].curve.at(double(i) / steps), b = edges[e].curve.at(double(i + 1) / steps);
-        area += a.x() * b.y() - a.y() * b.x();
-      }
-    return area < 0;
-  }
-
   const ConfigNode& node_;
+  std::string own_;  // begins messages
   const PatternUnits& units_;
   ConfigErrors& errors_;
   const std::size_t before_;
@@ -262,13 +249,15 @@ class PanelReader {
 
 }  // namespace
 
-std::vector<NamedNode> named_nodes(const ConfigNode& node) {
+std::vector<NamedNode> named_nodes(const ConfigNode& node, const std::string& kind, ConfigErrors& errors) {
   std::vector<NamedNode> all;
-  std::set<std::string> names = {""};
-  for (const ConfigNode& item : node.items) all.push_back({"", &item, item.where, false});
+  std::set<std::string> names;
+  for (const ConfigNode& item : node.items) all.push_back({"", &item, item.where});
   for (std::size_t i = 0; i < node.entries.size(); ++i) {
     const auto& [name, value] = node.entries[i];
-    all.push_back({name, &value, node.key_locations[i], !name.empty() && !names.insert(name).second});
+    all.push_back({name, &value, node.key_locations[i]});
+    if (!name.empty() && !names.insert(name).second)
+      errors.push_back({all.back().where, kind + excerpt(name) + " is given twice; rename one"});
   }
   return all;
 }

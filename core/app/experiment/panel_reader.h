@@ -24,10 +24,9 @@ struct NamedNode {
   std::string name;
   const ConfigNode* node;
   Location where;
-  bool repeats;  ///< a name before it
 };
-std::vector<NamedNode> named_nodes(const ConfigNode& node);
-constexpr const char* given_twice = " is given twice; rename one";
+/// With an error for each name that is given twice, as "panel front".
+std::vector<NamedNode> named_nodes(const ConfigNode& node, const std::string& kind, ConfigErrors& errors);
 
 /// How the numbers of a pattern's file are meant.
 struct PatternUnits {

@@ -104,19 +104,16 @@ std::optional<Pattern> read_pattern(const std::filesystem::path& file, ConfigErr
                       "the pattern has no panels; \"panels\" is a map from names to panels"});
     return std::nullopt;
   }
-  for (const NamedNode& named : named_nodes(written)) {
-    if (named.repeats) errors.push_back({named.where, "panel " + excerpt(named.name) + given_twice});
+  for (const NamedNode& named : named_nodes(written, "panel ", errors))
     if (auto panel = read_panel(named.name, *named.node, units, errors)) panels.push_back(std::move(*panel));
-  }
   if (errors.size() > before) return std::nullopt;  // seams would miss edges
   Pattern pattern;
   pattern.up = p.properties.up;
   SeamReader reader(panels, errors);
   constexpr std::size_t most_faults = 100;
   const ConfigNode& stitches = p.pattern.stitches;
-  for (int number = 0; const NamedNode& stitch : named_nodes(stitches)) {
+  for (int number = 0; const NamedNode& stitch : named_nodes(stitches, "seam ", errors)) {
     if (errors.size() > before + most_faults) break;  // each looks for the name that was meant
-    if (stitch.repeats) errors.push_back({stitch.where, "seam " + excerpt(stitch.name) + given_twice});
     const std::string name = stitches.kind == Kind::list ? std::to_string(number++) : stitch.name;
     if (auto seam = reader.read(name, *stitch.node, stitch.where)) pattern.seams.push_back(std::move(*seam));
   }

@@ -95,18 +95,16 @@ void PatternPropertyParameters::declare(Declaration<PatternPropertyParameters>& 
         "control points relative to their edge, or as the vertices are")
       .choices({"relative", "absolute"});
   d.add("up", &PatternPropertyParameters::up, "axis of the placement that points up").choices({"y", "z"});
-  d.add("normalize_panel_translation", &PatternPropertyParameters::normalize_panel_translation, "not read");
-  d.add("normalized_edge_loops", &PatternPropertyParameters::normalized_edge_loops, "not read");
-  d.add("original_units_in_meter", &PatternPropertyParameters::original_units_in_meter, "not read");
+  for (const char* name : {"normalize_panel_translation", "normalized_edge_loops", "original_units_in_meter"})
+    d.add(name, &PatternPropertyParameters::unread, "not read");
 }
 
 void PatternFileParameters::declare(Declaration<PatternFileParameters>& d) {
   d.add_section("properties", &PatternFileParameters::properties, "unit and conventions").required();
   d.add_section("pattern", &PatternFileParameters::pattern, "panels and seams").required();
-  d.add("parameters", &PatternFileParameters::parameters, "of a template; not read");
-  d.add("parameter_order", &PatternFileParameters::parameter_order, "not read");
-  d.add("constraints", &PatternFileParameters::constraints, "not read");
-  d.add("constraint_order", &PatternFileParameters::constraint_order, "not read");
+  d.add("parameters", &PatternFileParameters::unread, "of a template; not read");
+  for (const char* name : {"parameter_order", "constraints", "constraint_order"})
+    d.add(name, &PatternFileParameters::unread, "not read");
 }
 
 std::string describe_pattern_markdown() {

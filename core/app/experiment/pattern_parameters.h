@@ -57,14 +57,14 @@ struct PatternParameters {
 struct PatternPropertyParameters {
   double units_in_meter = 1;
   std::string curvature_coords = "relative", up = "y";
-  ConfigNode normalize_panel_translation, normalized_edge_loops, original_units_in_meter;
+  ConfigNode unread;
   static void declare(Declaration<PatternPropertyParameters>& d);
 };
 
 struct PatternFileParameters {
   PatternPropertyParameters properties;
   PatternParameters pattern;
-  ConfigNode parameters, parameter_order, constraints, constraint_order;
+  ConfigNode unread;
   static void declare(Declaration<PatternFileParameters>& d);
 };
 

@@ -30,6 +30,9 @@ struct Panel {
   Location where;
 };
 
+/// The area that a loop of these edges encloses [m²]; negative where it runs clockwise.
+double area_of(const std::vector<int>& loop, const std::vector<PanelEdge>& edges);
+
 /// An edge of a panel, by their indices.
 struct EdgeIndex {
   int panel = 0, edge = 0;

@@ -178,21 +178,24 @@ void check_joints(const Pattern& pattern, const TriangleMesh& cloth, double edge
 
 }  // namespace
 
+double area_of(const std::vector<int>& loop, const std::vector<PanelEdge>& edges) {
+  constexpr int steps = 32;  // of a curve
+  double area = 0;
+  for (const int e : loop)
+    for (int i = 0; i < steps; ++i) {
+      const Eigen::Vector2d a = edges[e].curve.at(double(i) / steps),
+                            b = edges[e].curve.at(double(i + 1) / steps);
+      area += (a.x() * b.y() - a.y() * b.x()) / 2;
+    }
+  return area;
+}
+
 OutlineSize outline_size(const Pattern& pattern) {
   OutlineSize size;
   for (const Panel& panel : pattern.panels)
     for (const std::vector<int>& loop : panel.loops) {
-      constexpr int steps = 32;
-      double area = 0;
-      for (const int e : loop) {
-        const EdgeCurve& curve = panel.edges[e].curve;
-        size.border += curve.length();
-        for (int i = 0; i < steps; ++i) {
-          const Eigen::Vector2d a = curve.at(double(i) / steps), b = curve.at(double(i + 1) / steps);
-          area += (a.x() * b.y() - a.y() * b.x()) / 2;
-        }
-      }
-      size.area += (&loop == &panel.loops[0] ? 1 : -1) * std::abs(area);
+      for (const int e : loop) size.border += panel.edges[e].curve.length();
+      size.area += (&loop == &panel.loops[0] ? 1 : -1) * std::abs(area_of(loop, panel.edges));
     }
   return size;
 }
