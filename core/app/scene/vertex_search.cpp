@@ -5,6 +5,7 @@
 #include <numeric>
 #include <set>
 
+#include "core/numerics/collision_detection/closest.h"
 #include "core/numerics/mesh/seams.h"
 
 namespace drape {
@@ -28,17 +29,19 @@ std::vector<int> vertices_of_piece(const VertexSelection& selection, const Level
   return {chosen.begin(), chosen.end()};
 }
 
+/// The level's vertices that stand for some of the cloth's, of those that are there.
+std::vector<int> own_vertices(const std::vector<int>& vertices, const Level& level, const Level& coarsest) {
+  std::set<int> own;
+  for (const int v : vertices)
+    if (v >= 0 && v < coarsest.cloth_vertex_count()) own.insert(level.own_vertex(v));
+  return {own.begin(), own.end()};
+}
+
 /// The vertices on the edges of a label: those of finer levels lie on the coarsest level's edges, in the
 /// placement. On levels below the cloth's mesh, those that stand for its vertices on these edges.
 std::vector<int> vertices_of_label(const VertexSelection& selection, const Level& level,
                                    const Level& coarsest) {
-  if (!coarsest.own_vertices.empty()) {
-    std::vector<int> vertices;
-    for (const int v : selection.label_edges) vertices.push_back(level.own_vertex(v));
-    std::ranges::sort(vertices);
-    vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
-    return vertices;
-  }
+  if (!coarsest.own_vertices.empty()) return own_vertices(selection.label_edges, level, coarsest);
   constexpr double rounding = 1e-9;  // of an edge
   std::vector<char> at_edge(level.topology.on_border.begin(), level.topology.on_border.end());
   for (int e = 0; e < level.topology.edges.rows(); ++e)
@@ -60,8 +63,8 @@ std::vector<int> vertices_of_label(const VertexSelection& selection, const Level
     if (at_edge[v])
       edges.visit_near(0, distance, [&](int i) {
         const Eigen::Vector3d a = end(2 * i), along = end(2 * i + 1) - a;
-        const double t = std::clamp((p - a).dot(along) / along.squaredNorm(), 0.0, 1.0);
-        found = found || (p - a - t * along).squaredNorm() <= rounding * rounding * along.squaredNorm();
+        const Eigen::Vector3d away = p - a - nearest_on_segment(along, p - a) * along;
+        found = found || away.squaredNorm() <= rounding * rounding * along.squaredNorm();
         return found ? -1.0 : 0.0;
       });
     if (found) vertices.push_back(v);
@@ -127,15 +130,7 @@ std::vector<int> VertexSearch::selected_by_name(const VertexSelection& selection
 }
 
 std::vector<int> VertexSearch::selected(const VertexSelection& selection) const {
-  std::vector<int> selected;
-  if (selection.region == "vertices") {
-    // Children of the cloth's vertices keep their index on every level.
-    for (int v : selection.vertices)
-      if (v >= 0 && v < coarsest_.cloth_vertex_count()) selected.push_back(level_.own_vertex(v));
-    std::ranges::sort(selected);
-    selected.erase(std::unique(selected.begin(), selected.end()), selected.end());
-    return selected;
-  }
+  if (selection.region == "vertices") return own_vertices(selection.vertices, level_, coarsest_);
   if (selection.region == "label" || selection.region == "piece" || selection.region == "seam" ||
       (selection.piece && selection.region == "border")) {
     const auto [known, is_new] =

@@ -104,14 +104,11 @@ std::vector<std::array<int, 2>> crossing_segments(const std::vector<Eigen::Vecto
                                                   const std::vector<std::array<int, 2>>& segments,
                                                   std::size_t most) {
   const within::Enclosed enclosed(points, segments);
-  const auto has_doubled = [&](const auto& s) {
-    return s[0] == enclosed.doubled || s[1] == enclosed.doubled;
-  };
   const auto count = static_cast<int>(segments.size());
   int faulty = enclosed.faulty;
-  if (faulty < 0 && enclosed.doubled >= 0)
-    faulty = static_cast<int>(std::ranges::find_if(segments, has_doubled) - segments.begin());
-  if (faulty < 0 || faulty == count) return {};
+  for (int s = 0; enclosed.doubled >= 0 && faulty < 0 && s < count; ++s)
+    if (segments[s][0] == enclosed.doubled || segments[s][1] == enclosed.doubled) faulty = s;
+  if (faulty < 0) return {};
   const auto segment_of = [&](int i) {
     const Eigen::Vector2d &a = points[segments[i][0]], &b = points[segments[i][1]];
     return within::Exact::Segment_2({a.x(), a.y()}, {b.x(), b.y()});

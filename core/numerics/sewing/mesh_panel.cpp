@@ -44,36 +44,22 @@ std::optional<double> crossing(const Vector2d& a, const Vector2d& b, double y) {
   return (b.x() - a.x()) * (y - a.y()) / (b.y() - a.y()) + a.x();
 }
 
-/// The sides of a region's loops near to a row of a lattice, and where they cross it.
-struct Row {
-  struct Side {
-    Vector2d a, b;
-    double left() const { return std::min(a.x(), b.x()); }
-  };
-  std::vector<Side> sides;
-  std::vector<double> crossings;
-  double widest = 0;
-
-  void add(const Side& side, double y) {
-    sides.push_back(side);
-    widest = std::max(widest, std::abs(side.b.x() - side.a.x()));
-    if (const auto x = crossing(side.a, side.b, y)) crossings.push_back(*x);
-  }
-  void sort() {
-    std::ranges::sort(sides, {}, &Side::left);
-    std::ranges::sort(crossings);
-  }
-  /// Whether a side is nearer to the point than the gap.
-  bool is_near(const Vector2d& p, double gap) const {
-    for (auto side = std::ranges::lower_bound(sides, p.x() - gap - widest, {}, &Side::left);
-         side != sides.end() && side->left() <= p.x() + gap; ++side) {
-      const Vector2d along = side->b - side->a;
-      const double t = std::clamp((p - side->a).dot(along) / along.squaredNorm(), 0.0, 1.0);
-      if ((p - side->a - t * along).norm() < gap) return true;
-    }
-    return false;
-  }
+/// A side of a region's loops.
+struct Side {
+  Vector2d a, b;
+  double left() const { return std::min(a.x(), b.x()); }
 };
+
+/// Whether one of the sides, which lie from left to right, is nearer to a point than the gap.
+bool is_near(const std::vector<Side>& sides, double widest, const Vector2d& p, double gap) {
+  for (auto side = std::ranges::lower_bound(sides, p.x() - gap - widest, {}, &Side::left);
+       side != sides.end() && side->left() <= p.x() + gap; ++side) {
+    const Vector2d along = side->b - side->a;
+    const double t = std::clamp((p - side->a).dot(along) / along.squaredNorm(), 0.0, 1.0);
+    if ((p - side->a - t * along).norm() < gap) return true;
+  }
+  return false;
+}
 
 /// A number from -1 to 1 that looks random, of two integers.
 double scattered(long i, long j) {
@@ -90,11 +76,10 @@ Polygon lattice(const std::vector<Polygon>& loops, const Eigen::AlignedBox2d& bo
   Polygon points;
   const double height = edge_length * std::numbers::sqrt3 / 2, near = gap * edge_length;
   const auto last = static_cast<long>(std::ceil(box.sizes().y() / (2 * height)));
-  const auto y_of = [&](long j) { return box.center().y() + static_cast<double>(j) * height; };
-  std::vector<Row> rows(static_cast<std::size_t>(2 * last + 1));
+  std::vector<std::vector<Side>> rows(static_cast<std::size_t>(2 * last + 1));  // the sides near to each
   for (const Polygon& loop : loops)
     for (std::size_t i = 0; i < loop.size(); ++i) {
-      const Row::Side side{loop[i], loop[(i + 1) % loop.size()]};
+      const Side side{loop[i], loop[(i + 1) % loop.size()]};
       const auto [low, high] = std::minmax(side.a.y(), side.b.y());
       const auto row_of = [&](double y) {
         return static_cast<long>(
@@ -103,21 +88,29 @@ Polygon lattice(const std::vector<Polygon>& loops, const Eigen::AlignedBox2d& bo
       // A row's points are moved by less than its height.
       for (long j = std::max(row_of(low - near) - 1, -last); j <= std::min(row_of(high + near) + 1, last);
            ++j)
-        rows[j + last].add(side, y_of(j));
+        rows[j + last].push_back(side);
     }
   for (long j = -last; j <= last; ++j) {
-    Row& row = rows[j + last];
-    row.sort();
+    std::vector<Side>& sides = rows[j + last];
+    std::ranges::sort(sides, {}, &Side::left);
+    std::vector<double> crossings;
+    double widest = 0;
+    for (const auto& [a, b] : sides) {
+      widest = std::max(widest, std::abs(b.x() - a.x()));
+      if (const auto x = crossing(a, b, box.center().y() + static_cast<double>(j) * height))
+        crossings.push_back(*x);
+    }
+    std::ranges::sort(crossings);
     const auto column = [&](double x) { return std::lround((x - box.center().x()) / (edge_length / 2)); };
-    for (std::size_t k = 0; k + 1 < row.crossings.size(); k += 2) {
-      const double left = row.crossings[k], right = row.crossings[k + 1];
+    for (std::size_t k = 0; k + 1 < crossings.size(); k += 2) {
+      const double left = crossings[k], right = crossings[k + 1];
       for (long i = column(left) - 1; i <= column(right) + 1; ++i) {
         if ((i + j) % 2 != 0) continue;  // i counts half edges
         const double across = static_cast<double>(i) / 2 + moved * scattered(i, j);
         const double along = static_cast<double>(j) + moved * scattered(j, i);
         const Vector2d p = box.center() + Vector2d(across * edge_length, along * height);
         // Between the row and a point that is far from all sides there is none: both are on one side of each.
-        if (left < p.x() && p.x() < right && !row.is_near(p, near)) points.push_back(p);
+        if (left < p.x() && p.x() < right && !is_near(sides, widest, p, near)) points.push_back(p);
       }
     }
   }
