@@ -213,7 +213,7 @@ def test_figures_evaluate_no_style_of_the_working_folder(tmp_path, monkeypatch):
 def test_names_in_the_results_of_others_lead_nowhere(tmp_path):
     command("run", SMALL_FILE, "-o", tmp_path / "run", "--no-report", "-q", "--measure")
     results = json.loads((tmp_path / "run/results.json").read_text())
-    results["methods"] = {f"/{tmp_path}/\x1b[2J": method for method in results["methods"].values()}
+    results["methods"][f"/{tmp_path}/\x1b[2J"] = next(iter(results["methods"].values()))
     (tmp_path / "run/results.json").write_text(json.dumps(results))
     said = command("figures", tmp_path / "run", "-o", tmp_path / "made").stdout
     assert "_end.png" in said and "\x1b" not in said
