@@ -81,7 +81,11 @@ TEST_CASE("The rest shape of every level of every hierarchy is stress-free") {
                   .lpNorm<Eigen::Infinity>();
           REQUIRE(stiffness > 0);
           CHECK(gradient_of(*energy, rest).cwiseAbs().maxCoeff() <= 1e-14 * stiffness);
-          CHECK(std::abs(energy->value(rest)) <= 1e-26 * stiffness * level.triangle_count());
+          // Squares of strains are of round-off's square, [m²] for a triangle; terms of a formula may cancel.
+          const double rounding = candidate.name.starts_with("formula")
+                                      ? std::numeric_limits<double>::epsilon() * level.vertex_area.sum()
+                                      : 1e-26 * level.triangle_count();
+          CHECK(std::abs(energy->value(rest)) <= rounding * stiffness);
           ++checked;
         }
       }
