@@ -44,7 +44,7 @@ std::string made_small(const std::string& command) {
   if (!(is_run || command.starts_with("build/bin/drape fit ")) ||
       command.find("--resume") != std::string::npos)
     return command;
-  const bool own_mesh = command.find("configs/own_mesh.yaml") != std::string::npos;
+  const bool own_mesh = std::regex_search(command, std::regex("configs/(own_mesh|cushion)[.]yaml"));
   return std::regex_replace(command, std::regex(" --levels[ =][0-9]+| --overwrite"), "") +
          (is_run ? " --overwrite" : "") + " --set levels=1 --set newton.force_tolerance=1e-2" +
          (own_mesh ? "" : " --set cloth.columns=0 --set cloth.rows=0 --set cloth.vertices=81");

@@ -169,7 +169,7 @@ TEST_CASE("libdrape needs no YAML, picture, socket or JSON") {
   const std::set<std::string> needed = needed_by(library("libdrape.so"));
   CHECK(needed.count("libcholmod.so") == 1);
   for (const char* absent : {"libyaml-cpp.so", "libembree3.so", "libpng16.so", "libcpp-httplib.so",
-                             "libssl.so", "libdrape_app.so"}) {
+                             "libssl.so", "libz.so", "libdrape_app.so"}) {
     CAPTURE(absent);
     CHECK(needed.count(absent) == 0);
   }

@@ -206,7 +206,7 @@ def pictures_figure(runs: dict, methods, width=None):
     shown, titles = [], []
     with tempfile.TemporaryDirectory(prefix="drape_pictures_") as folder:
         for title, results in runs.items():
-            drawn = []
+            drawn: list[tuple[str, numpy.ndarray]] = []
             for method in methods:
                 levels = [entry.level for entry in results[0][method].levels if vars(entry).get("mesh")] if method in results[0].methods else []
                 for level in dict.fromkeys([levels[0], levels[-1]] if levels else []):
