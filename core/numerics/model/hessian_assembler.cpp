@@ -18,10 +18,7 @@ Pairs missing_in(const BlockPattern& pattern, const std::vector<Stencils>& stenc
   constexpr int grain = 512;
   Pairs missing;
   for (const Stencils& s : stencils) {
-    const int rows = static_cast<int>(s.rows());
-    std::vector<Pairs> pieces((rows + grain - 1) / grain);
-    parallel_for(rows, grain, [&](int begin, int end) {
-      Pairs& own = pieces[begin / grain];
+    const auto search = [&](int begin, int end, Pairs& own) {
       for (int e = begin; e < end; ++e)
         for (Eigen::Index b = 1; b < s.cols(); ++b)
           for (Eigen::Index a = 0; a < b; ++a) {
@@ -29,8 +26,9 @@ Pairs missing_in(const BlockPattern& pattern, const std::vector<Stencils>& stenc
             const std::pair<int, int> pair = std::minmax(s(e, a), s(e, b));
             if (pattern.find(pair.first, pair.second) < 0) own.push_back(pair);
           }
-    });
-    for (const Pairs& own : pieces) missing.insert(missing.end(), own.begin(), own.end());
+    };
+    const Pairs own = parallel_collect<Pairs::value_type>(static_cast<int>(s.rows()), grain, search);
+    missing.insert(missing.end(), own.begin(), own.end());
   }
   std::sort(missing.begin(), missing.end());
   missing.erase(std::unique(missing.begin(), missing.end()), missing.end());
