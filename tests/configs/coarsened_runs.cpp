@@ -79,13 +79,10 @@ TEST_CASE("A refined cushion has levels below it, although few vertices make its
   const Scratch folder;
   const fs::path config = folders::source() / "configs/cushion.yaml";
   write_mesh(folder / "cushion.obj", scene_of(experiment_in(config))->hierarchy.levels[2].rest);
-  Solved s{experiment_in(config, {{"cloth.file", (folder / "cushion.obj").string()},
-                                  {"levels", "1"},
-                                  {"hierarchy", "{coarsen: 2}"}}),
-           nullptr,
-           {}};
-  s.scene = scene_of(s.experiment);
-  run_method(s, "pcs");
+  const Solved s = solved(experiment_in(config, {{"cloth.file", (folder / "cushion.obj").string()},
+                                                 {"levels", "1"},
+                                                 {"hierarchy", "{coarsen: 2}"}}),
+                          "pcs");
   REQUIRE(s.levels.size() == 3);
   for (const LevelResult& level : s.levels) {
     INFO(level.message);
@@ -97,14 +94,12 @@ TEST_CASE("A refined cushion has levels below it, although few vertices make its
 }
 
 TEST_CASE("A finer level begins beside a sharp rim over which the coarse cloth is folded") {
-  Solved s{experiment_in(folders::source() / "configs/tablecloth.yaml", {{"cloth.vertices", "1600"},
-                                                                         {"levels", "1"},
-                                                                         {"refiner", "coarsen"},
-                                                                         {"hierarchy", "{coarsen: 1}"}}),
-           nullptr,
-           {}};
-  s.scene = scene_of(s.experiment);
-  run_method(s, "pcs");
+  const Solved s =
+      solved(experiment_in(folders::source() / "configs/tablecloth.yaml", {{"cloth.vertices", "1600"},
+                                                                           {"levels", "1"},
+                                                                           {"refiner", "coarsen"},
+                                                                           {"hierarchy", "{coarsen: 1}"}}),
+             "pcs");
   REQUIRE(s.levels.size() == 2);
   CHECK(s.levels[1].message.empty());  // else it starts from the scene's start
   CHECK(s.levels[1].outcome == Outcome::converged);
@@ -120,9 +115,7 @@ TEST_CASE("A garment with levels below it is dressed on the coarsest, and each f
              "pins: [{region: box, lower: [-1, -1, 0.099], upper: [1, -0.01, 1]}]\n"
              "material: {density: 300, thickness: 5e-4, membrane_modulus: 4e5, bending_modulus: 1e5}\n"
              "energies: [neo_hookean, hinge, gravity]\n");
-  Solved s{experiment_in(folder / "e.yaml", {{"methods", "{pcs: {}}"}}), nullptr, {}};
-  s.scene = scene_of(s.experiment);
-  run_method(s);
+  const Solved s = solved(experiment_in(folder / "e.yaml", {{"methods", "{pcs: {}}"}}));
   REQUIRE(s.levels.size() == 2);
   for (const LevelResult& level : s.levels) {
     INFO(level.message);

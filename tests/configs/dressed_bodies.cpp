@@ -134,9 +134,7 @@ TEST_CASE("A shirt is dressed on a made body that is cut at neck, wrists and thi
           ", edge_length: 0.05}\nmaterial: {density: 300, thickness: 4e-4, membrane_modulus: 8e5, "
           "bending_modulus: 2e5}\nenergies: [neo_hookean, hinge, gravity]\ncontact: {type: ipc, dhat: "
           "0.002}\nfriction: 0.4\ndress: {body: body.obj, up: y}\nmethods: {pcs: {}}\nmetrics: []\n");
-  Solved s{experiment_in(folder / "e.yaml"), nullptr, {}};
-  s.scene = scene_of(s.experiment);
-  run_method(s);
+  const Solved s = solved(experiment_in(folder / "e.yaml"));
   REQUIRE(s.levels.size() == 2);
   for (const LevelResult& level : s.levels) {
     INFO(level.message);

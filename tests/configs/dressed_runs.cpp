@@ -23,10 +23,7 @@ const std::string held =
 
 /// The experiment in a folder with these changes, solved by its method.
 Solved dressed_in(const Scratch& folder, const Overrides& overrides = {}) {
-  Solved s{experiment_in(folder / "e.yaml", overrides), nullptr, {}};
-  s.scene = scene_of(s.experiment);
-  run_method(s);
-  return s;
+  return solved(experiment_in(folder / "e.yaml", overrides));
 }
 
 TubeDress small_tube() { return {.columns = 8, .rows = 5, .facets = 24}; }

@@ -90,10 +90,7 @@ std::string sewn_experiment(const std::string& keys, const std::string& pins = "
 Solved draped(const std::string& obj, const std::string& keys, const std::string& pins = "{region: seam}") {
   const Scratch folder(sewn_experiment(keys, pins));
   folder.write("cushion.obj", obj);
-  Solved s{experiment_in(folder / "e.yaml"), nullptr, {}};
-  s.scene = scene_of(s.experiment);
-  run_method(s);
-  return s;
+  return solved(experiment_in(folder / "e.yaml"));
 }
 
 std::string refused_cushion(const std::string& obj, const std::string& keys,

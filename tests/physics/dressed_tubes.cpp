@@ -58,9 +58,7 @@ TEST_CASE("A tube dressed on a cylinder has the stretch, the tension and the pre
                      : "material: {density: 300, thickness: 5e-4, membrane_modulus: 4e5, poisson_ratio: "
                        "0.3, bending_modulus: 1e5}\n"
                        "energies: [stvk, hinge, {type: gravity, acceleration: [0, 0, -0.2]}]\n");
-    Solved s{experiment_in(folder / "e.yaml"), nullptr, {}};
-    s.scene = scene_of(s.experiment);
-    run_method(s);
+    const Solved s = solved(experiment_in(folder / "e.yaml"));
     INFO(s.levels[0].message);
     REQUIRE(s.levels[0].outcome == Outcome::converged);
     for (const auto& contact : s.model().contacts()) CHECK(contact->intersections(s.x()).empty());

@@ -16,10 +16,7 @@ namespace {
 Solved at_rest(const TriangleMesh& mesh, const std::string& cloth, const std::string& keys) {
   const Scratch folder("name: sewn\ncloth: {shape: file, file: e.obj, " + cloth + "}\n" + keys);
   write_mesh(folder / "e.obj", mesh);
-  Solved s{experiment_in(folder / "e.yaml"), nullptr, {}};
-  s.scene = scene_of(s.experiment);
-  run_method(s);
-  return converged(std::move(s));
+  return converged(solved(experiment_in(folder / "e.yaml")));
 }
 
 double difference(const Solved& a, const Solved& b) {

@@ -126,9 +126,7 @@ TEST_CASE("A pressed dome snaps at its limit point, and its ends are minima befo
             "cloth: {shape: file, file: dome.obj}\n" + std::string(thin) +
                 "pins: [{region: border}]\nenergies: [neo_hookean, hinge, {type: pressure, pressure: $}]\n",
             -pressure));
-    Solved s{experiment_in(folder / "e.yaml"), nullptr, {}};
-    s.scene = scene_of(s.experiment);
-    run_method(s);
+    const Solved s = solved(experiment_in(folder / "e.yaml"));
     INFO(pressure << " Pa");
     CHECK(s.levels.back().outcome == Outcome::converged);
     CHECK(stability_of(s).verdict == Stability::stable);
@@ -268,9 +266,7 @@ methods: {newton: {}}
                                   thickness, push(0.375, 0.5), push(0.05 * 10 / 12, fraction),
                                   std::string(solver)));
       folder.write("two.obj", obj.str() + faces.str());
-      Solved s{experiment_in(folder / "e.yaml"), nullptr, {}};
-      s.scene = scene_of(s.experiment);
-      run_method(s);
+      const Solved s = solved(experiment_in(folder / "e.yaml"));
       INFO(solver << ", " << fraction);
       const Stability& stability = stability_of(s);
       row(fraction, solver, stability.curvature_ratio, stability.lowest_eigenvalue);

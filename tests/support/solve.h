@@ -60,6 +60,14 @@ inline void run_method(Solved& s, const std::string& name = "") {
   throw std::runtime_error("the experiment has no method " + name);
 }
 
+/// An experiment, solved by one of its methods as run_method does.
+inline Solved solved(drape::Experiment experiment, const std::string& method = "") {
+  Solved s{std::move(experiment), nullptr, {}};
+  s.scene = scene_of(s.experiment);
+  run_method(s, method);
+  return s;
+}
+
 inline Solved solve_yaml(const std::string& text, const std::string& method = "") {
   Solved s = scene_from(text);
   run_method(s, method);
