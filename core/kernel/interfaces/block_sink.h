@@ -30,14 +30,15 @@ class BlockSink {
   /// its vertex b. Only pairs a ≤ b are given: the other half follows by symmetry. Nothing is checked.
   void add(int element, int a, int b, const double* h) {
     const int slot = slots_[static_cast<std::size_t>(element) * pairs_ + b * (b + 1) / 2 + a];
-    if (slot >= 0) {
-      double* v = values_ + 9 * static_cast<std::size_t>(slot);
-      for (int i = 0; i < 9; ++i) v[i] += factor_ * h[i];
-    } else if (slot != no_block) {
-      double* v = values_ + 9 * static_cast<std::size_t>(~slot);
+    if (slot == no_block) return;
+    double* v = values_ + 9 * static_cast<std::size_t>(slot >= 0 ? slot : ~slot);
+    double sum[9];  // apart from both arrays, which might overlap for all that a compiler knows
+    if (slot >= 0)
+      for (int i = 0; i < 9; ++i) sum[i] = v[i] + factor_ * h[i];
+    else
       for (int r = 0; r < 3; ++r)
-        for (int c = 0; c < 3; ++c) v[3 * r + c] += factor_ * h[3 * c + r];
-    }
+        for (int c = 0; c < 3; ++c) sum[3 * r + c] = v[3 * r + c] + factor_ * h[3 * c + r];
+    for (int i = 0; i < 9; ++i) v[i] = sum[i];
   }
 
  private:

@@ -106,8 +106,16 @@ class Energy {
   /// Factor on the energy if every triangle, at rest and deformed, is split into four at its edge midpoints:
   /// 1 for energies of the surface itself; 2 for folds at edges, because each half edge has a quarter of the
   /// adjacent area. None if no factor holds for all states: PCS then evaluates all energies of this role on
-  /// the finest mesh while it solves a coarse level.
+  /// the finest mesh while it solves a coarse level, unless they have a bind_sharp().
   virtual std::optional<double> midpoint_factor() const { return std::nullopt; }
+  /// Binds a bending energy without a midpoint factor to a coarse level as if its mesh were finer: folds at
+  /// its edges, one for each of its hinges, are `sharpness` times as sharp, 2^k where every triangle is split
+  /// into four k times. With the stencils of bind(). None by default.
+  virtual std::unique_ptr<BoundEnergy> bind_sharp([[maybe_unused]] const Level& level,
+                                                  [[maybe_unused]] const Material& material,
+                                                  [[maybe_unused]] const Eigen::VectorXd& sharpness) const {
+    return nullptr;
+  }
   /// Stiffness D [J] of a bending energy as a plate's: a sheet rolled to a curvature κ has ½ D κ² for each
   /// unit of rest area. By default 0: it does not keep the cloth from wrinkling below a coarse mesh.
   virtual double plate_stiffness([[maybe_unused]] const Material& material) const { return 0; }

@@ -73,11 +73,18 @@ LevelModel LevelModel::with_effective_membranes(const Fineness& finest,
 
 LevelModel LevelModel::with_local_folds(const Fineness& finest, bool sharp) const {
   LevelModel model = *this;
-  if (finest.folds.size() == 0) return model;
-  const Eigen::VectorXd lengths = finest.relative_lengths(*level_);
+  const bool even = finest.folds.size() == 0;
+  const Eigen::VectorXd lengths =
+      even ? Eigen::VectorXd::Ones(level_->hinges.rows()) : finest.relative_lengths(*level_);
   for (Term& term : model.terms_) {
+    if (term.role != EnergyRole::bending) continue;
     const std::optional<double> factor = term.kind->midpoint_factor();
-    if (term.role != EnergyRole::bending || !factor || !(*factor > 0)) continue;
+    if (sharp && !factor) {
+      std::shared_ptr<const BoundEnergy> bound =
+          term.kind->bind_sharp(*level_, material_, std::exp2(finest.levels) * lengths);
+      if (bound) term.energy = std::move(bound), term.is_sharp = true;
+    }
+    if (even || !factor || !(*factor > 0)) continue;
     const auto bind = [&](const Level& own) { return bound_energy(*term.kind, own, material_); };
     Eigen::VectorXd factors = finest.folds;
     if (sharp) factors.array() *= lengths.array().pow(std::log2(*factor));

@@ -168,7 +168,7 @@ std::optional<double> LevelModel::midpoint_factor(EnergyRole role) const {
   std::optional<double> common;
   for (const Term& term : terms_) {
     if (term.role != role) continue;
-    const std::optional<double> own = term.kind->midpoint_factor();
+    const std::optional<double> own = term.is_sharp ? 1 : term.kind->midpoint_factor();
     if (!own || (common && own != common)) return std::nullopt;
     common = own;
   }

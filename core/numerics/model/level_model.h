@@ -65,8 +65,8 @@ class LevelModel {
   /// Adds `factor` times that to the matrix.
   void add_hessian(const Positions& x, Projection projection, BlockMatrix& matrix, Roles roles,
                    double factor) const;
-  /// The common Energy::midpoint_factor of all energies of a role, 1 for a role without energies. None if the
-  /// factors differ or one is missing.
+  /// The common Energy::midpoint_factor of all energies of a role, 1 for those bound by bind_sharp and for a
+  /// role without energies. None if the factors differ or one is missing.
   std::optional<double> midpoint_factor(EnergyRole role) const;
   const std::shared_ptr<const BlockPattern>& pattern() const { return pattern_; }
 
@@ -81,7 +81,8 @@ class LevelModel {
   LevelModel with_effective_membranes(const Fineness& finest, const std::vector<int>& lone_pins = {}) const;
   /// The model whose hinges resist bending in each direction as the finest level's do (Fineness::folds). With
   /// `sharp` each is also as much stiffer as that level's edges are shorter around it, over their mean, which
-  /// midpoint_factor gives: so stiff is a fold of this level's mesh on the finest one.
+  /// midpoint_factor gives, and energies without that factor are bound by bind_sharp: so stiff is a fold of
+  /// this level's mesh on the finest one.
   LevelModel with_local_folds(const Fineness& finest, bool sharp) const;
 
   /// The energies of role `limit`, S_l.
@@ -123,6 +124,7 @@ class LevelModel {
     const Level* level = nullptr;        // to this one
     std::shared_ptr<const BoundEnergy> energy;
     std::shared_ptr<const BlockSlots> slots;  // null for linear energies and limits
+    bool is_sharp = false;                    // bound by bind_sharp
 
     bool is_linear() const { return role != EnergyRole::limit && !slots; }
   };

@@ -211,6 +211,7 @@ ShapeOperators ShapeOperators::of(const Level& level, const Material& material, 
     if (normals.hinge(e) != -1) corrections[e] = normals.correction(e);
 
   Grouped<Term> terms;
+  Eigen::VectorXd lone_folds = Eigen::VectorXd::Zero(level.hinges.rows());
   for (int t = 0; t < level.triangle_count(); ++t) {
     terms.start.push_back(static_cast<int>(terms.items.size()));
     const Eigen::Matrix3d x = rest_corners(level.rest, t);
@@ -218,7 +219,8 @@ ShapeOperators ShapeOperators::of(const Level& level, const Material& material, 
         x, plate.isotropic ? Eigen::Vector3d(x.col(1) - x.col(0)) : Eigen::Vector3d(warp.row(t)), plate);
 
     // A free normal removes its component from the others.
-    Eigen::Matrix3d projection = Eigen::Matrix3d::Identity() * std::sqrt(plate.k * normals.triangle_area(t));
+    const double stiffness = plate.k * normals.triangle_area(t);
+    Eigen::Matrix3d projection = Eigen::Matrix3d::Identity() * std::sqrt(stiffness);
     for (int i = 0; i < 3; ++i) {
       if (normals.hinge(level.topology.triangle_edges(t, i)) != -1) continue;
       const Eigen::Vector3d free = (projection * directions[i]).stableNormalized();
@@ -240,11 +242,14 @@ ShapeOperators ShapeOperators::of(const Level& level, const Material& material, 
       const double sign = level.topology.edge_triangles(e, 0) == t ? 1 : -1;
       const Correction& c = corrections[e];
       for (int j = 0; j < c.size; ++j) add(c.hinges[j], direction * (sign * c.weights[j]));
+      const double own = 0.5 + (c.size > 0 ? sign * c.weights[0] : 0);
+      lone_folds[normals.hinge(e)] += stiffness * own * own * directions[i].squaredNorm();
     }
   }
   terms.start.push_back(static_cast<int>(terms.items.size()));
   for (Term& term : terms.items) term.weight *= std::sqrt(stiffness_factor(level, term.hinge));
-  return {std::move(terms)};
+  for (Eigen::Index h = 0; h < lone_folds.size(); ++h) lone_folds[h] *= stiffness_factor(level, h);
+  return {std::move(terms), std::move(lone_folds)};
 }
 
 }  // namespace drape

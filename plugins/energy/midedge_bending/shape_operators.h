@@ -16,6 +16,9 @@ struct ShapeOperators {
     Eigen::Vector3d weight;  ///< [√J]
   };
   Grouped<Term> terms;  ///< of each triangle
+  /// Of each hinge: ‖s‖² [J] of its two triangles, over (θ - θ̄)², if all other angles stay at rest and no
+  /// border gives way.
+  Eigen::VectorXd lone_folds;
 
   /// For the energy Ā k ((1 - ν) tr S² + ν (tr S)²) of a triangle with rest area Ā and shape operator S, or
   /// with the material's rigidity by direction Ā (½ c11 S11² + ½ c22 S22² + c12 S11 S22 + 2 c66 S12²), from

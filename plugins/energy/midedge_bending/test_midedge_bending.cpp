@@ -4,6 +4,7 @@
 #include "core/numerics/elements/dihedral_angle.h"
 #include "core/numerics/elements/orthotropic_stiffness.h"
 #include "core/numerics/elements/stretch.h"
+#include "core/numerics/hierarchy/midpoint.h"
 #include "plugins/energy/midedge_bending/shape_operators.h"
 #include "tests/conformance/energy_states.h"
 #include "tests/support/decompositions.h"
@@ -197,6 +198,55 @@ TEST_CASE("midedge_bending: friction adds its moment to a bent strip's, and deri
       const Eigen::VectorXd clamped = eigenvalues_of(dense(hessian_of(*own, x, Projection::clamp)));
       CHECK(clamped.minCoeff() > -1e-10 * clamped.maxCoeff());
     }
+  });
+}
+
+TEST_CASE(
+    "midedge_bending: sharp folds have their energy on the mesh that is split at its edges' midpoints") {
+  for_each_triangulation(12, [](const TriangleMesh& mesh) {
+    const Level level = Level::of(0, mesh);
+    // A free border's triangles give way, so none of them is bent.
+    std::vector<char> near_border = level.topology.on_border;
+    for (const auto& v : mesh.triangles.rowwise())
+      if (level.topology.on_border[v[0]] || level.topology.on_border[v[1]] || level.topology.on_border[v[2]])
+        for (const int corner : v) near_border[corner] = 1;
+    for (const Material& of : {material, woven}) {
+      Positions x = shaken(mesh.vertices, 0.02, 5), split_x = x;
+      for (int v = 0; v < x.rows(); ++v)
+        if (near_border[v]) x.row(v) = mesh.vertices.row(v);
+      Level split = level;
+      split_x = x;
+      for (const double sharpness : {2, 4}) {
+        const ProlongationMatrix midpoints = midpoint_weights(split);
+        split_x = (midpoints * split_x).eval();
+        split = Level::of(1, refined_rest(split, midpoints));
+        const auto energies = [&](double tolerance) {
+          MidedgeBending energy;
+          energy.correction_tolerance = tolerance;
+          const Eigen::VectorXd sharp = Eigen::VectorXd::Constant(level.hinges.rows(), sharpness);
+          return std::pair(energy.bind_sharp(level, of, sharp)->value(x),
+                           energy.bind(split, of)->value(split_x));
+        };
+        const auto [plain, plain_split] = energies(1);
+        CHECK(plain == Approx(plain_split).epsilon(1e-10));
+        const auto [corrected, corrected_split] = energies(default_tolerance);
+        CHECK(corrected == Approx(corrected_split).epsilon(0.05));
+      }
+    }
+  });
+}
+
+TEST_CASE("midedge_bending: sharp folds' derivatives are those of their energy") {
+  Material rubbing = material;
+  rubbing.bending_hysteresis = 0.8;
+  for_each_triangulation(5, [&](const TriangleMesh& mesh) {
+    const Level level = Level::of(0, mesh);
+    const Eigen::VectorXd sharpness = Eigen::VectorXd::LinSpaced(level.hinges.rows(), 1, 8);
+    const auto own = MidedgeBending().bind_sharp(level, rubbing, sharpness);
+    const Positions x = wavy(mesh, 0.1);
+    energy_states::check_derivatives(*own, x, 1e-5, 1e-6, 1e-5);
+    const Eigen::VectorXd clamped = eigenvalues_of(dense(hessian_of(*own, x, Projection::clamp)));
+    CHECK(clamped.minCoeff() > -1e-10 * clamped.maxCoeff());
   });
 }
 

@@ -40,7 +40,7 @@ void add_blocks(const BlockMatrix& part, const std::vector<int>& slots, double f
 
 }  // namespace
 
-std::vector<ProxyPart> proxy_parts(const Problem& problem, int level, double halvings,
+std::vector<ProxyPart> proxy_parts(const Problem& problem, int level, const LevelModel& own, double halvings,
                                    const ProxyOptions& options) {
   const ProxyInterpolation& seen_by = options.seen_by;
   const int above = problem.finest() - level;
@@ -49,7 +49,7 @@ std::vector<ProxyPart> proxy_parts(const Problem& problem, int level, double hal
        {std::pair(EnergyRole::membrane, seen_by.membrane), std::pair(EnergyRole::external, seen_by.external),
         std::pair(EnergyRole::position, seen_by.external), std::pair(EnergyRole::bending, seen_by.bending)}) {
     ProxyPart part;
-    const auto factor = problem.model(level)->midpoint_factor(role);
+    const auto factor = own.midpoint_factor(role);
     if (interpolated_by == Interpolation::midpoint && factor) {
       part.factor = std::pow(*factor, halvings);
     } else {
@@ -77,17 +77,18 @@ ProxyObjective::ProxyObjective(const Problem& problem, int level, const ProxyOpt
 }
 
 void ProxyObjective::model_changed() {
+  effective_ = folded_ = nullptr;
   // A schedule may change which vertices a pin selects.
   if (options_.effective && options_.seen_by.membrane == Interpolation::midpoint)
     effective_ = std::make_shared<const LevelModel>(model().with_effective_membranes(
         finest_, lone_pins(model(), [&] { return problem_.model(problem_.finest()); })));
-  if (finest_.folds.size() > 0) {
-    const LevelModel& own = effective_ ? *effective_ : model();
-    if (!is_plain_) folded_ = std::make_shared<const LevelModel>(own.with_local_folds(finest_, true));
+  const LevelModel& own = effective_ ? *effective_ : model();
+  if (!is_plain_ && options_.seen_by.bending == Interpolation::midpoint)
+    folded_ = std::make_shared<const LevelModel>(own.with_local_folds(finest_, true));
+  if (finest_.folds.size() > 0)
     effective_ = std::make_shared<const LevelModel>(own.with_local_folds(finest_, false));
-  }
   if (is_plain_) return;
-  std::vector<ProxyPart> parts = proxy_parts(problem_, level_, finest_.levels, options_);
+  std::vector<ProxyPart> parts = proxy_parts(problem_, level_, own_model(), finest_.levels, options_);
   const bool differ = parts != parts_;
   if (differ) {
     parts_ = std::move(parts);

@@ -49,10 +49,11 @@ struct ProxyPart {
   bool operator==(const ProxyPart&) const = default;
 };
 
-/// Parts of the proxy of a coarse level for the finest model. An energy that midpoint refinement multiplies
-/// by a known factor (Energy::midpoint_factor) is evaluated on the level itself, any other on the finest one.
-/// `halvings` is the level's Fineness::levels. The parts refer to the problem's hierarchy.
-std::vector<ProxyPart> proxy_parts(const Problem& problem, int level, double halvings,
+/// Parts of the proxy of a coarse level, whose own model is `own`, for the finest model. An energy that
+/// midpoint refinement multiplies by a known factor (LevelModel::midpoint_factor) is evaluated on the level
+/// itself, any other on the finest one. `halvings` is the level's Fineness::levels. The parts refer to the
+/// problem's hierarchy.
+std::vector<ProxyPart> proxy_parts(const Problem& problem, int level, const LevelModel& own, double halvings,
                                    const ProxyOptions& options);
 
 /// Proxy F_l(x) = Σ parts(x) + B_l(x) + D_l(x) + S_l(x): shell energies and loads of finer levels as
@@ -104,9 +105,9 @@ class ProxyObjective : public Objective {
   bool is_plain_ = false;
   std::shared_ptr<const LevelModel>
       effective_;  // the level's model that bends, and buckles, as the finest, or null
-  std::shared_ptr<const LevelModel>
-      folded_;  // the same with folds as sharp as on the finest level, while they differ
-  std::vector<ProxyPart> parts_, own_;  // all, and those of the level's own model
+  std::shared_ptr<const LevelModel> folded_;  // the same with folds as sharp as on the finest level; null for
+                                              // folds that the refiner's surface has
+  std::vector<ProxyPart> parts_, own_;        // all, and those of the level's own model
   std::vector<FinerPart> finer_;
   BlockMatrix own_matrix_, matrix_;  // of own_, if its pattern differs from the sum's; the sum
   std::vector<int> own_slots_;       // index in matrix_ of each block of own_matrix_
