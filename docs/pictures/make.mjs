@@ -32,7 +32,9 @@ const otherRuns = {
     '--set', 'methods.plain={type: pcs, membranes: plain}'],
 };
 
-const garmentRuns = {tshirt: [path.join(runs, 'my_tshirt.yaml')]};
+/// The guide's experiment, also with other patterns.
+const garmentRuns = Object.fromEntries(['tshirt', 'shirt', 'skirt', 'trousers'].map(name => [name, [path.join(runs, `my_${name}.yaml`)]]));
+const heldAtWaist = ['skirt', 'trousers'];
 
 const build = execFileSync(path.join(process.env.DRAPE_BIN, 'drape'), ['--version'], {encoding: 'utf8'}).match(/\((.*)\)/)[1];
 
@@ -50,11 +52,12 @@ function resultsOf(name) {
     const readme = fs.readFileSync(path.join(root, 'README.md'), 'utf8');
     fs.writeFileSync(path.join(runs, 'my_curtain.yaml'), readme.match(/```yaml my_curtain.yaml\n(.*?)```/s)[1]);
   }
-  if (name === 'tshirt') {
+  if (name in garmentRuns) {
     execFileSync(path.join(root, 'configs/garments/make_body'), [path.join(runs, 'figure.obj')], {stdio: 'inherit'});
     const guide = fs.readFileSync(path.join(root, 'docs/guide/dress.md'), 'utf8');
-    fs.copyFileSync(path.join(root, 'configs/garments/tshirt.yaml'), path.join(runs, 'tshirt.yaml'));
-    fs.writeFileSync(path.join(runs, 'my_tshirt.yaml'), guide.match(/```yaml my_tshirt.yaml\n(.*?)```/s)[1]);
+    fs.copyFileSync(path.join(root, `configs/garments/${name}.yaml`), path.join(runs, `${name}.yaml`));
+    fs.writeFileSync(path.join(runs, `my_${name}.yaml`), guide.match(/```yaml my_tshirt.yaml\n(.*?)```/s)[1].replaceAll('tshirt', name) +
+      (heldAtWaist.includes(name) ? 'pins: [{region: label, label: waist}]\n' : ''));
   }
   drape('run', ...{...galleryRuns, ...otherRuns, ...garmentRuns}[name], '-o', results, '--overwrite', '--no-report');
   return results;
@@ -104,7 +107,9 @@ async function levels() {
     await still(resultsOf('lone_pins'), `lone_pins_${method}_l${level}`, 480, '--method', method, '--level', level, '--view=1,-2,0.15');
 }
 
-const garments = () => still(resultsOf('tshirt'), 'tshirt', 640);
+async function garments() {
+  for (const name of Object.keys(garmentRuns)) await still(resultsOf(name), name, name === 'tshirt' ? 640 : 480);
+}
 
 const seconds = s => s < 9.95 ? s.toFixed(1) : s.toFixed(0);
 const thousands = n => (n / 1000).toFixed(n < 9950 ? 1 : 0);
