@@ -75,7 +75,7 @@ $)",
 
 /// A beam: two rows of criss-cross cells, mirrored at the middle line, so that bending does not twist it. Its
 /// cells are far longer than wide: with wide ones the diagonals would bend along (see
-/// docs/results/validation.md, "What the hinge model's stiffness is").
+/// plugins/energy/hinge/README.md, "Stiffness on a mesh").
 struct BeamStrip : ClampedStrip {
   double stiffness = 1;       ///< EI per width that the strip shall have, D_eff = 6 k = E_bend d³ / 4 [N m]
   double slenderness = 0.06;  ///< width of a cell over its length

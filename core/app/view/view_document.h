@@ -51,7 +51,7 @@ class ViewDocument {
   Json level_entries_ = Json::array(), obstacle_entries_ = Json::array();
 };
 
-// The viewer's blocks of bytes, little endian; docs/contributing/working.md says what each holds.
+// The viewer's blocks of bytes, little endian; docs/contributing/working.md says who packs and reads them.
 
 /// Six float32, lower corner and size of the box, then x, y and z plane by plane as uint16 within it, each
 /// the difference from the vertex before modulo 2^16. What is not finite becomes the lower corner.
