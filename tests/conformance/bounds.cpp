@@ -37,15 +37,14 @@ void for_each_number(const Visit& visit) {
 
 std::vector<double> numbers_in(const ConfigNode& node) {
   std::vector<double> numbers;
-  if (node.kind == ConfigNode::Kind::scalar) numbers.push_back(parse_number(node.scalar).value());
-  for (const ConfigNode& item : node.items) numbers.push_back(parse_number(item.scalar).value());
+  if (node.is_number()) numbers.push_back(node.number);
+  for (const ConfigNode& item : node.items) numbers.push_back(item.number);
   return numbers;
 }
 
 /// Why the schema refuses a parameter's value, or "".
 std::string refusal(const Schema& schema, const std::string& name, const ConfigNode& value) {
-  ConfigNode map;
-  map.kind = ConfigNode::Kind::map;
+  ConfigNode map(ConfigNode::Kind::map);
   map.add(name, value);
   ConfigErrors errors;
   schema.read(schema.fresh().get(), map, errors);
@@ -68,9 +67,8 @@ TEST_CASE("Numbers have bounds with their default between them, and are refused 
     for (const char* number :
          {whole ? "-2147483648" : "-1e300", whole ? "99999999999" : "1e300", "1e400", ".inf"}) {
       INFO(number);
-      ConfigNode value = ConfigNode::of(std::string(number)), items;  // each component of a list
-      value.quoted = false;
-      items.kind = ConfigNode::Kind::list;
+      const ConfigNode value = ConfigNode::plain(number);
+      ConfigNode items(ConfigNode::Kind::list);  // each component of a list
       items.items.assign(p.size ? p.size : 1, value);
       CHECK_THAT(refusal(schema, p.name, p.type.is_list() ? items : value),
                  Catch::Contains("\"" + p.name + "\" must be "));

@@ -88,7 +88,7 @@ void check_names(const std::vector<ConfigNode>& obstacles, ConfigErrors& errors)
   std::map<std::string, std::size_t> named;
   for (std::size_t i = 0; i < obstacles.size(); ++i) {
     const ConfigNode* name = obstacles[i].find("name");
-    if (!name || name->kind != NodeKind::scalar || name->scalar.empty()) continue;
+    if (!name || !name->is_scalar() || name->scalar.empty()) continue;
     if (parse_integer(name->scalar))
       errors.push_back({name->where, "\"" + excerpt(name->scalar) +
                                          "\" cannot be an obstacle's name: in paths a number is its index; "
@@ -134,8 +134,7 @@ ConfigNode completed_section(const Experiment& e, const ConfigNode& written, con
                                     " belongs at the top of the experiment, once for all contact models"});
     ConfigNode value = ConfigNode::of(e.parameters.friction);
     if (shared.section) {
-      value = ConfigNode();
-      value.kind = NodeKind::list;
+      value = ConfigNode(NodeKind::list);
       for (const std::size_t i : config.obstacles) value.items.push_back(e.parameters.obstacles[i]);
     }
     section.add(shared.name, value);
@@ -181,8 +180,7 @@ void make_contacts(Experiment& e, ConfigErrors& errors) {
   check_names(p.obstacles, errors);
   check_friction(e, models, errors);
   share_obstacles(*e.registry, p.obstacles, models, e.contact_configs, errors);
-  ConfigNode sections, obstacles;
-  sections.kind = obstacles.kind = NodeKind::list;
+  ConfigNode sections(NodeKind::list), obstacles(NodeKind::list);
   obstacles.items = p.obstacles;
   for (std::size_t k = 0; k < written.size(); ++k) {
     ContactConfig& config = e.contact_configs[k];

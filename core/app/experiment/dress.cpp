@@ -25,8 +25,7 @@ constexpr double loosest_limit = 100;
 constexpr int limit_increments = 12;
 
 ConfigNode list_of(const std::vector<double>& values) {
-  ConfigNode list;
-  list.kind = ConfigNode::Kind::list;
+  ConfigNode list(ConfigNode::Kind::list);
   for (const double value : values) list.items.push_back(ConfigNode::of(value));
   return list;
 }
@@ -116,8 +115,7 @@ void apply_dress(ConfigNode& experiment, ConfigErrors& errors) {
     dress.add("obstacle", ConfigNode::of(body_name));
     experiment.entries[i].second = dress;
     if (!experiment.find("obstacles")) {
-      ConfigNode none;
-      none.kind = ConfigNode::Kind::list;
+      ConfigNode none(ConfigNode::Kind::list);
       none.where = file.where;
       experiment.add("obstacles", none);
     }

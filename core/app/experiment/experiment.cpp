@@ -166,7 +166,7 @@ std::optional<Experiment> read_experiment(ConfigNode source, const Registry& reg
   experiment_schema().read(&e.parameters, e.source, errors);
   find_label_edges(e.source, e.parameters, errors);
   e.resolved = experiment_schema().write(&e.parameters);
-  if (const ConfigNode* name = e.source.find("name"); name && name->kind == ConfigNode::Kind::scalar)
+  if (const ConfigNode* name = e.source.find("name"); name && name->is_scalar())
     check_name("name", e.parameters.name, name->where, errors);
   check_cloth_keys(e, errors);
   check_start_coordinates(e, errors);
@@ -204,7 +204,7 @@ std::optional<double> newton_number(const ConfigNode& config, const std::string&
   for (const char* part : {method.c_str(), "newton", key}) own = own ? own->find(part) : own;
   const ConfigNode* common = config.find("newton");  // a method has what differs from it alone
   const ConfigNode* node = own ? own : common ? common->find(key) : nullptr;
-  return node ? number_of(node->scalar) : std::nullopt;
+  return node && node->is_number() ? std::optional(node->number) : std::nullopt;
 }
 
 std::vector<std::size_t> Experiment::obstacle_order() const {

@@ -231,8 +231,8 @@ ConfigNode row_of_file(const ConfigNode& fabric, std::optional<double> thickness
 /// The thickness that a material has beside its fabric; none if it is not a length, which its reader refuses.
 std::optional<double> written_thickness(const ConfigNode& material) {
   const ConfigNode* node = material.find("thickness");
-  const std::optional<double> value = node ? parse_number(node->scalar) : std::nullopt;
-  return value && *value >= bounds::smallest_length ? value : std::nullopt;
+  const bool is_length = node && node->is_number() && node->number >= bounds::smallest_length;
+  return is_length ? std::optional(node->number) : std::nullopt;
 }
 
 /// Whether a fabric's number for a key has to give way to what is written beside the fabric: a modulus to a
@@ -258,7 +258,7 @@ void add_fabric(ConfigNode& material, const ConfigNode& fabric, ConfigErrors& er
   };
   for (const auto& [key, value] : row.entries)
     if (key != "source" && !written.find(key) && !replaced_by(written, key)) add(key, value);
-  const std::string name = fabric.kind == ConfigNode::Kind::scalar ? fabric.scalar : fabric.one_line();
+  const std::string name = fabric.is_scalar() ? fabric.scalar : fabric.one_line();
   if (!row.entries.empty() && material.entries.size() == written.entries.size())
     errors.push_back({fabric.where, "\"fabric\" gives nothing: every number of " + excerpt(name) +
                                         " is written beside it; leave out those that it is to give"});
@@ -274,7 +274,7 @@ std::vector<std::string> fabric_names(const std::filesystem::path& file) {
 }
 
 ConfigNode fabric_row(const ConfigNode& fabric, std::optional<double> thickness, ConfigErrors& errors) {
-  if (fabric.kind != ConfigNode::Kind::scalar) return row_of_file(fabric, thickness, errors);
+  if (!fabric.is_scalar()) return row_of_file(fabric, thickness, errors);
   const std::string& name = fabric.scalar;
   const Table& table = own_table();
   const std::vector<std::string> names = table.names();

@@ -47,7 +47,7 @@ void leave_out_shared(const ConfigNode& common, ConfigNode& solver) {
 /// The name that a plugin gives itself, else its type.
 std::string label_of(const ConfigNode& node) {
   const ConfigNode* name = node.find("name");
-  return name && name->kind == ConfigNode::Kind::scalar ? name->scalar : node.plugin_name();
+  return name && name->is_scalar() ? name->scalar : node.plugin_name();
 }
 
 /// Sets `coarsen` by the number of vertices that the coarsest level should have.
@@ -158,8 +158,7 @@ void make_methods(Experiment& e, ConfigErrors& errors) {
 }  // namespace
 
 void make_plugins(Experiment& e, ConfigErrors& errors) {
-  ConfigNode energies, metrics;
-  energies.kind = metrics.kind = ConfigNode::Kind::list;
+  ConfigNode energies(ConfigNode::Kind::list), metrics(ConfigNode::Kind::list);
   for (const ConfigNode& node : e.parameters.energies) {
     PluginParameters own =
         read_plugin_parameters(*e.registry, "energy", node, errors, &energies.items.emplace_back());

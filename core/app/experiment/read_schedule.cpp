@@ -40,7 +40,7 @@ std::vector<std::vector<double>> values_of(const ScheduleKey& key) {
   for (const ConfigNode& item : key.written.items) {
     values.push_back(numbers_of(item));
     if (values.back().empty() || values.back().size() != values[0].size() ||
-        item.kind != key.written.items[0].kind)
+        item.items.empty() != key.written.items[0].items.empty())
       return {};
   }
   return values;

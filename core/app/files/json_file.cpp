@@ -114,11 +114,13 @@ Json json_value(const ConfigNode& node) {
       json = Json::object();
       for (const auto& [key, value] : node.entries) json[key] = json_value(value);
       break;
-    case ConfigNode::Kind::scalar:
-      if (node.quoted) return node.scalar;
+    case ConfigNode::Kind::boolean:
+      return node.scalar == "true";
+    case ConfigNode::Kind::integer:
+    case ConfigNode::Kind::number:
       if (const auto integer = parse_integer(node.scalar)) return *integer;
-      if (const auto number = parse_number(node.scalar)) return *number;
-      if (node.scalar == "true" || node.scalar == "false") return node.scalar == "true";
+      return node.number;
+    case ConfigNode::Kind::text:
       return node.scalar;
   }
   return json;

@@ -35,16 +35,17 @@ class TreeBuilder : public YAML::EventHandler {
   void OnDocumentStart(const YAML::Mark&) override {}
   void OnDocumentEnd() override {}
   void OnNull(const YAML::Mark& mark, YAML::anchor_t anchor) override {
-    begin(Kind::null, mark, anchor);
+    begin({}, mark, anchor);
     end();
   }
   void OnScalar(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor,
                 const std::string& text) override {
     const bool is_key = at_key();
-    ConfigNode& node = begin(Kind::scalar, mark, anchor);
-    node.scalar = text;
-    node.quoted = tag == "!" || tag == "tag:yaml.org,2002:str";
-    if (!is_key && !node.quoted && !tag.empty() && tag != "?")
+    const bool quoted = tag == "!" || tag == "tag:yaml.org,2002:str";
+    const ConfigNode& node = begin(quoted ? ConfigNode::of(text) : ConfigNode::plain(text), mark, anchor);
+    if (is_key && !quoted && text == "<<")
+      errors_.push_back({node.where, "merging maps by << is not supported; write the keys out"});
+    if (!is_key && !quoted && !tag.empty() && tag != "?")
       errors_.push_back({node.where, "tag \"" + excerpt(tag) + "\" is not supported; take it out"});
     if (text.find('\0') != text.npos)  // ends a file's name for the system, and not for std::string
       errors_.push_back({node.where, "\"" + excerpt(text) + "\" has a NUL character; take it out"});
@@ -52,12 +53,12 @@ class TreeBuilder : public YAML::EventHandler {
   }
   void OnSequenceStart(const YAML::Mark& mark, const std::string&, YAML::anchor_t anchor,
                        YAML::EmitterStyle::value) override {
-    begin(Kind::list, mark, anchor);
+    begin(ConfigNode(Kind::list), mark, anchor);
   }
   void OnSequenceEnd() override { end(); }
   void OnMapStart(const YAML::Mark& mark, const std::string&, YAML::anchor_t anchor,
                   YAML::EmitterStyle::value) override {
-    begin(Kind::map, mark, anchor);
+    begin(ConfigNode(Kind::map), mark, anchor);
   }
   void OnMapEnd() override { end(); }
   void OnAlias(const YAML::Mark&, YAML::anchor_t anchor) override {
@@ -77,9 +78,7 @@ class TreeBuilder : public YAML::EventHandler {
 
   bool at_key() const { return !open_.empty() && open_.back().node.kind == Kind::map && !open_.back().key; }
 
-  ConfigNode& begin(Kind kind, const YAML::Mark& mark, YAML::anchor_t anchor) {
-    ConfigNode node;
-    node.kind = kind;
+  ConfigNode& begin(ConfigNode node, const YAML::Mark& mark, YAML::anchor_t anchor) {
     node.where = place(file_, mark);
     if (open_.empty()) roots.push_back(node.where);
     if (!at_key()) count(node, open_.size());
@@ -100,9 +99,7 @@ class TreeBuilder : public YAML::EventHandler {
     } else if (auto& [parent, anchor, key] = open_.back(); parent.kind == Kind::list) {
       parent.items.push_back(std::move(node));
     } else if (!key) {
-      if (node.kind != Kind::scalar) errors_.push_back({node.where, "a key must be a word"});
-      if (node.scalar == "<<" && !node.quoted)
-        errors_.push_back({node.where, "merging maps by << is not supported; write the keys out"});
+      if (!node.is_scalar()) errors_.push_back({node.where, "a key must be a word"});
       key = std::move(node);
     } else {
       if (node.kind == Kind::null) node.where = key->where;  // yaml-cpp locates it at the next token
@@ -180,7 +177,7 @@ ConfigNode* step(ConfigNode& node, const std::string& word, const Location& wher
     const auto index = node.index_of(word);
     return index ? &node.items[*index] : nullptr;
   }
-  if (node.kind == Kind::scalar) node = node.as_map("type");
+  if (node.is_scalar()) node = node.as_map("type");
   for (auto& [key, value] : node.entries)
     if (key == word) return &value;
   ConfigNode value;
@@ -204,9 +201,8 @@ std::string fault_of_word(const ConfigNode& list, const std::string& word) {
 /// Whether a node is written on one line: what is empty, a scalar, and a list of scalars.
 bool fits_a_line(const ConfigNode& node) {
   return node.entries.empty() &&
-         std::all_of(node.items.begin(), node.items.end(), [](const ConfigNode& item) {
-           return item.kind == Kind::scalar || item.kind == Kind::null;
-         });
+         std::all_of(node.items.begin(), node.items.end(),
+                     [](const ConfigNode& item) { return item.is_scalar() || item.kind == Kind::null; });
 }
 
 /// Writes the lines of a node; the first continues the line it is on.

@@ -49,16 +49,11 @@ ConfigNode nested_node(const py::handle& value, int depth) {
   if (depth > max_depth) throw py::value_error("the experiment is nested too deeply");
   if (value.is_none()) return {};
   if (py::isinstance<py::bool_>(value)) return ConfigNode::of(value.cast<bool>());
-  if (py::isinstance<py::int_>(value)) {
-    ConfigNode node = ConfigNode::of(std::string(py::str(value)));
-    node.quoted = false;
-    return node;
-  }
+  if (py::isinstance<py::int_>(value)) return ConfigNode::plain(py::str(value));
   if (py::isinstance<py::float_>(value)) return ConfigNode::of(value.cast<double>());
   if (py::isinstance<py::str>(value)) return ConfigNode::of(text_of(value));
-  ConfigNode node;
   if (py::isinstance<py::dict>(value)) {
-    node.kind = ConfigNode::Kind::map;
+    ConfigNode node(ConfigNode::Kind::map);
     for (const auto& [key, entry] : py::reinterpret_borrow<py::dict>(value)) {
       if (!py::isinstance<py::str>(key))
         throw py::type_error("a key of an experiment must be a str, not " + shown(key));
@@ -67,7 +62,7 @@ ConfigNode nested_node(const py::handle& value, int depth) {
     return node;
   }
   if (py::isinstance<py::list>(value) || py::isinstance<py::tuple>(value)) {
-    node.kind = ConfigNode::Kind::list;
+    ConfigNode node(ConfigNode::Kind::list);
     for (const py::handle item : value) node.items.push_back(nested_node(item, depth + 1));
     return node;
   }

@@ -142,8 +142,7 @@ using Kind = ConfigNode::Kind;
 /// The part of an experiment under model_keys, without the start's noise and the record of where a material's
 /// numbers are from.
 ConfigNode model_part(const ConfigNode& config) {
-  ConfigNode model;
-  model.kind = Kind::map;
+  ConfigNode model(Kind::map);
   for (const std::string& key : model_keys())
     if (const ConfigNode* part = config.find(key)) model.add(key, *part);
   for (auto& [key, part] : model.entries) {

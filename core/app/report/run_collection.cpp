@@ -75,8 +75,8 @@ std::string config_but_seed(const RunData& run, OptionalNumber& seed) {
   for (auto& [key, value] : config.entries)
     for (auto& [own, node] : value.entries)
       if (key == "start" && own == "seed") {
-        seed = number_of(node.scalar);
-        node.scalar.clear();
+        if (node.is_number()) seed = node.number;
+        node = ConfigNode();
       }
   return config.entries.empty() ? run.folder.string() : to_yaml(config);
 }

@@ -18,7 +18,7 @@ namespace drape {
 namespace {
 
 std::optional<double> value_of(const ConfigNode* node) {
-  return node && !node->quoted ? number_of(node->scalar) : std::nullopt;
+  return node && node->is_number() ? std::optional(node->number) : std::nullopt;
 }
 
 /// Appends the paths of all numbers in a node.
@@ -142,8 +142,7 @@ std::optional<Sweep> FitSetup::sweep(const std::set<double>& factors, const Regi
   if (!set.entries.empty()) source.add("set", set);
   source.add("repeats", ConfigNode::of(starts));
   source.entries.back().second.where.file = "--starts";
-  ConfigNode methods, variations;
-  methods.kind = variations.kind = ConfigNode::Kind::list;
+  ConfigNode methods(ConfigNode::Kind::list), variations(ConfigNode::Kind::list);
   methods.items.push_back(ConfigNode::of(method));
   source.add("methods", methods);
   for (const double factor : factors) {

@@ -51,7 +51,7 @@ Json setting_at(const ConfigNode& resolved, const std::string& path) {
 void take_final_numbers(const ConfigNode& resolved, Json& settings) {
   for (auto& [path, value] : settings.items())
     if (const ConfigNode* node = value.is_number() ? value_at(resolved, path) : nullptr;
-        node && node->kind == NodeKind::scalar)
+        node && node->is_scalar())
       value = json_value(*node);
 }
 

@@ -74,8 +74,8 @@ std::vector<Variation> product(const ConfigNode& grid, ConfigErrors& errors) {
         Variation& v = longer.emplace_back(before);
         v.set.entries[k].second = value;
         const auto place = &value - grid.entries[k].second.items.data() + 1;  // a map's, in the list
-        v.name += (k > 0 ? "," : "") + keys[k] + "=" +
-                  (value.kind == NodeKind::scalar ? value.scalar : std::to_string(place));
+        v.name +=
+            (k > 0 ? "," : "") + keys[k] + "=" + (value.is_scalar() ? value.scalar : std::to_string(place));
       }
     all = std::move(longer);
   }
@@ -205,7 +205,7 @@ std::vector<Variation> variations_of(const ConfigNode& ablation, ConfigErrors& e
     else if (errors.size() == before)
       all = product(p.grid, errors);
   }
-  if (ablation.kind == NodeKind::scalar || (ablation.kind == NodeKind::list && all.empty()))
+  if (ablation.is_scalar() || (ablation.kind == NodeKind::list && all.empty()))
     errors.push_back({ablation.where,
                       "\"ablation\" must be a list of variations, as in \"ablation: [{name: coarse, set: "
                       "{methods.pcs.hessian: coarse}}]\", or a map with a \"grid\""});

@@ -13,14 +13,6 @@
 namespace drape {
 namespace {
 
-ConfigNode scalar_node(std::string text, bool quoted) {
-  ConfigNode node;
-  node.kind = ConfigNode::Kind::scalar;
-  node.scalar = std::move(text);
-  node.quoted = quoted;
-  return node;
-}
-
 /// Whether every YAML reader reads the unquoted text as a text.
 bool plainly_text(const std::string& text) {
   static const std::set<std::string> taken = {"true", "false", "null", "yes", "no", "on", "off"};
@@ -32,13 +24,6 @@ bool plainly_text(const std::string& text) {
   const auto begins = [](unsigned char c) { return std::isalpha(c) || c == '_' || c == '/'; };
   return !text.empty() && begins(static_cast<unsigned char>(text[0])) && text.back() != ' ' &&
          std::all_of(text.begin(), text.end(), harmless) && !taken.count(lower);
-}
-
-/// Whether the text looks like a number or a word and has no YAML syntax in it.
-bool plainly_scalar(const std::string& text) {
-  const auto is_word = [](unsigned char c) { return std::isalnum(c); };
-  const auto harmless = [&](unsigned char c) { return is_word(c) || c == '.' || c == '+' || c == '-'; };
-  return std::any_of(text.begin(), text.end(), is_word) && std::all_of(text.begin(), text.end(), harmless);
 }
 
 std::string in_quotes(const std::string& text) {
@@ -109,7 +94,7 @@ std::vector<std::size_t> ConfigNode::indices_of(const std::string& word) const {
   }
   std::vector<std::size_t> named;
   for (std::size_t i = 0; i < items.size(); ++i) {
-    bool is_named = items[i].kind == Kind::scalar && items[i].scalar == word;
+    bool is_named = items[i].is_scalar() && items[i].scalar == word;
     for (const char* key : {"type", "name"})
       if (const ConfigNode* own = items[i].find(key); own && own->scalar == word) is_named = true;
     if (is_named) named.push_back(i);
@@ -145,7 +130,7 @@ const std::string& ConfigNode::plugin_name() const {
 }
 
 ConfigNode ConfigNode::as_map(const std::string& key) const {
-  if (kind != Kind::scalar) return *this;
+  if (!is_scalar()) return *this;
   ConfigNode map;
   map.where = where;
   map.add(key, *this);
@@ -181,8 +166,7 @@ void ConfigNode::name_keys(const std::string& own) {
 
 std::string ConfigNode::one_line() const {
   if (kind == Kind::null) return "null";
-  if (kind == Kind::scalar)
-    return plainly_text(scalar) || (!quoted && plainly_scalar(scalar)) ? scalar : in_quotes(scalar);
+  if (is_scalar()) return kind != Kind::text || plainly_text(scalar) ? scalar : in_quotes(scalar);
   std::string text;
   for (const ConfigNode& item : items) text += (text.empty() ? "" : ", ") + item.one_line();
   for (const auto& [key, value] : entries)
@@ -192,10 +176,20 @@ std::string ConfigNode::one_line() const {
 
 std::string ConfigNode::shown() const {
   if (kind == Kind::null) return "empty";
-  if (kind != Kind::scalar) return kind == Kind::list ? "a list" : "a map";
-  const bool number = !quoted && parse_number(scalar);
+  if (!is_scalar()) return kind == Kind::list ? "a list" : "a map";
   const std::string text = excerpt(scalar);
-  return number ? text : (quoted ? "the text \"" : "\"") + text + "\"";
+  const bool looks_otherwise = kind == Kind::text && plain(scalar).kind != Kind::text;
+  return is_number() ? text : (looks_otherwise ? "the text \"" : "\"") + text + "\"";
+}
+
+ConfigNode ConfigNode::plain(std::string text) {
+  const std::optional<double> number = parse_number(text);
+  const bool boolean = text == "true" || text == "false";
+  const Kind kind = parse_integer(text) ? Kind::integer
+                    : number            ? Kind::number
+                    : boolean           ? Kind::boolean
+                                        : Kind::text;
+  return ConfigNode(kind, std::move(text), number.value_or(0));
 }
 
 ConfigNode ConfigNode::of(double value) {
@@ -203,16 +197,16 @@ ConfigNode ConfigNode::of(double value) {
   // YAML 1.1, as in Python, reads "1e-05" as a text and "1.0e-05" as a number.
   const size_t exponent = digits.find('e');
   if (exponent != std::string::npos && digits.find('.') == std::string::npos) digits.insert(exponent, ".0");
-  return scalar_node(digits, false);
+  return ConfigNode(Kind::number, std::move(digits), value);
 }
 
-ConfigNode ConfigNode::of(int value) { return scalar_node(std::to_string(value), false); }
-ConfigNode ConfigNode::of(bool value) { return scalar_node(value ? "true" : "false", false); }
-ConfigNode ConfigNode::of(const std::string& value) { return scalar_node(value, true); }
+ConfigNode ConfigNode::of(int value) { return plain(std::to_string(value)); }
+ConfigNode ConfigNode::of(bool value) { return plain(value ? "true" : "false"); }
+ConfigNode ConfigNode::of(const std::string& value) { return ConfigNode(Kind::text, value); }
 
 Location location_in_text(const ConfigNode& scalar, std::size_t at) {
   Location where = scalar.where;
-  if (scalar.kind != ConfigNode::Kind::scalar || where.line <= 0 || where.column <= 0) return where;
+  if (!scalar.is_scalar() || where.line <= 0 || where.column <= 0) return where;
   std::string file;
   try {
     file = read_file(where.file);

@@ -18,21 +18,25 @@ struct Location {
   std::string text() const;  ///< "file:line:column", without the parts that are unknown; the key if all are
 };
 
-/// A node of a config: a scalar's text, a list or a map, with its location. It hides the syntax of the file;
-/// the reader of a node decides its type.
+/// A node of a config: a scalar, a list or a map, with its location. It hides the syntax of the file.
 struct ConfigNode {
-  enum class Kind { null, scalar, list, map };
+  enum class Kind { null, boolean, integer, number, text, list, map };
 
   ConfigNode() {}  // not defaulted: the type of `entries` is incomplete here
+  explicit ConfigNode(Kind kind, std::string scalar = "", double number = 0)
+      : kind(kind), scalar(std::move(scalar)), number(number) {}
 
   Kind kind = Kind::null;
   Location where;
-  std::string scalar;             ///< scalar only
-  bool quoted = false;            ///< scalar only: a text even if it looks like a number
+  std::string scalar;             ///< scalar only: as written
+  double number = 0;              ///< integer or number only; to the bit
   bool names_file = false;        ///< written from a parameter that is a path, or an item of one
   std::vector<ConfigNode> items;  ///< list only
   std::vector<std::pair<std::string, ConfigNode>> entries;  ///< map only, in order of writing
   std::vector<Location> key_locations;                      ///< map only, one per entry
+
+  bool is_number() const { return kind == Kind::integer || kind == Kind::number; }
+  bool is_scalar() const { return is_number() || kind == Kind::boolean || kind == Kind::text; }
 
   const ConfigNode* find(const std::string& key) const;  ///< map entry or null
   /// The place of a map's entry; without the entry, the map's own.
@@ -58,7 +62,9 @@ struct ConfigNode {
   std::string one_line() const;  ///< as YAML; ambiguous texts are quoted
   std::string shown() const;     ///< for "must be …, not …": a scalar's text, or what else it is
 
-  static ConfigNode of(double value);  ///< shortest text that reads back the same
+  /// An integer that an int can hold, a number, true, false, or else a text.
+  static ConfigNode plain(std::string text);
+  static ConfigNode of(double value);  ///< a number, even a whole one; its text reads back the same
   static ConfigNode of(int value);
   static ConfigNode of(bool value);
   static ConfigNode of(const std::string& value);

@@ -35,20 +35,14 @@ namespace {
 
 /// What a scalar must be if it is not, else "".
 std::string scalar_fault(const ConfigNode& node, const Parameter& p) {
-  const bool plain = node.kind == NodeKind::scalar && !node.quoted;
-  if (p.type.kind == ValueKind::integer) {
-    const auto value = plain ? parse_integer(node.scalar) : std::nullopt;
-    return value ? number_fault(p, *value) : "an integer";
-  }
+  if (p.type.kind == ValueKind::integer)
+    return node.is_number() && parse_integer(node.scalar) ? number_fault(p, node.number) : "an integer";
   if (p.type.kind == ValueKind::number) {
-    if (plain && (node.scalar == ".nan" || node.scalar == ".inf" || node.scalar == "-.inf"))
-      return "a finite number";
-    const auto value = plain ? parse_number(node.scalar) : std::nullopt;
-    return value ? number_fault(p, *value) : "a number";
+    if (node.is_number()) return number_fault(p, node.number);
+    return is_one_of(node.scalar, {".nan", ".inf", "-.inf"}) ? "a finite number" : "a number";
   }
-  if (p.type.kind == ValueKind::boolean)
-    return plain && (node.scalar == "true" || node.scalar == "false") ? "" : "true or false";
-  if (node.kind != NodeKind::scalar) return p.choices.empty() ? "text" : quoted_choice(p.choices);
+  if (p.type.kind == ValueKind::boolean) return node.kind == NodeKind::boolean ? "" : "true or false";
+  if (!node.is_scalar()) return p.choices.empty() ? "text" : quoted_choice(p.choices);
   return p.choices.empty() || is_one_of(node.scalar, p.choices) ? "" : quoted_choice(p.choices);
 }
 
@@ -56,7 +50,7 @@ void check_scalar(const std::string& label, const ConfigNode& node, const Parame
                   ConfigErrors& errors) {
   const std::string fault = scalar_fault(node, p);
   if (fault.empty()) return;
-  const std::string hint = node.kind == NodeKind::scalar ? did_you_mean(node.scalar, p.choices, "") : "";
+  const std::string hint = node.is_scalar() ? did_you_mean(node.scalar, p.choices, "") : "";
   errors.push_back({node.where, label + " must be " + fault + ", not " + node.shown() +
                                     (hint.empty() ? "" : "; " + hint)});
 }
@@ -117,7 +111,7 @@ void check_named_constants(const ConfigNode& node, const Parameter& p, ConfigErr
       errors.push_back({number.where, label + " has no \"value\""});
     else
       check_scalar(label, *value, p, errors);
-    if (unit && unit->kind != NodeKind::scalar)
+    if (unit && !unit->is_scalar())
       errors.push_back({unit->where, "the unit of " + label + " must be text, as in N/m"});
   }
 }
@@ -149,7 +143,7 @@ ConfigNode expand_shorthand(const ConfigNode& node, const Parameter& p) {
 ConfigNode relative_path(const ConfigNode& node) {
   ConfigNode path = node;
   for (ConfigNode& item : path.items) item = relative_path(item);
-  if (node.kind == NodeKind::scalar && !node.scalar.empty() && node.where.line > 0)
+  if (node.is_scalar() && !node.scalar.empty() && node.where.line > 0)
     path.scalar = (std::filesystem::path(node.where.file).parent_path() / node.scalar).string();
   return path;
 }
@@ -184,7 +178,7 @@ void read_parameter(const Parameter& p, void* object, const ConfigNode& written,
 
 namespace parameter_detail {
 
-void convert(const ConfigNode& node, double& value) { value = parse_number(node.scalar).value(); }
+void convert(const ConfigNode& node, double& value) { value = node.number; }
 void convert(const ConfigNode& node, int& value) { value = parse_integer(node.scalar).value(); }
 void convert(const ConfigNode& node, bool& value) { value = node.scalar == "true"; }
 void convert(const ConfigNode& node, std::string& value) { value = node.scalar; }
@@ -200,8 +194,7 @@ void convert(const ConfigNode& node, NamedConstants& values) {
 }
 
 ConfigNode to_node(const NamedConstants& values) {
-  ConfigNode map;
-  map.kind = NodeKind::map;
+  ConfigNode map(NodeKind::map);
   for (const NamedConstant& own : values.all) {
     ConfigNode number = ConfigNode::of(own.value);
     if (!own.unit.empty()) {

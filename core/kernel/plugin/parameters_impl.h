@@ -65,8 +65,7 @@ double* number(std::optional<T>& value, std::size_t k) {
 
 template <class Range, class Write>
 ConfigNode list_node(const Range& values, Write write) {
-  ConfigNode node;
-  node.kind = ConfigNode::Kind::list;
+  ConfigNode node(ConfigNode::Kind::list);
   for (const auto& value : values) node.items.push_back(write(value));
   return node;
 }

@@ -66,7 +66,7 @@ Location location_of(const ConfigNode& written, const std::string& path,
 const RegistryEntry* find_plugin(const Registry& registry, const std::string& kind, const ConfigNode& node,
                                  ConfigErrors& errors) {
   const ConfigNode* type = node.kind == ConfigNode::Kind::map ? node.find("type") : &node;
-  if (!type || type->kind != ConfigNode::Kind::scalar) {
+  if (!type || !type->is_scalar()) {
     errors.push_back({type ? type->where : node.where, "expected the name of a plugin of kind " + kind +
                                                            ", or a map with its name as \"type\""});
     return nullptr;

@@ -96,8 +96,7 @@ const Parameter* parameter_named(const Schema& schema, const std::string& name) 
 }
 
 ConfigNode Schema::write(const void* object) const {
-  ConfigNode map;
-  map.kind = NodeKind::map;
+  ConfigNode map(NodeKind::map);
   for (const Parameter& p : parameters)
     map.add(p.name, p.path ? absolute_path(p.write(object)) : p.write(object));
   return map;

@@ -81,7 +81,7 @@ class LawReader {
       const std::string path = "where." + name;
       if (!is_name(name))
         refuse(path, "\"" + excerpt(name) + "\" must be a letter, then letters, digits and underscores");
-      else if (node.kind != ConfigNode::Kind::scalar)
+      else if (!node.is_scalar())
         refuse(path, "\"" + excerpt(name) + "\" must be a formula in quotes");
       else if (is_free(path, name, false))
         read_part(path, name, node.scalar, false);

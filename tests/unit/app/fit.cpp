@@ -116,7 +116,7 @@ TEST_CASE("fit: a number is scaled once, whichever way it is named; what is no n
   CHECK(keys_of("", {"material.thicknes"}).starts_with("material.thickness="));
   CHECK(keys_of("", {"nonsense"}) ==
         "--by: the experiment has no number \"nonsense\"; `drape describe experiment` lists its keys");
-  CHECK(keys_of("", {"cloth.shape"}) == "--by: \"cloth.shape\" is the text \"square\", not a number");
+  CHECK(keys_of("", {"cloth.shape"}) == "--by: \"cloth.shape\" is \"square\", not a number");
   CHECK(keys_of("", {"material.warp_bending"}) ==
         "--by: \"material.warp_bending\" is not set, so there is nothing to scale; give it a value with "
         "--set");

@@ -40,8 +40,7 @@ TEST_CASE("aliases, and null, quoted and tagged scalars are told apart") {
       node_of_yaml("a:\nb: ~\nc: null\nd: \"\"\ne: 'null'\ng: !!str 5\nh: |\n  text\ni: &i {r: 1}\nj: *i\n");
   for (const char* key : {"a", "b", "c"}) CHECK(node.find(key)->kind == ConfigNode::Kind::null);
   for (const char* key : {"d", "e", "g", "h"}) {
-    CHECK(node.find(key)->kind == ConfigNode::Kind::scalar);
-    CHECK(node.find(key)->quoted);
+    CHECK(node.find(key)->kind == ConfigNode::Kind::text);
   }
   CHECK(node.find("h")->scalar == "text\n");
   CHECK(node.find("j")->one_line() == "{r: 1}");
