@@ -69,7 +69,7 @@ TEST_CASE("Numbers have bounds with their default between them, and are refused 
       INFO(number);
       const ConfigNode value = ConfigNode::plain(number);
       ConfigNode items(ConfigNode::Kind::list);  // each component of a list
-      items.items.assign(p.size ? p.size : 1, value);
+      items.items.assign(p.type.size ? p.type.size : 1, value);
       CHECK_THAT(refusal(schema, p.name, p.type.is_list() ? items : value),
                  Catch::Contains("\"" + p.name + "\" must be "));
     }

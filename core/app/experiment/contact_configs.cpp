@@ -68,10 +68,16 @@ bool has_friction(const RegistryEntry& model) {
 void check_friction(const Experiment& e, const std::vector<const RegistryEntry*>& models,
                     ConfigErrors& errors) {
   const auto has = [](const RegistryEntry* model) { return !model || has_friction(*model); };
-  if (e.parameters.friction == 0 || std::ranges::any_of(models, has)) return;
+  const auto& keys = e.parameters.schedule.keys;
+  const bool is_scheduled = std::ranges::find(keys, "friction", &ScheduleKey::parameter) != keys.end();
+  if ((e.parameters.friction == 0 && !is_scheduled) || std::ranges::any_of(models, has)) return;
+  std::vector<std::string> names;
+  for (const RegistryEntry* model : e.registry->of_kind("contact"))
+    if (has_friction(*model)) names.push_back(model->name);
   const Location& contact = e.parameters.contact.where;
-  errors.push_back(
-      {contact.line > 0 ? contact : e.location_of("friction"), refusal_of_friction(*e.registry)});
+  errors.push_back({contact.line > 0 ? contact : e.location_of("friction"),
+                    "no contact model of this experiment has friction; set \"friction\" to 0" +
+                        (names.empty() ? "" : ", or add " + quoted_choice(names) + " to \"contact\"")});
 }
 
 /// Each model sees every pair of the cloth and all of its obstacles, so a second one would count them twice.
@@ -101,8 +107,8 @@ void check_names(const std::vector<ConfigNode>& obstacles, ConfigErrors& errors)
 
 /// Gives each obstacle to the first model that knows it.
 void share_obstacles(const Registry& registry, const std::vector<ConfigNode>& obstacles,
-                     const std::vector<const RegistryEntry*>& models, std::vector<ContactConfig>& configs,
-                     ConfigErrors& errors) {
+                     const std::vector<const RegistryEntry*>& models,
+                     std::vector<std::vector<std::size_t>>& obstacles_of, ConfigErrors& errors) {
   for (std::size_t i = 0; i < obstacles.size(); ++i) {
     const auto takes = std::ranges::find_if(models, [&](const RegistryEntry* model) {
       return model && !known_key(*model, obstacles[i]).empty();
@@ -116,52 +122,43 @@ void share_obstacles(const Registry& registry, const std::vector<ConfigNode>& ob
                                                 known_key(**takes, obstacles[i]) + "\" and \"" +
                                                 known_key(**other, obstacles[i]) + "\"; keep one"});
     else if (takes != models.end())
-      configs[takes - models.begin()].obstacles.push_back(i);
+      obstacles_of[takes - models.begin()].push_back(i);
     else if (std::ranges::find(models, nullptr) == models.end())  // else a model's name is wrong
       errors.push_back({obstacles[i].where, refusal(registry, obstacles[i], i)});
   }
 }
 
-/// The section of a contact model as its schema has it: with its obstacles and the experiment's friction.
-ConfigNode completed_section(const Experiment& e, const ConfigNode& written, const RegistryEntry* model,
-                             const ContactConfig& config, ConfigErrors& errors) {
-  ConfigNode section = written.as_map("type");
-  if (!model) return section;
-  for (const Parameter& shared : model->schema.parameters) {
-    if (!shared.from_experiment) continue;
-    while (const std::optional<Location> where = section.remove(shared.name))
-      errors.push_back({*where, "\"" + shared.name + "\" in " + model->name +
-                                    " belongs at the top of the experiment, once for all contact models"});
-    ConfigNode value = ConfigNode::of(e.parameters.friction);
-    if (shared.section) {
-      value = ConfigNode(NodeKind::list);
-      for (const std::size_t i : config.obstacles) value.items.push_back(e.parameters.obstacles[i]);
-    }
-    section.add(shared.name, value);
-  }
-  return section;
-}
-
 /// Takes out of a model's resolved section what is the experiment's: its obstacles go back to their places.
-void take_shared(const RegistryEntry& model, const ContactConfig& config, ConfigNode& section,
+void take_shared(const RegistryEntry& model, const std::vector<std::size_t>& own, ConfigNode& section,
                  std::vector<ConfigNode>& obstacles) {
   for (const Parameter& shared : model.schema.parameters) {
     if (!shared.from_experiment) continue;
     const ConfigNode* list = shared.section ? section.find(shared.name) : nullptr;
-    for (std::size_t k = 0; list && k < list->items.size(); ++k)
-      obstacles[config.obstacles[k]] = list->items[k];
+    for (std::size_t k = 0; list && k < list->items.size(); ++k) obstacles[own[k]] = list->items[k];
     section.remove(shared.name);
   }
 }
 
 }  // namespace
 
-std::string refusal_of_friction(const Registry& registry) {
-  std::vector<std::string> names;
-  for (const RegistryEntry* model : registry.of_kind("contact"))
-    if (has_friction(*model)) names.push_back(model->name);
-  return "no contact model of this experiment has friction; set \"friction\" to 0" +
-         (names.empty() ? "" : ", or add " + quoted_choice(names) + " to \"contact\"");
+ConfigNode contact_section(const Experiment& e, const ExperimentParameters& p, std::size_t k,
+                           ConfigErrors& errors) {
+  ConfigNode section = contact_sections(p)[k].as_map("type");
+  const RegistryEntry* model = e.registry->find("contact", section.plugin_name());
+  if (!model) return section;
+  for (const Parameter& shared : model->schema.parameters) {
+    if (!shared.from_experiment) continue;
+    while (const std::optional<Location> where = section.remove(shared.name))
+      errors.push_back({*where, "\"" + shared.name + "\" in " + model->name +
+                                    " belongs at the top of the experiment, once for all contact models"});
+    ConfigNode value = ConfigNode::of(p.friction);
+    if (shared.section) {
+      value = ConfigNode(NodeKind::list);
+      for (const std::size_t i : e.obstacles_of[k]) value.items.push_back(p.obstacles[i]);
+    }
+    section.add(shared.name, value);
+  }
+  return section;
 }
 
 void make_contacts(Experiment& e, ConfigErrors& errors) {
@@ -169,7 +166,7 @@ void make_contacts(Experiment& e, ConfigErrors& errors) {
   const std::vector<ConfigNode> written = contact_sections(p);
   std::vector<const RegistryEntry*> models;
   for (const ConfigNode& node : written) models.push_back(e.registry->find("contact", node.plugin_name()));
-  e.contact_configs.resize(written.size());
+  e.obstacles_of.resize(written.size());
   check_models(written, models, errors);
   constexpr std::size_t most_obstacles = 10'000;
   if (p.obstacles.size() > most_obstacles)
@@ -179,17 +176,14 @@ void make_contacts(Experiment& e, ConfigErrors& errors) {
                                          "; a mesh can hold many bodies"});
   check_names(p.obstacles, errors);
   check_friction(e, models, errors);
-  share_obstacles(*e.registry, p.obstacles, models, e.contact_configs, errors);
+  share_obstacles(*e.registry, p.obstacles, models, e.obstacles_of, errors);
   ConfigNode sections(NodeKind::list), obstacles(NodeKind::list);
   obstacles.items = p.obstacles;
   for (std::size_t k = 0; k < written.size(); ++k) {
-    ContactConfig& config = e.contact_configs[k];
-    const ConfigNode section = completed_section(e, written[k], models[k], config, errors);
     ConfigNode& resolved = sections.items.emplace_back();
-    config.parameters = read_plugin_parameters(*e.registry, "contact", section, errors, &resolved);
-    if (models[k]) take_shared(*models[k], config, resolved, obstacles.items);
     e.contacts.push_back(
-        std::static_pointer_cast<ContactModel>(make_plugin(config.parameters, locate_in(section), errors)));
+        make_from<ContactModel>(*e.registry, contact_section(e, p, k, errors), errors, &resolved));
+    if (models[k]) take_shared(*models[k], e.obstacles_of[k], resolved, obstacles.items);
   }
   const bool is_one = p.contact.kind != NodeKind::list && !sections.items.empty();
   set_path(e.resolved, "contact", is_one ? sections.items[0] : sections);

@@ -32,8 +32,8 @@ std::string type_text(const Parameter& p) {
   const bool list = p.type.is_list();
   std::string type = p.type.text();
   if (!p.plugin_kind.empty()) type = (list ? "list of plugins, " : "plugin, ") + p.plugin_kind;
-  if (list && p.size) type = std::to_string(p.size) + type.substr(std::string("list of").size());
-  return type + (p.nullable ? " or null" : "");
+  if (list && p.type.size) type = std::to_string(p.type.size) + type.substr(std::string("list of").size());
+  return type + (p.type.nullable ? " or null" : "");
 }
 
 /// Every parameter in order; a section is followed by its parameters, unless it is the shared one.

@@ -4,10 +4,9 @@
 #include <cmath>
 
 #include "core/app/experiment/experiment.h"
-#include "core/app/experiment/read_experiment.h"
+#include "core/app/experiment/experiment_path.h"
 #include "core/kernel/plugin/parameters.h"
 #include "core/kernel/plugin/placement.h"
-#include "core/kernel/plugin/registry.h"
 
 namespace drape {
 
@@ -29,26 +28,6 @@ ConfigNode list_of(const std::vector<double>& values) {
   for (const double value : values) list.items.push_back(ConfigNode::of(value));
   return list;
 }
-
-/// Makes the keys of a dressing schedule.
-class KeyMaker {
- public:
-  explicit KeyMaker(Experiment& e) : e_(e) {}
-
-  void add(const std::string& parameter, std::vector<double> times, const std::vector<double>& values,
-           KeyInterpolation interpolation = KeyInterpolation::linear) {
-    ScheduleKey key;
-    key.parameter = parameter;
-    key.times = std::move(times);
-    key.written = list_of(values);
-    key.written.where = e_.location_of("dress");
-    key.interpolation = interpolation;
-    e_.parameters.schedule.keys.push_back(std::move(key));
-  }
-
- private:
-  Experiment& e_;
-};
 
 }  // namespace
 
@@ -73,20 +52,6 @@ void DressParameters::declare(Declaration<DressParameters>& d) {
         "stretched beyond this once it is sewn; 0.5 is by half")
       .unit("1")
       .between(0.01, 10);
-}
-
-const Schema& scheduled_schema() {
-  static const Schema schema = [] {
-    Declaration<DressParameters> dress;
-    DressParameters::declare(dress);
-    dress.add("placed", &DressParameters::placed).between(0, 1);
-    dress.add("loads", &DressParameters::loads).between(0, 1);
-    Schema all = experiment_schema();
-    for (Parameter& p : all.parameters)
-      if (p.name == "dress") p.section = std::make_shared<const Schema>(std::move(dress.schema));
-    return all;
-  }();
-  return schema;
 }
 
 void apply_dress(ConfigNode& experiment, ConfigErrors& errors) {
@@ -144,24 +109,28 @@ void make_dressing_schedule(Experiment& e, ConfigErrors& errors) {
   dress.tightening = std::ranges::any_of(e.energies, is_limit) ? limit_increments : 0;
   const double grown = dress.growth, sewn = grown + dress.sewing, whole = sewn + dress.tightening + 1;
   const std::string body = "obstacles." + dress.obstacle;
-  KeyMaker keys(e);
-  keys.add(body + ".contraction", {0}, {0});
-  keys.add(body + ".grown", {0, grown}, {0, 1});
+  const auto add = [&](const std::string& parameter, const std::vector<double>& times,
+                       const std::vector<double>& values,
+                       KeyInterpolation interpolation = KeyInterpolation::linear) {
+    ConfigNode written = list_of(values);
+    written.where = e.location_of("dress");
+    p.schedule.keys.push_back({parameter, times, std::move(written), interpolation, {}, {}, 0});
+  };
+  add(body + ".contraction", {0}, {0});
+  add(body + ".grown", {0, grown}, {0, 1});
   std::vector<double> times = {0}, weights = {first_weight};
   for (int k = 0; k <= dress.sewing; ++k) {
     times.push_back(grown + k);
     weights.push_back(
         k == dress.sewing ? 0 : first_weight * std::pow(least_weight, k / std::max(1.0, dress.sewing - 1.0)));
   }
-  keys.add("dress.placed", times, weights);
-  keys.add("dress.loads", {0, whole}, {0, 1}, KeyInterpolation::step);
-  if (p.friction > 0) keys.add("friction", {0, whole}, {0, p.friction}, KeyInterpolation::step);
+  add("dress.placed", times, weights);
+  add("dress.loads", {0, whole}, {0, 1}, KeyInterpolation::step);
+  if (p.friction > 0) add("friction", {0, whole}, {0, p.friction}, KeyInterpolation::step);
   for (std::size_t k = 0; k < e.energies.size(); ++k) {
     if (!is_limit(e.energies[k])) continue;
-    const PluginParameters own = parameters_of(e, LoadPart::energies, k);
-    const double limit = *DeclaredNumbers::find(own.entry->schema, own.values.get(), {"limit"})
-                              .value()
-                              .at(own.values.get(), 0);
+    const std::string path = "energies." + std::to_string(k) + ".limit";
+    const double limit = value_at(e.resolved, path)->number;
     std::vector<double> limit_times = {0}, limits = {loosest_limit};  // geometric above 1
     for (int i = 0; i <= dress.tightening; ++i) {
       limit_times.push_back(sewn + i);
@@ -169,7 +138,7 @@ void make_dressing_schedule(Experiment& e, ConfigErrors& errors) {
                                std::pow((limit - 1) / (loosest_limit - 1), double(i) / dress.tightening));
     }
     limits.back() = limit;
-    keys.add("energies." + std::to_string(k) + ".limit", limit_times, limits);
+    add(path, limit_times, limits);
   }
   p.schedule.steps = static_cast<int>(whole);
 }

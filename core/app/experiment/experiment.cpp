@@ -209,8 +209,7 @@ std::optional<double> newton_number(const ConfigNode& config, const std::string&
 
 std::vector<std::size_t> Experiment::obstacle_order() const {
   std::vector<std::size_t> order;
-  for (const ContactConfig& config : contact_configs)
-    order.insert(order.end(), config.obstacles.begin(), config.obstacles.end());
+  for (const std::vector<std::size_t>& own : obstacles_of) order.insert(order.end(), own.begin(), own.end());
   return order;
 }
 

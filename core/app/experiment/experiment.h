@@ -17,28 +17,20 @@
 
 namespace drape {
 
-/// Everything that one contact model is made from: its own section of an experiment's `contact`, and what it
-/// takes of `obstacles` and `friction`.
-///
-/// An experiment describes its obstacles once, in one list, and friction once. Contact models declare what
-/// they take of it (Parameter::from_experiment): `friction` goes to every model that declares it, an obstacle
-/// to the first model that knows one of its keys (Parameter::identifies_item), such as `shape` or `mesh`. A
-/// plugin sees a single struct of parameters and no experiment.
-struct ContactConfig {
-  PluginParameters parameters;
-  std::vector<std::size_t> obstacles;  ///< its obstacles' indices in the experiment's list, ascending
-};
-
 /// A validated experiment with its plugins, before any level is built.
 struct Experiment {
   ExperimentParameters parameters;
   ConfigNode source;    ///< as written, with locations
   ConfigNode resolved;  ///< with every parameter of every plugin in it
   std::vector<NamedEnergy> energies;
-  std::vector<PluginParameters> energy_parameters;  ///< of each
   std::shared_ptr<Refiner> refiner;
   std::vector<std::shared_ptr<ContactModel>> contacts;
-  std::vector<ContactConfig> contact_configs;  ///< of each
+  /// Of each contact model, its obstacles' indices in the experiment's list, ascending. An experiment
+  /// describes its obstacles once, in one list, and friction once. Contact models declare what they take of
+  /// it (Parameter::from_experiment): `friction` goes to every model that declares it, an obstacle to the
+  /// first model that knows one of its keys (Parameter::identifies_item), such as `shape` or `mesh`. A plugin
+  /// sees a single struct of parameters and no experiment.
+  std::vector<std::vector<std::size_t>> obstacles_of;
   std::vector<std::pair<std::string, std::shared_ptr<Solver>>> methods;
   std::vector<std::pair<std::string, std::shared_ptr<Metric>>> metrics;
   const Registry* registry = nullptr;  ///< of the plugins
@@ -55,6 +47,19 @@ struct Experiment {
   std::vector<std::size_t> obstacle_order() const;
   std::vector<std::string> obstacle_names() const;
 };
+
+/// What the models of all levels are made from under one load. Shares with other loads what is equal.
+struct Load {
+  std::vector<double> values;                              ///< of all keys, one after another
+  std::shared_ptr<const ExperimentParameters> parameters;  ///< for material, pins, handles and `dress`
+  std::vector<NamedEnergy> energies;                       ///< handles last, if a scene has made them
+  std::vector<std::shared_ptr<ContactModel>> contacts;
+};
+
+/// Makes anew what differs from `load` with these values of the keys: what the experiment's source gives with
+/// the values in it. Returns the keys whose values differ. Appends an error for every value that is refused.
+std::vector<const ScheduleKey*> set_values(const Experiment& experiment, std::vector<double> values,
+                                           Load& load, ConfigErrors& errors);
 
 /// A number of the method's `newton` in a resolved or saved config; empty if there is none.
 std::optional<double> newton_number(const ConfigNode& config, const std::string& method, const char* key);

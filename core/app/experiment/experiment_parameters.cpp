@@ -302,8 +302,7 @@ void ExperimentParameters::declare(Declaration<ExperimentParameters>& d) {
   d.add("refiner", &ExperimentParameters::refiner, "refinement scheme; loop by default").plugin("refiner");
   d.add("contact", &ExperimentParameters::contact,
         "contact model or a list of them; without the key, contact is not modelled")
-      .plugin("contact")
-      .or_list();
+      .plugin("contact");
   d.add("obstacles", &ExperimentParameters::obstacles,
         "what the cloth collides with; each goes to the contact model that takes its keys, which `drape "
         "describe` of the model lists");

@@ -7,13 +7,15 @@
 
 #include "core/app/experiment/dress.h"
 #include "core/kernel/interfaces/material.h"
+#include "core/kernel/plugin/config_node.h"
 #include "core/kernel/plugin/declaration.h"
-#include "core/kernel/plugin/declared_numbers.h"
 #include "core/numerics/mesh/grain.h"
 #include "core/numerics/mesh_files/file_coordinates.h"
 #include "core/numerics/step/newton_parameters.h"
 
 namespace drape {
+
+class Schema;
 
 /// One closed outline of a polygonal cloth.
 struct LoopParameters {
@@ -146,17 +148,6 @@ struct HandleParameters : VertexSelection {
 /// How a keyed value goes from one time to the next.
 enum class KeyInterpolation { linear, log, step };
 
-/// What load stepping makes anew: parts of the experiment, each of which has an index among its like.
-enum class LoadPart { material, pins, handles, energies, contact, dress };
-
-/// The declared numbers that a schedule's key changes, in the struct of their part: the parameters of an
-/// energy or a contact model, otherwise ExperimentParameters.
-struct KeyTarget {
-  LoadPart part = LoadPart::material;
-  std::size_t item = 0;
-  DeclaredNumbers numbers;
-};
-
 /// One parameter of the experiment over pseudo-time.
 struct ScheduleKey {
   std::string parameter;
@@ -167,8 +158,10 @@ struct ScheduleKey {
 
   // Of a valid experiment (read_keys):
   std::vector<std::vector<double>> values;  ///< at each of the times, equally many numbers
-  std::vector<KeyTarget> targets;           ///< one, but for friction one in every contact model that has it
+  std::string section;                      ///< of the experiment: the path's first word
+  std::size_t item = 0;                     ///< of that section, if it is a list
   std::vector<double> at(double time) const;
+  bool is_of_contact() const;
 };
 
 /// Load stepping: parameters that change in increments while a level is solved.

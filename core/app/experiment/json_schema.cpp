@@ -55,15 +55,10 @@ Json parameter_schema(const Parameter& p, const Registry* registry) {
   Json json = item_schema(p, registry);
   if (p.type.is_list()) {
     json = {{"type", "array"}, {"items", json}};
-    if (p.size) {
-      json["minItems"] = p.size;
-      json["maxItems"] = p.size;
-    }
-  } else if (p.or_list) {
-    json = {{"anyOf", Json::array({json, Json{{"type", "array"}, {"items", json}}})}};
+    if (p.type.size) json.update({{"minItems", p.type.size}, {"maxItems", p.type.size}});
   }
   if (!p.shorthand_key.empty()) json = {{"anyOf", Json::array({json, Json{{"type", "string"}}})}};
-  if (p.nullable) json = {{"anyOf", Json::array({json, Json{{"type", "null"}}})}};
+  if (p.type.nullable) json = {{"anyOf", Json::array({json, Json{{"type", "null"}}})}};
   std::string description = p.description;
   if (!p.unit.empty() && p.unit != "1") description += (description.empty() ? "[" : " [") + p.unit + "]";
   if (!description.empty()) json["description"] = description;
@@ -118,6 +113,9 @@ Json json_schema(const Schema& schema, const Registry* registry) {
 Json experiment_json_schema(const Registry& registry) {
   Json schema = json_schema(experiment_schema(), &registry);
   schema["properties"]["methods"].update(named_plugins_schema("solver", registry));
+  Json& contact = schema["properties"]["contact"]["anyOf"];  // of one model; a list of them is accepted too
+  const Json one = {{"anyOf", contact}};
+  contact = Json::array({one, Json{{"type", "array"}, {"items", one}}});
   schema["properties"]["obstacles"].update(obstacles_schema(registry));
   return schema;
 }

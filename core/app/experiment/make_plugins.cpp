@@ -16,11 +16,13 @@ namespace drape {
 
 namespace {
 
-/// A solver's `newton`, if it is of the experiment's type, else null.
-const Parameter* newton_of(const Schema& solver) {
+/// Whether a solver has the experiment's `newton`, or another of its own.
+bool has_newton(const Schema& solver) {
+  static const Schema common = schema_of<NewtonParameters>();
   const Parameter* newton = parameter_named(solver, "newton");
-  const Schema* section = newton ? newton->section.get() : nullptr;
-  return section && section->type && *section->type == typeid(NewtonParameters) ? newton : nullptr;
+  return newton && newton->section &&
+         std::ranges::equal(newton->section->parameters, common.parameters, {}, &Parameter::name,
+                            &Parameter::name);
 }
 
 /// Gives a solver's `newton` what the experiment's own sets and the solver's does not.
@@ -144,11 +146,11 @@ void make_methods(Experiment& e, ConfigErrors& errors) {
       errors.push_back(
           {written.where, "method \"" + excerpt(name) + "\" is given twice; rename one of them"});
     const RegistryEntry* solver_entry = e.registry->find("solver", node.plugin_name());
-    if (common_is_valid && solver_entry && newton_of(solver_entry->schema)) take_newton(*common, node);
-    const PluginParameters own = read_plugin_parameters(*e.registry, "solver", node, errors, &resolved);
-    if (own.values && newton_of(own.entry->schema)) leave_out_shared(*e.resolved.find("newton"), resolved);
-    if (auto solver = make_plugin(own, locate_in(node), errors))
-      e.methods.emplace_back(name, std::static_pointer_cast<Solver>(solver));
+    if (common_is_valid && solver_entry && has_newton(solver_entry->schema)) take_newton(*common, node);
+    if (auto solver = make_from<Solver>(*e.registry, node, errors, &resolved)) {
+      if (has_newton(solver_entry->schema)) leave_out_shared(*e.resolved.find("newton"), resolved);
+      e.methods.emplace_back(name, std::move(solver));
+    }
     resolved_map.add(name, resolved);
   }
   set_path(e.resolved, "methods", resolved_map);
@@ -160,12 +162,8 @@ void make_methods(Experiment& e, ConfigErrors& errors) {
 void make_plugins(Experiment& e, ConfigErrors& errors) {
   ConfigNode energies(ConfigNode::Kind::list), metrics(ConfigNode::Kind::list);
   for (const ConfigNode& node : e.parameters.energies) {
-    PluginParameters own =
-        read_plugin_parameters(*e.registry, "energy", node, errors, &energies.items.emplace_back());
-    auto energy = std::static_pointer_cast<Energy>(make_plugin(own, locate_in(node), errors));
-    if (!energy) continue;
-    e.energies.push_back({label_of(node), std::move(energy)});
-    e.energy_parameters.push_back(std::move(own));
+    if (auto energy = make_from<Energy>(*e.registry, node, errors, &energies.items.emplace_back()))
+      e.energies.push_back({label_of(node), std::move(energy)});
   }
   set_path(e.resolved, "energies", energies);
   const ConfigNode* written = e.source.find("energies");

@@ -10,29 +10,24 @@ namespace drape {
 /// read_keys reports faults of the keys.
 void set_first_keys(ConfigNode& source);
 
-/// The experiment's schema with the numbers of `dress` that its own schedule sets and no file can.
-const Schema& scheduled_schema();
-
-/// Why friction is refused where no contact model has any, with a remedy.
-std::string refusal_of_friction(const Registry& registry);
-
 /// The part of make_plugins that makes contact models. Appends an error for an obstacle that no model takes,
 /// naming a registered one that would, for friction that none of them has, and for `obstacles` and `friction`
 /// in a model's own section.
 void make_contacts(Experiment& experiment, ConfigErrors& errors);
+
+/// The section of contact model k as its schema has it, with the obstacles and the friction of an experiment
+/// with these parameters.
+ConfigNode contact_section(const Experiment& experiment, const ExperimentParameters& parameters,
+                           std::size_t k, ConfigErrors& errors);
 
 /// Makes the energies, refiner, contact models, metrics and solvers of an experiment, whose parameters and
 /// source are read, and adds all their parameters to `resolved`. Without `metrics` it makes all that are
 /// registered. Appends every error.
 void make_plugins(Experiment& experiment, ConfigErrors& errors);
 
-/// Finds the values of an experiment's keys, and the declared numbers that they change; the plugins must have
-/// been made. Appends the faults of the keys: parameters that may not change, times that do not ascend, and
+/// Finds the values of an experiment's keys, and the sections that they change; the plugins must have been
+/// made. Appends the faults of the keys: parameters that may not change, times that do not ascend, and
 /// values that their parameters refuse.
 void read_keys(Experiment& experiment, ConfigErrors& errors);
-
-/// The struct of a part of an experiment, with the schema that KeyTarget::numbers follow. Its `entry` is null
-/// for material, pins and handles, whose struct is that of the whole experiment.
-PluginParameters parameters_of(const Experiment& experiment, LoadPart part, std::size_t item);
 
 }  // namespace drape

@@ -1,14 +1,14 @@
 #include <algorithm>
 #include <cmath>
-#include <set>
+#include <map>
+#include <span>
 
 #include "core/app/experiment/experiment_path.h"
 #include "core/app/experiment/read_experiment.h"
 #include "core/kernel/files/message_text.h"
-#include "core/kernel/files/number_text.h"
 #include "core/kernel/files/string_utils.h"
+#include "core/kernel/plugin/make.h"
 #include "core/kernel/plugin/parameters.h"
-#include "core/kernel/plugin/registry.h"
 
 namespace drape {
 
@@ -19,6 +19,8 @@ using NodeKind = ConfigNode::Kind;
 /// Sections whose parameters may change; the others choose the discretisation and the methods.
 const std::vector<std::string> changeable = {"material", "energies", "contact", "obstacles",
                                              "friction", "pins",     "handles"};
+/// Those of them that contact models are made from.
+const std::vector<std::string> of_contact = {"contact", "obstacles", "friction"};
 
 bool is_changeable(const std::string& path) { return is_one_of(path.substr(0, path.find('.')), changeable); }
 
@@ -26,9 +28,8 @@ bool is_changeable(const std::string& path) { return is_one_of(path.substr(0, pa
 std::vector<double> numbers_of(const ConfigNode& node) {
   std::vector<double> numbers;
   for (const ConfigNode& item : node.kind == NodeKind::list ? node.items : std::vector{node}) {
-    const std::optional<double> number = number_of(item.scalar);
-    if (!number) return {};
-    numbers.push_back(*number);
+    if (!item.is_number() || !std::isfinite(item.number)) return {};
+    numbers.push_back(item.number);
   }
   return numbers;
 }
@@ -46,6 +47,24 @@ std::vector<std::vector<double>> values_of(const ScheduleKey& key) {
   return values;
 }
 
+/// The numbers of a resolved experiment that a key sets; empty if it names anything else.
+std::vector<const ConfigNode*> numbers_at(const ConfigNode& resolved, const ScheduleKey& key) {
+  const ConfigNode* node = value_at(resolved, key.parameter);
+  std::vector<const ConfigNode*> numbers;
+  if (node && node->kind == NodeKind::number) numbers.push_back(node);
+  for (std::size_t c = 0; node && c < node->items.size(); ++c)
+    if (node->items[c].kind == NodeKind::number) numbers.push_back(&node->items[c]);
+  return numbers;
+}
+
+/// A key's value as its parameter has it.
+ConfigNode node_of(const ScheduleKey& key, std::span<const double> value) {
+  if (key.written.items[0].kind != NodeKind::list) return ConfigNode::of(value[0]);
+  ConfigNode list(NodeKind::list);
+  for (const double number : value) list.items.push_back(ConfigNode::of(number));
+  return list;
+}
+
 class KeyReader {
  public:
   KeyReader(Experiment& experiment, ConfigErrors& errors)
@@ -56,17 +75,17 @@ class KeyReader {
     if (keys_.size() > most_keys) return refuse_many("keys", keys_.size(), most_keys);
     for (ScheduleKey& key : keys_) read_values(key);
     if (!errors_.empty()) return;
-    for (ScheduleKey& key : keys_) find_targets(key);
+    for (ScheduleKey& key : keys_) find_section(key);
     if (!errors_.empty()) return;
     std::size_t times = 0;  // at which every level is checked
     for (const ScheduleKey& key : keys_)
-      if (key.targets[0].part != LoadPart::contact) times += key.times.size();
+      if (!key.is_of_contact()) times += key.times.size();
     if (times > most_times)
       return refuse_many("times in the keys of material, energies, pins and handles", times, most_times);
     refuse_repeated_keys();
     if (errors_.empty()) refuse_keys_of_following_pins();
     if (!errors_.empty()) return;
-    for (const ScheduleKey& key : keys_) check_values(key);
+    check_values();
   }
 
  private:
@@ -99,41 +118,12 @@ class KeyReader {
       refuse(key, "is interpolated by its logarithm: all its values must be above 0");
   }
 
-  /// Adds a target of the key, if the words name numbers of the part's struct.
-  void add_target(ScheduleKey& key, LoadPart part, std::size_t item, const std::vector<std::string>& words) {
-    const PluginParameters own = parameters_of(e_, part, item);
-    const auto numbers =
-        DeclaredNumbers::find(own.entry ? own.entry->schema : scheduled_schema(), own.values.get(), words);
-    if (numbers && numbers->count() == key.values[0].size()) key.targets.push_back({part, item, *numbers});
-  }
-
-  void find_targets(ScheduleKey& key) {
+  void find_section(ScheduleKey& key) {
     const std::vector<std::string> words = words_of_path(e_.resolved, key.parameter);
-    const std::string& part = words[0];
-    const ConfigNode* section = e_.resolved.find(part);
-    const bool is_list = section->kind == NodeKind::list;
-    const auto item = is_list && words.size() > 1 ? section->index_of(words[1]) : std::nullopt;
-    if (part == "friction") {
-      for (std::size_t c = 0; c < e_.contact_configs.size(); ++c)
-        add_target(key, LoadPart::contact, c, words);
-    } else if (part == "obstacles" && item) {
-      for (std::size_t c = 0; c < e_.contact_configs.size(); ++c) {
-        const std::vector<std::size_t>& own = e_.contact_configs[c].obstacles;
-        const auto place = std::ranges::find(own, *item);
-        if (place == own.end()) continue;
-        std::vector<std::string> path = words;
-        path[1] = std::to_string(place - own.begin());
-        add_target(key, LoadPart::contact, c, path);
-      }
-    } else if ((part == "energies" || part == "contact") && (item || !is_list)) {
-      const std::vector<std::string> within(words.begin() + (item ? 2 : 1), words.end());
-      add_target(key, part == "contact" ? LoadPart::contact : LoadPart::energies, item.value_or(0), within);
-    } else if (part == "material" || part == "dress") {
-      add_target(key, part == "dress" ? LoadPart::dress : LoadPart::material, 0, words);
-    } else if (item) {
-      add_target(key, part == "pins" ? LoadPart::pins : LoadPart::handles, *item, words);
-    }
-    if (key.targets.empty()) refuse_parameter(key);
+    key.section = words[0];
+    if (words.size() > 1) key.item = e_.resolved.find(words[0])->index_of(words[1]).value_or(0);
+    if (key.section != "dress" && numbers_at(e_.resolved, key).size() != key.values[0].size())
+      refuse_parameter(key);
   }
 
   /// Why the path of a key leads nowhere: as of an option --set, or that it names no number.
@@ -141,9 +131,7 @@ class KeyReader {
     const Location& where = key.written.where;
     ConfigNode config = e_.resolved;
     ConfigErrors own;
-    if (key.parameter == "friction")
-      own.push_back({where, refusal_of_friction(*e_.registry)});
-    else if (set_parameter(config, key.parameter, key.written.items[0], where, own))
+    if (set_parameter(config, key.parameter, key.written.items[0], where, own))
       own.push_back({where,
                      "it must name a number that is no integer, or a list of as many such numbers as each of "
                      "its values"});
@@ -152,52 +140,42 @@ class KeyReader {
 
   /// Two keys may not set one number.
   void refuse_repeated_keys() {
-    std::vector<std::set<const double*>> numbers(keys_.size());
-    for (std::size_t k = 0; k < keys_.size(); ++k) {
-      for (const KeyTarget& target : keys_[k].targets)
-        for (std::size_t c = 0; c < target.numbers.count(); ++c)
-          numbers[k].insert(target.numbers.at(parameters_of(e_, target.part, target.item).values.get(), c));
-      for (std::size_t j = 0; j < k; ++j)
-        if (std::ranges::any_of(numbers[k], [&](const double* own) { return numbers[j].contains(own); }))
-          refuse(keys_[k], "sets what key \"" + excerpt(keys_[j].parameter) + "\" sets; remove one of them");
-    }
+    std::map<const ConfigNode*, const ScheduleKey*> keys_of;
+    for (const ScheduleKey& key : keys_)
+      for (const ConfigNode* number : numbers_at(e_.resolved, key))
+        if (const auto [other, is_new] = keys_of.try_emplace(number, &key); !is_new) {
+          refuse(key, "sets what key \"" + excerpt(other->second->parameter) + "\" sets; remove one of them");
+          break;
+        }
   }
 
   /// The obstacle that a pin follows decides its targets.
   void refuse_keys_of_following_pins() {
     for (const ScheduleKey& key : keys_) {
-      const KeyTarget& target = key.targets[0];
-      if (target.part != LoadPart::pins) continue;
-      const std::string& obstacle = e_.parameters.pins[target.item].follow.obstacle;
+      if (key.section != "pins") continue;
+      const std::string& obstacle = e_.parameters.pins[key.item].follow.obstacle;
       if (!obstacle.empty())
-        refuse(key, "changes pin " + std::to_string(target.item) + ", which follows obstacle \"" +
+        refuse(key, "changes pin " + std::to_string(key.item) + ", which follows obstacle \"" +
                         excerpt(obstacle) + "\"; move the obstacle, or remove \"follow\"");
     }
   }
 
-  /// Appends the faults of the first value of a key that a part of the experiment refuses.
-  void check_values(const ScheduleKey& key) {
-    const Location& where = key.written.where;
-    for (const std::vector<double>& value : key.values) {
+  /// Appends the faults of the first value of each key that a part of the experiment refuses.
+  void check_values() {
+    const Load first{e_.parameters.schedule.values_at(0), nullptr, e_.energies, e_.contacts};
+    std::size_t begin = 0;
+    for (const ScheduleKey& key : keys_) {
       ConfigErrors own;
-      for (const KeyTarget& target : key.targets)
-        if (own.empty()) check_value(target, value, own);
-      for (const ConfigError& error : own) errors_.push_back({where, name(key) + ": " + error.message});
-      if (!own.empty()) return;
+      for (std::size_t i = 0; i < key.values.size() && own.empty(); ++i) {
+        Load load = first;
+        std::vector<double> values = first.values;
+        std::ranges::copy(key.values[i], values.begin() + static_cast<std::ptrdiff_t>(begin));
+        set_values(e_, std::move(values), load, own);
+      }
+      for (const ConfigError& error : own)
+        errors_.push_back({key.written.where, name(key) + ": " + error.message});
+      begin += key.values[0].size();
     }
-  }
-
-  void check_value(const KeyTarget& target, const std::vector<double>& value, ConfigErrors& own) {
-    PluginParameters changed = parameters_of(e_, target.part, target.item);
-    const Schema& schema = changed.entry ? changed.entry->schema : scheduled_schema();
-    changed.values = schema.copy(changed.values.get());
-    target.numbers.set(changed.values.get(), value.data(), own);
-    if (!own.empty() || !changed.entry) return;
-    const bool energy = target.part == LoadPart::energies;
-    make_plugin(
-        changed, [](const auto&, const auto&) { return Location(); }, own,
-        energy ? static_cast<const void*>(e_.energies[target.item].energy.get())
-               : e_.contacts[target.item].get());
   }
 
   Experiment& e_;
@@ -288,12 +266,57 @@ void set_first_keys(ConfigNode& source) {
   }
 }
 
+bool ScheduleKey::is_of_contact() const { return is_one_of(section, of_contact); }
+
 void read_keys(Experiment& experiment, ConfigErrors& errors) { KeyReader(experiment, errors).read_all(); }
 
-PluginParameters parameters_of(const Experiment& e, LoadPart part, std::size_t item) {
-  if (part == LoadPart::energies) return e.energy_parameters.at(item);
-  if (part == LoadPart::contact) return e.contact_configs.at(item).parameters;
-  return {nullptr, {std::shared_ptr<void>(), const_cast<ExperimentParameters*>(&e.parameters)}};
+std::vector<const ScheduleKey*> set_values(const Experiment& e, std::vector<double> values, Load& load,
+                                           ConfigErrors& errors) {
+  ConfigNode source = e.source;
+  source.remove("schedule");  // of which each load would have a copy
+  DressParameters dress = e.parameters.dress;
+  std::vector<const ScheduleKey*> changed;
+  for (std::size_t first = 0; const ScheduleKey& key : e.parameters.schedule.keys) {
+    const std::span<const double> value(&values[first], key.values[0].size());
+    if (!std::equal(value.begin(), value.end(), &load.values[first])) changed.push_back(&key);
+    first += value.size();
+    if (key.parameter == "dress.placed")
+      dress.placed = value[0];
+    else if (key.parameter == "dress.loads")
+      dress.loads = value[0];
+    else
+      set_parameter(source, key.parameter, node_of(key, value), {}, errors);
+  }
+  ExperimentParameters now;
+  experiment_schema().read(&now, source, errors);
+  if (!errors.empty()) return changed;
+  const auto has_changed = [&](const auto& is_meant) {
+    return std::ranges::any_of(changed, [&](const ScheduleKey* key) { return is_meant(*key); });
+  };
+  for (std::size_t k = 0; k < now.energies.size(); ++k)
+    if (has_changed([&](const ScheduleKey& key) { return key.section == "energies" && key.item == k; })) {
+      std::shared_ptr<const Energy>& energy = load.energies[k].energy;
+      energy = make_from<Energy>(*e.registry, now.energies[k], errors, nullptr, energy.get());
+    }
+  for (std::size_t k = 0; k < load.contacts.size(); ++k)
+    if (has_changed([&](const ScheduleKey& key) {
+          return key.section == "friction" || (key.section == "contact" && key.item == k) ||
+                 (key.section == "obstacles" && std::ranges::count(e.obstacles_of[k], key.item) > 0);
+        })) {
+      std::shared_ptr<ContactModel>& contact = load.contacts[k];
+      contact = make_from<ContactModel>(*e.registry, contact_section(e, now, k, errors), errors, nullptr,
+                                        contact.get());
+    }
+  if (has_changed([](const ScheduleKey& key) { return !key.is_of_contact() && key.section != "energies"; })) {
+    now.dress = std::move(dress);
+    for (std::size_t k = 0; k < now.pins.size(); ++k)  // which a pattern's source does not have
+      now.pins[k].label_edges = e.parameters.pins[k].label_edges;
+    for (std::size_t k = 0; k < now.handles.size(); ++k)
+      now.handles[k].label_edges = e.parameters.handles[k].label_edges;
+    load.parameters = std::make_shared<const ExperimentParameters>(std::move(now));
+  }
+  load.values = std::move(values);
+  return changed;
 }
 
 }  // namespace drape

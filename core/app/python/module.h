@@ -8,6 +8,10 @@
 
 #include "core/app/scene/scene.h"
 
+namespace drape {
+struct RegistryEntry;
+}
+
 namespace drape::python {
 
 namespace py = pybind11;

@@ -138,10 +138,6 @@ Parameter parameter_of(const std::string& owner, const std::string& name, const 
     return std::visit([](const auto& own) { return parameter_detail::to_node(own); },
                       static_cast<const Values*>(values)->at(k));
   };
-  p.number = [k](void* values, std::size_t item) {
-    return std::visit([&](auto& own) { return parameter_detail::number(own, item); },
-                      static_cast<Values*>(values)->at(k));
-  };
   return p;
 }
 
@@ -157,9 +153,6 @@ Schema schema_of_class(const py::object& type, const std::string& name) {
     defaults.push_back(std::move(value));
   }
   schema.fresh = [defaults] { return std::make_shared<Values>(defaults); };
-  schema.copy = [](const void* values) {
-    return std::make_shared<Values>(*static_cast<const Values*>(values));
-  };
   return schema;
 }
 

@@ -16,25 +16,29 @@ namespace drape {
 
 namespace {
 
-/// Calls check(part, k, written) for every pin and handle k, or for the one that a key's target names.
+/// The experiment's key of pins, or of handles.
+const char* section_of(bool handles) { return handles ? "handles" : "pins"; }
+
+/// Calls check(handles, k, written) for every pin and handle k, or for the one that a key changes.
 template <class Check>
-void for_each_condition(const Experiment& e, const KeyTarget* only, const Check& check) {
-  for (const auto& [key, part] : {std::pair("pins", LoadPart::pins), {"handles", LoadPart::handles}}) {
-    const ConfigNode* written = e.source.find(key);
+void for_each_condition(const Experiment& e, const ScheduleKey* only, const Check& check) {
+  for (const bool handles : {false, true}) {
+    const ConfigNode* written = e.source.find(section_of(handles));
     for (std::size_t k = 0; written && k < written->items.size(); ++k)
-      if (!only || (only->part == part && only->item == k)) check(part, k, written->items);
+      if (!only || (only->section == section_of(handles) && only->item == k))
+        check(handles, k, written->items);
   }
 }
 
-const VertexSelection& selection(const ExperimentParameters& p, LoadPart part, std::size_t k) {
-  if (part == LoadPart::pins) return p.pins[k];
+const VertexSelection& selection(const ExperimentParameters& p, bool handles, std::size_t k) {
+  if (!handles) return p.pins[k];
   return p.handles[k];
 }
 
 /// "pin 1 (box, line 5)"; without the line if it is 0.
-std::string name_of(const ExperimentParameters& p, LoadPart part, std::size_t k, int line = 0) {
-  return (part == LoadPart::pins ? "pin " : "handle ") + std::to_string(k) + " (" +
-         selection(p, part, k).region + (line > 0 ? ", line " + std::to_string(line) : "") + ")";
+std::string name_of(const ExperimentParameters& p, bool handles, std::size_t k, int line = 0) {
+  return (handles ? "handle " : "pin ") + std::to_string(k) + " (" + selection(p, handles, k).region +
+         (line > 0 ? ", line " + std::to_string(line) : "") + ")";
 }
 
 /// The target [m] of a vertex that a pin or handle selects; without a transform, its position in `placed`.
@@ -107,32 +111,32 @@ std::string conflict(int vertex, const Eigen::Vector3d& a, const Eigen::Vector3d
 /// Adds the conflicts of a level's pins, or of its handles, to those of coarser ones. Each is compared with
 /// the first that selects the vertex, and only where they differ with the others that do: all pairs would be
 /// many.
-void add_conflicts(const ExperimentParameters& p, LoadPart part, const Level& level, const Level& coarsest,
+void add_conflicts(const ExperimentParameters& p, bool handles, const Level& level, const Level& coarsest,
                    const Positions& placed, Conflicts& conflicts) {
   constexpr std::size_t most = 40;  // that anybody reads
   const double diagonal = bounding_box_diagonal(level.rest.vertices);
   std::vector<std::vector<int>> holders(level.vertex_count());
-  const int count = static_cast<int>(part == LoadPart::pins ? p.pins.size() : p.handles.size());
-  const auto target = [&](int k, int v) { return target_of(selection(p, part, k), v, level, placed); };
+  const int count = static_cast<int>(handles ? p.handles.size() : p.pins.size());
+  const auto target = [&](int k, int v) { return target_of(selection(p, handles, k), v, level, placed); };
   const VertexSearch search(level, coarsest, count);
   for (int k = 0; k < count; ++k)
-    for (const int v : search.selected(selection(p, part, k))) {
+    for (const int v : search.selected(selection(p, handles, k))) {
       const Eigen::Vector3d own = target(k, v);
       if (conflicts.size() < most && !holders[v].empty() && differ(own, target(holders[v][0], v), diagonal))
         for (const int other : holders[v])
           if (differ(own, target(other, v), diagonal))
-            conflicts.try_emplace({part, k, other}, Conflict{level.index, v, own, target(other, v)});
+            conflicts.try_emplace({handles, k, other}, Conflict{level.index, v, own, target(other, v)});
       holders[v].push_back(k);
     }
 }
 
 /// Appends the errors of check_selections for pin or handle k.
-void check_selection(const ExperimentParameters& parameters, LoadPart part, std::size_t k,
+void check_selection(const ExperimentParameters& parameters, bool handles, std::size_t k,
                      const Location& where, const std::vector<Level>& levels,
                      const std::vector<VertexSearch>& searches, long& total, ConfigErrors& errors) {
-  const VertexSelection& p = selection(parameters, part, k);
+  const VertexSelection& p = selection(parameters, handles, k);
   const Level& coarsest = levels[0];
-  const std::string name = name_of(parameters, part, k);
+  const std::string name = name_of(parameters, handles, k);
   const bool by_index = p.region == "vertices";
   const auto& pieces = coarsest.rest.piece_names;
   const auto beyond = [&](int v) { return v < 0 || v >= coarsest.cloth_vertex_count(); };
@@ -188,16 +192,16 @@ Eigen::Vector3d StartParameters::transformed(const Eigen::Vector3d& rest, double
 }
 
 void check_selections(const Experiment& e, const ExperimentParameters& load, const std::vector<Level>& levels,
-                      ConfigErrors& errors, const KeyTarget* only) {
+                      ConfigErrors& errors, const ScheduleKey* only) {
   constexpr std::size_t most = 10'000;  // pins and handles
   constexpr long most_in_all = 10'000'000;
   const std::size_t count = load.pins.size() + load.handles.size();
   std::vector<VertexSearch> searches;
   for (const Level& level : levels) searches.emplace_back(level, levels[0], only ? 1 : count);
   long total = 0;
-  for_each_condition(e, only, [&](LoadPart part, std::size_t k, const std::vector<ConfigNode>& written) {
+  for_each_condition(e, only, [&](bool handles, std::size_t k, const std::vector<ConfigNode>& written) {
     if (k < most && total <= most_in_all)
-      check_selection(load, part, k, written[k].where, levels, searches, total, errors);
+      check_selection(load, handles, k, written[k].where, levels, searches, total, errors);
     else if (errors.empty())
       errors.push_back({written[k].where,
                         k < most ? "pins and handles select vertices " + std::to_string(most_in_all) +
@@ -210,22 +214,23 @@ void check_selections(const Experiment& e, const ExperimentParameters& load, con
 Conflicts conflicts_of(const ExperimentParameters& load, const std::vector<Level>& levels,
                        const std::vector<Positions>& placed) {
   Conflicts conflicts;
-  for (const LoadPart part : {LoadPart::pins, LoadPart::handles})
+  for (const bool handles : {false, true})
     for (const Level& level : levels)
-      add_conflicts(load, part, level, levels[0], placed[level.index], conflicts);
+      add_conflicts(load, handles, level, levels[0], placed[level.index], conflicts);
   return conflicts;
 }
 
 void report(const Conflicts& conflicts, const Experiment& e, const std::vector<Level>& levels,
-            ConfigErrors& errors, const KeyTarget* only) {
+            ConfigErrors& errors, const ScheduleKey* only) {
   for (const auto& [between, c] : conflicts) {
-    auto [part, one, other] = between;
+    auto [handles, one, other] = between;
     auto [level, vertex, target, others] = c;
-    if (only && (part != only->part || (only->item != one && only->item != other))) continue;
+    if (only && (only->section != section_of(handles) || (only->item != one && only->item != other)))
+      continue;
     if (only && only->item == other) std::swap(one, other), std::swap(target, others);
-    const auto& written = e.source.find(part == LoadPart::pins ? "pins" : "handles")->items;
+    const auto& written = e.source.find(section_of(handles))->items;
     const auto name = [&](std::size_t k) {
-      return name_of(e.parameters, part, k, only ? 0 : written[k].where.line);
+      return name_of(e.parameters, handles, k, only ? 0 : written[k].where.line);
     };
     errors.push_back({written[one].where, name(one) + " and " + name(other) + " " +
                                               conflict(vertex, target, others, levels[level])});

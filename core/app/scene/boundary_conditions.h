@@ -8,11 +8,10 @@
 namespace drape {
 
 /// Appends an error for every pin and handle that selects no vertex of a level, or one that does not exist,
-/// under a load with these parameters. With `only`, checks only the pin or handle that this target of a key
-/// names.
+/// under a load with these parameters. With `only`, checks only the pin or handle that this key changes.
 void check_selections(const Experiment& experiment, const ExperimentParameters& load,
                       const std::vector<Level>& levels, ConfigErrors& errors,
-                      const KeyTarget* only = nullptr);
+                      const ScheduleKey* only = nullptr);
 
 /// A vertex of a level that two pins, or two handles, want at different places [m].
 struct Conflict {
@@ -20,9 +19,9 @@ struct Conflict {
   Eigen::Vector3d target, other_target;
 };
 
-/// The first conflict of each two pins, and of each two handles, by what they are and their indices, the
-/// later one's first. Without conflicts beyond some 40, which nobody reads.
-using Conflicts = std::map<std::tuple<LoadPart, std::size_t, std::size_t>, Conflict>;
+/// The first conflict of each two pins, and of each two handles, by whether they are handles and their
+/// indices, the later one's first. Without conflicts beyond some 40, which nobody reads.
+using Conflicts = std::map<std::tuple<bool, std::size_t, std::size_t>, Conflict>;
 
 /// The conflicts under a load with these parameters. `placed` has the positions, n×3 [m] for each level,
 /// where pins and handles without a transform hold.
@@ -32,7 +31,7 @@ Conflicts conflicts_of(const ExperimentParameters& load, const std::vector<Level
 /// Appends an error for every conflict. With `only`, for those of that pin or handle; the messages then give
 /// no lines of pins, because the error is about the key.
 void report(const Conflicts& conflicts, const Experiment& experiment, const std::vector<Level>& levels,
-            ConfigErrors& errors, const KeyTarget* only = nullptr);
+            ConfigErrors& errors, const ScheduleKey* only = nullptr);
 
 /// The Dirichlet vertices of a level with their targets [m]. Of several pins that select a vertex the last
 /// one counts. Throws std::runtime_error naming two pins that want it at different places, or a pin that

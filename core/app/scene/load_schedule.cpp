@@ -3,29 +3,11 @@
 #include <algorithm>
 #include <stdexcept>
 
-#include "core/app/experiment/read_experiment.h"
 #include "core/app/scene/boundary_conditions.h"
-#include "core/kernel/plugin/registry.h"
 #include "core/numerics/dressing/intermediate_rest.h"
 #include "core/numerics/dressing/scaled_energy.h"
 
 namespace drape {
-
-namespace {
-
-void throw_first(const ConfigErrors& errors) {
-  if (!errors.empty()) throw std::runtime_error(errors[0].message);
-}
-
-template <class Interface>
-void make_again(const PluginParameters& parameters, std::shared_ptr<Interface>& object) {
-  ConfigErrors errors;
-  object = std::static_pointer_cast<Interface>(make_plugin(
-      parameters, [](const auto&, const auto&) { return Location(); }, errors, object.get()));
-  throw_first(errors);
-}
-
-}  // namespace
 
 std::shared_ptr<const Level> IntermediateRests::level(int level) const {
   const std::lock_guard lock(busy_);
@@ -44,62 +26,29 @@ Positions own_of(const Hierarchy& hierarchy, const Positions& x, int fine, int c
 }
 
 LoadSchedule::LoadSchedule(const Experiment& e, const Scene& scene)
-    : scene_(scene), keys_([&] {
+    : experiment_(e), scene_(scene), keys_([&] {
         ScheduleParameters keys = e.parameters.schedule;
         if (e.parameters.dress.is_asked()) keys.keys[0].values[0][0] = scene.dressing->contraction;
         return keys;
       }()) {
-  std::size_t first = 0;
-  for (const ScheduleKey& key : e.parameters.schedule.keys) {
-    for (const KeyTarget& target : key.targets)
-      change_of(e, target).numbers.emplace_back(target.numbers, first);
-    first += key.values[0].size();
-  }
   const auto parameters = std::make_shared<ExperimentParameters>(e.parameters);
   parameters->schedule = {};  // of which each load would have a copy
   // The scene's own models have a schedule's first load, but are those of a garment that is worn.
   std::vector<double> values =
       e.parameters.dress.is_asked() ? keys_.values_at(keys_.time(keys_.steps)) : keys_.values_at(0);
   first_ = std::make_shared<const LoadState>(
-      LoadState{std::move(values), parameters, scene.energies, e.contacts, nullptr, nullptr});
-}
-
-LoadSchedule::Change& LoadSchedule::change_of(const Experiment& e, const KeyTarget& target) {
-  for (Change& change : changes_)
-    if (change.part == target.part && change.item == target.item) return change;
-  PluginParameters first = parameters_of(e, target.part, target.item);
-  if (!first.entry) first.values.reset();
-  return changes_.emplace_back(Change{target.part, target.item, std::move(first), {}});
+      LoadState{{std::move(values), parameters, scene.energies, e.contacts}, nullptr, nullptr});
 }
 
 std::shared_ptr<const LoadState> LoadSchedule::at(std::vector<double> values, const LoadState& before) const {
   auto load = std::make_shared<LoadState>(before);
-  std::shared_ptr<ExperimentParameters> parameters;  // once one of the experiment's own differs
-  bool new_handles = false;
-  for (const Change& change : changes_) {
-    const bool differs = std::any_of(change.numbers.begin(), change.numbers.end(), [&](const auto& one) {
-      const auto first = static_cast<std::ptrdiff_t>(one.second);
-      return !std::equal(values.begin() + first,
-                         values.begin() + first + static_cast<std::ptrdiff_t>(one.first.count()),
-                         before.values.begin() + first);
-    });
-    if (!differs) continue;
-    const RegistryEntry* entry = change.first.entry;
-    PluginParameters own{entry, entry ? entry->schema.copy(change.first.values.get()) : nullptr};
-    if (!entry && !parameters) parameters = std::make_shared<ExperimentParameters>(*before.parameters);
-    ConfigErrors errors;
-    for (const auto& [numbers, first] : change.numbers)
-      numbers.set(entry ? own.values.get() : parameters.get(), &values[first], errors);
-    throw_first(errors);
-    new_handles = new_handles || change.part == LoadPart::handles;
-    if (change.part == LoadPart::energies) make_again(own, load->energies[change.item].energy);
-    if (change.part == LoadPart::contact) make_again(own, load->contacts[change.item]);
-  }
-  if (parameters) load->parameters = parameters;
-  if (parameters && parameters->dress.is_asked()) dress(*load, before);
-  if (new_handles)
-    load->energies.back().energy = handles_energy(*parameters, scene_.hierarchy.levels[0], scene_.placed);
-  load->values = std::move(values);
+  ConfigErrors errors;
+  const auto changed = set_values(experiment_, std::move(values), *load, errors);
+  if (!errors.empty()) throw std::runtime_error(errors[0].message);
+  const ExperimentParameters& own = *load->parameters;
+  if (load->parameters != before.parameters && own.dress.is_asked()) dress(*load, before);
+  if (std::ranges::find(changed, "handles", &ScheduleKey::section) != changed.end())
+    load->energies.back().energy = handles_energy(own, scene_.hierarchy.levels[0], scene_.placed);
   return load;
 }
 

@@ -4,7 +4,6 @@
 #include <mutex>
 
 #include "core/app/scene/scene.h"
-#include "core/kernel/plugin/make.h"
 
 namespace drape {
 
@@ -23,21 +22,16 @@ class IntermediateRests {
   mutable std::map<int, std::shared_ptr<const Level>> levels_;
 };
 
-/// What the models of all levels are made from under one load. Immutable; shares with other loads what is
-/// equal.
-struct LoadState {
-  std::vector<double> values;                              ///< of all keys, one after another
-  std::shared_ptr<const ExperimentParameters> parameters;  ///< for material, pins and handles
-  std::vector<NamedEnergy> energies;                       ///< handles last
-  std::vector<std::shared_ptr<ContactModel>> contacts;
+/// A load of a scene. Immutable.
+struct LoadState : Load {
   std::shared_ptr<const IntermediateRests> rests;  ///< of membranes; null: those of the levels
   /// Where pins hold a garment that has been sewn: its positions then, prolonged to the finest level from the
   /// one that it was sewn on, n×3 [m]; null: where the scene placed it.
   std::shared_ptr<const Positions> sewn;
 };
 
-/// The loads of a scene, with its levels and models, as a function of its keyed parameters. Immutable; refers
-/// to the scene, which must outlive it.
+/// The loads of a scene, with its levels and models, as a function of its keyed parameters. Immutable; has a
+/// copy of the experiment, and refers to the scene, which must outlive it.
 class LoadSchedule {
  public:
   LoadSchedule(const Experiment& experiment, const Scene& scene);
@@ -61,22 +55,14 @@ class LoadSchedule {
   std::shared_ptr<const LevelModel> model(const LoadState& load, int level, const LevelModel& before) const;
 
  private:
-  /// All that the keys change of one plugin, or of the experiment's own sections.
-  struct Change {
-    LoadPart part;
-    std::size_t item;
-    PluginParameters first;  // under the first load; without an entry for the experiment's own
-    std::vector<std::pair<DeclaredNumbers, std::size_t>> numbers;  // with the index of their first value
-  };
-  Change& change_of(const Experiment& experiment, const KeyTarget& target);
   void dress(LoadState& load, const LoadState& before) const;
   /// Where pins without a transform hold, n×3 [m]: where the garment was sewn, else where the scene placed
   /// it.
   Positions placed(const LoadState& load, int level) const;
 
+  const Experiment experiment_;
   const Scene& scene_;
   const ScheduleParameters keys_;
-  std::vector<Change> changes_;
   std::shared_ptr<const LoadState> first_;
 };
 

@@ -104,9 +104,7 @@ void check_material(const ExperimentParameters& p, const SceneSummary& s, Warnin
 /// Obstacles that the cloth will hardly meet, or not as they should lie.
 void check_obstacles(const Experiment& e, const SceneSummary& s, Warnings& warnings) {
   const auto moves = [](const ScheduleKey& key) {
-    return std::ranges::any_of(key.targets, [](const KeyTarget& target) {
-      return target.part != LoadPart::material && target.part != LoadPart::energies;
-    });
+    return key.section != "material" && key.section != "energies";
   };
   if (s.obstacles.empty() || std::ranges::any_of(e.parameters.schedule.keys, moves)) return;
   const ObstacleGap& nearest = s.nearest()->gap;

@@ -47,9 +47,8 @@ void check_on_levels(const Experiment& e, const Scene& scene, const LoadSchedule
   const std::vector<Level>& levels = scene.hierarchy.levels;
   std::map<double, Conflicts> conflicts;  // of all pins and handles, at the times of their keys
   for (const ScheduleKey& key : e.parameters.schedule.keys) {
-    const LoadPart part = key.targets[0].part;
-    if (part == LoadPart::contact || part == LoadPart::dress) continue;
-    const bool of_vertices = part == LoadPart::pins || part == LoadPart::handles;
+    if (key.is_of_contact() || key.section == "dress") continue;
+    const bool of_vertices = key.section == "pins" || key.section == "handles";
     const Location& where = key.written.where;
     // Whether check(load, faults) finds no fault at any of these times; appends those of the first that has.
     const auto hold_at = [&](const std::vector<double>& times, const auto& check) {
@@ -71,8 +70,8 @@ void check_on_levels(const Experiment& e, const Scene& scene, const LoadSchedule
     const auto load_at = [&](double time) { return schedule.at(schedule.keys().values_at(time)); };
     const bool bound = hold_at(key.times, [&](double time, ConfigErrors& own) {
       const LoadState load = *load_at(time);
-      if (of_vertices) check_selections(e, *load.parameters, levels, own, &key.targets[0]);
-      if (!own.empty() || part == LoadPart::pins) return;
+      if (of_vertices) check_selections(e, *load.parameters, levels, own, &key);
+      if (!own.empty() || key.section == "pins") return;
       for (const auto& first : scene.models)  // throws for an energy that load stepping could not bind
         LevelModel(first->level(), load.parameters->material, load.energies, {}, {}, first.get());
     });
@@ -80,7 +79,7 @@ void check_on_levels(const Experiment& e, const Scene& scene, const LoadSchedule
       hold_at(times_with_between(key.times), [&](double time, ConfigErrors& own) {
         const auto [found, is_new] = conflicts.try_emplace(time);
         if (is_new) found->second = conflicts_of(*load_at(time)->parameters, levels, scene.placed);
-        report(found->second, e, levels, own, &key.targets[0]);
+        report(found->second, e, levels, own, &key);
       });
   }
 }

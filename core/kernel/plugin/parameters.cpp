@@ -20,8 +20,7 @@ std::string with_unit(double value, const Parameter& p) {
   return p.unit.empty() || p.unit == "1" ? text : text + " " + p.unit;
 }
 
-}  // namespace
-
+/// What a number must be to be a value of the parameter, or of an item of it, as "at least 0"; "" if it is.
 std::string number_fault(const Parameter& p, double value) {
   if (!std::isfinite(value)) return "a finite number";
   if (p.open_minimum && !(value > p.minimum)) return "above " + with_unit(p.minimum, p);
@@ -30,8 +29,6 @@ std::string number_fault(const Parameter& p, double value) {
   if (!p.open_maximum && !(value <= p.maximum)) return "at most " + with_unit(p.maximum, p);
   return "";
 }
-
-namespace {
 
 /// What a scalar must be if it is not, else "".
 std::string scalar_fault(const ConfigNode& node, const Parameter& p) {
@@ -61,10 +58,10 @@ void check_list(const ConfigNode& node, const Parameter& p, ConfigErrors& errors
   if (p.type.kind == ValueKind::section) items = "maps";
   if (p.type.kind == ValueKind::node)
     items = p.plugin_kind.empty() ? "values" : "plugins of kind " + p.plugin_kind;
-  const std::string wanted = "a list of " + (p.size ? std::to_string(p.size) + " " : "") + items;
+  const std::string wanted = "a list of " + (p.type.size ? std::to_string(p.type.size) + " " : "") + items;
   if (node.kind != NodeKind::list) {
     errors.push_back({node.where, label + " must be " + wanted + ", not " + node.shown()});
-  } else if (p.size && int(node.items.size()) != p.size) {
+  } else if (p.type.size && int(node.items.size()) != p.type.size) {
     errors.push_back(
         {node.where, label + " must be " + wanted + ", not of " + std::to_string(node.items.size())});
   } else if (p.type.of_scalars()) {
@@ -119,7 +116,7 @@ void check_named_constants(const ConfigNode& node, const Parameter& p, ConfigErr
 /// Whether the node is valid for `p.read`; if not, appends an error.
 bool check(const ConfigNode& node, const Parameter& p, ConfigErrors& errors) {
   const size_t before = errors.size();
-  if (p.nullable && node.kind == NodeKind::null) return true;
+  if (p.type.nullable && node.kind == NodeKind::null) return true;
   if (p.type.is_list())
     check_list(node, p, errors);
   else if (p.type.is_map())
@@ -150,7 +147,7 @@ ConfigNode relative_path(const ConfigNode& node) {
 
 /// The list of which a path has set single items, as in {2: -1}: the others are the object's own.
 ConfigNode completed(const ConfigNode& node, const Parameter& p, const void* object) {
-  if (node.kind != NodeKind::map || node.entries.empty() || p.size == 0) return node;
+  if (node.kind != NodeKind::map || node.entries.empty() || p.type.size == 0) return node;
   ConfigNode list = p.write(object);
   for (const auto& [key, item] : node.entries) {
     const auto index = parse_integer(key) ? list.index_of(key) : std::nullopt;

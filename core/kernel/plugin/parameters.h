@@ -6,7 +6,6 @@
 #include <memory>
 #include <optional>
 #include <string>
-#include <typeinfo>
 #include <utility>
 #include <vector>
 
@@ -24,6 +23,8 @@ struct ParameterType {
 
   ValueKind kind = ValueKind::text;
   Shape shape = Shape::one;
+  int size = 0;           ///< of a list: its number of items, 0 for any
+  bool nullable = false;  ///< null is allowed and means "none"
 
   bool is_one(ValueKind wanted) const { return shape == Shape::one && kind == wanted; }
   bool is_list() const { return shape == Shape::list; }
@@ -46,12 +47,9 @@ struct Parameter {
   double maximum = std::numeric_limits<double>::infinity();
   bool open_minimum = false;  ///< the minimum itself is excluded
   bool open_maximum = false;
-  int size = 0;  ///< lists: number of items, 0 for any
   bool required = false;
-  bool nullable = false;             ///< null is allowed and means "none"
   std::vector<std::string> choices;  ///< text: the allowed words, empty for any
   std::string plugin_kind;           ///< nodes: the kind of plugin they choose, empty for none
-  bool or_list = false;              ///< a node: a list of nodes is accepted too
   std::string shorthand_key;         ///< a section: a bare word is read as the value of this key
   bool path = false;                 ///< text: a file, relative to the config's folder
   bool from_experiment = false;      ///< a contact model's: its value stands at the top of the experiment
@@ -62,33 +60,26 @@ struct Parameter {
   // Type-erased access to the member of a struct; `read` receives only validated nodes.
   std::function<void(void* object, const ConfigNode&, ConfigErrors&)> read;
   std::function<ConfigNode(const void* object)> write;
-  /// Number k of a number, a list or a map of numbers; null beyond the last one, and without a value.
-  std::function<double*(void* object, std::size_t k)> number;
   std::shared_ptr<const class Schema> section;  ///< of a section, or of the items of a list of sections
-  /// The struct of a section, or of an item of a list of sections; for these types only.
-  std::function<void*(void* object, std::size_t item)> section_in;
 };
 
 /// Reads a value of one parameter into the struct `object`. Appends an error if the value is not valid.
 void read_parameter(const Parameter& parameter, void* object, const ConfigNode& value, ConfigErrors& errors);
-
-/// What a number must be to be a value of the parameter, or of an item of it, as "at least 0"; "" if it is.
-std::string number_fault(const Parameter& parameter, double value);
 
 /// The parameters of one struct.
 class Schema {
  public:
   std::string name;  ///< for messages ("in newton"); may be empty
   std::vector<Parameter> parameters;
-  const std::type_info* type = nullptr;          ///< of the struct; null if it is none of C++
   std::function<std::shared_ptr<void>()> fresh;  ///< a default-constructed struct
-  std::function<std::shared_ptr<void>(const void* object)> copy;
 
   /// Reads a map into `object` (a struct with this schema). Appends an error for every unknown key (with the
   /// nearest known one), wrong type, value out of range, missing required and repeated key.
   void read(void* object, const ConfigNode& map, ConfigErrors& errors) const;
   /// The object as a map with every parameter.
   ConfigNode write(const void* object) const;
+
+ private:
   /// Why the choice beside it makes a parameter of the object meaningless (ParameterHandle::only_with), such
   /// as a mesh file for a square; "" if it does not, or the parameter has its default.
   std::string unread_fault(const Parameter& parameter, const void* object) const;
@@ -109,13 +100,15 @@ class ParameterHandle {
   ParameterHandle& between(double least, double most) { return at_least(least).at_most(most); }
   ParameterHandle& above(double v) { return at_least(v).set(&Parameter::open_minimum, true); }
   ParameterHandle& below(double v) { return at_most(v).set(&Parameter::open_maximum, true); }
-  ParameterHandle& size(int n) { return set(&Parameter::size, n); }
+  ParameterHandle& size(int n) {
+    p_.type.size = n;
+    return *this;
+  }
   ParameterHandle& required() { return set(&Parameter::required, true); }
   ParameterHandle& choices(std::vector<std::string> words) {
     return set(&Parameter::choices, std::move(words));
   }
   ParameterHandle& plugin(std::string kind) { return set(&Parameter::plugin_kind, std::move(kind)); }
-  ParameterHandle& or_list() { return set(&Parameter::or_list, true); }
   ParameterHandle& shorthand(std::string key) { return set(&Parameter::shorthand_key, std::move(key)); }
   ParameterHandle& path() { return set(&Parameter::path, true); }
   /// A contact model's parameter that is written at the top of the experiment, once for all models.

