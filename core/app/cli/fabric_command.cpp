@@ -94,16 +94,19 @@ int print_fabric(const FabricOptions& options) {
   }
   ConfigErrors errors;
   const ConfigNode values = fabric_row(fabric, std::nullopt, errors);
-  ConfigNode material;
+  ConfigNode experiment(ConfigNode::Kind::map), material(ConfigNode::Kind::map);
   for (const auto& [key, value] : values.entries)
     if (key != "source") material.add(key, value);
-  MaterialParameters own;
-  if (errors.empty()) read_section(material, own, errors, "material");
+  experiment.add("material", std::move(material));
+  for (const char* required : {"name", "methods"}) experiment.add(required, ConfigNode::of(options.name));
+  experiment.add("energies", ConfigNode(ConfigNode::Kind::list));
+  ExperimentParameters own;
+  if (errors.empty()) own = parameters_of(experiment, errors);
   require_none(errors);
   std::cout << printable(options.name);
   if (const ConfigNode* source = values.find("source")) std::cout << ": " << printable(source->scalar);
   std::cout << "\n";
-  print_sheet(own, values);
+  print_sheet(own.material, values);
   const std::string value = printable(options.file.empty() ? options.name : fabric.one_line());
   std::cout
       << "Where a figure is not known, the material's default stands for it: material: {fabric: " << value

@@ -163,9 +163,9 @@ std::optional<Experiment> read_experiment(ConfigNode source, const Registry& reg
   set_first_keys(e.source);
   apply_fabric(e.source, errors);
   apply_dress(e.source, errors);
-  experiment_schema().read(&e.parameters, e.source, errors);
+  e.parameters = parameters_of(e.source, errors);
   find_label_edges(e.source, e.parameters, errors);
-  e.resolved = experiment_schema().write(&e.parameters);
+  e.resolved = node_of(e.parameters);
   if (const ConfigNode* name = e.source.find("name"); name && name->is_scalar())
     check_name("name", e.parameters.name, name->where, errors);
   check_cloth_keys(e, errors);
@@ -243,21 +243,5 @@ std::vector<std::string> chosen_methods(const Experiment& experiment, const std:
   std::erase_if(known, [&](const std::string& name) { return !is_one_of(name, asked); });
   return known;
 }
-
-template <class Section>
-ConfigNode section_node(const Section& section) {
-  return schema_of<Section>().write(&section);
-}
-
-template <class Section>
-void read_section(const ConfigNode& map, Section& section, ConfigErrors& errors, const std::string& name) {
-  schema_of<Section>(name).read(&section, map, errors);
-}
-
-template ConfigNode section_node(const ClothParameters&);
-template ConfigNode section_node(const StartParameters&);
-template void read_section(const ConfigNode&, ClothParameters&, ConfigErrors&, const std::string&);
-template void read_section(const ConfigNode&, HierarchyParameters&, ConfigErrors&, const std::string&);
-template void read_section(const ConfigNode&, MaterialParameters&, ConfigErrors&, const std::string&);
 
 }  // namespace drape

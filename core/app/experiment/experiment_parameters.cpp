@@ -333,4 +333,12 @@ const Schema& experiment_schema() {
   return schema;
 }
 
+ConfigNode node_of(const ExperimentParameters& parameters) { return experiment_schema().write(&parameters); }
+
+ExperimentParameters parameters_of(const ConfigNode& node, ConfigErrors& errors) {
+  ExperimentParameters parameters;
+  experiment_schema().read(&parameters, node, errors);
+  return parameters;
+}
+
 }  // namespace drape

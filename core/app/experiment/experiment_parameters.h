@@ -232,12 +232,8 @@ struct ExperimentParameters {
 
 const Schema& experiment_schema();
 
-/// A section of an experiment as a map with every parameter; read from one, which appends faults. For the
-/// cloth, the hierarchy, the material and the start (experiment.cpp).
-template <class Section>
-ConfigNode section_node(const Section& section);
-template <class Section>
-void read_section(const ConfigNode& map, Section& section, ConfigErrors& errors,
-                  const std::string& name = "");  ///< the section's, for messages
+/// An experiment's parameters as a map with all of them, and read from one; appends faults.
+ConfigNode node_of(const ExperimentParameters& parameters);
+ExperimentParameters parameters_of(const ConfigNode& node, ConfigErrors& errors);
 
 }  // namespace drape

@@ -287,8 +287,7 @@ std::vector<const ScheduleKey*> set_values(const Experiment& e, std::vector<doub
     else
       set_parameter(source, key.parameter, node_of(key, value), {}, errors);
   }
-  ExperimentParameters now;
-  experiment_schema().read(&now, source, errors);
+  ExperimentParameters now = parameters_of(source, errors);
   if (!errors.empty()) return changed;
   const auto has_changed = [&](const auto& is_meant) {
     return std::ranges::any_of(changed, [&](const ScheduleKey* key) { return is_meant(*key); });

@@ -71,15 +71,12 @@ TriangleMesh cloth_mesh(const RunData& run, const LevelRecord& level) {
 /// A level's mesh in the unit and the axes of the file that the cloth was read from; on the level of that
 /// file's mesh with its vertices and faces.
 TriangleMesh mesh_as_read(const RunData& run, int level, TriangleMesh mesh) {
-  ClothParameters cloth;
   ConfigErrors unread;
-  if (const ConfigNode* written = run.config.find("cloth")) read_section(*written, cloth, unread);
-  HierarchyParameters hierarchy;
-  if (const ConfigNode* written = run.config.find("hierarchy")) read_section(*written, hierarchy, unread);
-  const AsReadParameters& read = cloth.as_read;
+  const ExperimentParameters p = parameters_of(run.config, unread);
+  const AsReadParameters& read = p.cloth.as_read;
   if (read.file.empty()) throw std::runtime_error("--as-read: the run's cloth is not of a file");
   mesh.vertices = read.in_file(mesh.vertices);
-  if (level != hierarchy.coarsen) return mesh;
+  if (level != p.hierarchy.coarsen) return mesh;
   TriangleMesh own = read_mesh(read.file), joined = own;
   read.convert(joined.vertices);
   joined.vertices *= read.scale;

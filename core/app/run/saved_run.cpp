@@ -85,16 +85,16 @@ const RecordedState* saved_in(const std::optional<Checkpoint>& checkpoint, const
 ConfigNode saved_config(const Experiment& experiment) {
   ConfigNode config = experiment.resolved;
   const ExperimentParameters& p = experiment.parameters;
+  ExperimentParameters saved = p;
   if (!p.start.file.empty()) {
-    StartParameters start = p.start;  // of a copy of the file as it was
-    const FileCoordinates own = start.file_coordinates(p.cloth);
-    start.unit = own.unit;
-    start.up = own.up;
-    set_path(config, "start", section_node(start));
+    const FileCoordinates own = p.start.file_coordinates(p.cloth);  // of a copy of the file as it was
+    saved.start.unit = own.unit;
+    saved.start.up = own.up;
+    set_path(config, "start", *node_of(saved).find("start"));
     set_path(config, "start.file", copy_named("start.ply"));
   }
   if (!p.cloth.file.empty()) {
-    ClothParameters cloth = p.cloth;
+    ClothParameters& cloth = saved.cloth;
     if (cloth.shape == "pattern")
       cloth.shape = "file", cloth.rest = "uv", cloth.uv_unit = "m";
     else if (cloth.as_read.file.empty())
@@ -111,7 +111,7 @@ ConfigNode saved_config(const Experiment& experiment) {
     cloth.grain = as_written.grain;  // its faces have warp as it was cut
     cloth.grain_along = as_written.grain_along;
     cloth.grain_regions.clear();
-    set_path(config, "cloth", section_node(cloth));
+    set_path(config, "cloth", *node_of(saved).find("cloth"));
     set_path(config, "cloth.file", copy_named(rest_file(p.hierarchy.coarsen)));
   }
   if (!p.reference.file.empty()) set_path(config, "reference.file", copy_named("reference.ply"));

@@ -225,9 +225,8 @@ Vector3d repair_start(Experiment& experiment, const Scene& scene, ConfigErrors& 
   search.run();
   if (!search.found) errors.push_back({where, search.failure()});
   if (!search.found || search.translation.isZero(0)) return Vector3d::Zero();
-  StartParameters& moved = experiment.parameters.start;
-  moved.translate += search.translation;
-  set_path(experiment.resolved, "start", section_node(moved));
+  experiment.parameters.start.translate += search.translation;
+  set_path(experiment.resolved, "start", *node_of(experiment.parameters).find("start"));
   return search.translation;
 }
 

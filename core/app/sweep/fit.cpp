@@ -39,10 +39,7 @@ bool is_replaced(const ConfigNode& section, const std::string& key) {
 /// The numbers of a group: of a section's path with a part of a key's name. Those that are written, or else
 /// the defaults.
 std::vector<ScaledKey> group(const ConfigNode& source, const ConfigNode& resolved, const std::string& path) {
-  static const ConfigNode plain = [] {
-    const ExperimentParameters parameters;
-    return experiment_schema().write(&parameters);
-  }();
+  static const ConfigNode plain = node_of(ExperimentParameters());
   std::vector<ScaledKey> changed, defaults;
   const std::size_t dot = path.rfind('.');
   const ConfigNode* section = dot == std::string::npos ? nullptr : value_at(resolved, path.substr(0, dot));
