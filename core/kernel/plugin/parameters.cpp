@@ -129,7 +129,6 @@ bool check(const ConfigNode& node, const Parameter& p, ConfigErrors& errors) {
 /// The map that a section's shorthand stands for. set_path has expanded a shorthand to a map with the word as
 /// `type` if it set another key of the section.
 ConfigNode expand_shorthand(const ConfigNode& node, const Parameter& p) {
-  if (p.shorthand_key.empty()) return node;
   ConfigNode map = node.as_map(p.shorthand_key);
   for (auto& [key, value] : map.entries)
     if (key == "type") key = p.shorthand_key;
@@ -145,16 +144,16 @@ ConfigNode relative_path(const ConfigNode& node) {
   return path;
 }
 
-/// The list of which a path has set single items, as in {2: -1}: the others are the object's own.
-ConfigNode completed(const ConfigNode& node, const Parameter& p, const void* object) {
-  if (node.kind != NodeKind::map || node.entries.empty() || p.type.size == 0) return node;
+/// The list of which a path has set single items, as in {2: -1}: the others are the object's own. Nothing if
+/// the map names anything else.
+std::optional<ConfigNode> completed(const ConfigNode& map, const Parameter& p, const void* object) {
   ConfigNode list = p.write(object);
-  for (const auto& [key, item] : node.entries) {
+  for (const auto& [key, item] : map.entries) {
     const auto index = parse_integer(key) ? list.index_of(key) : std::nullopt;
-    if (!index || node.find(key) != &item) return node;
+    if (!index || map.find(key) != &item) return std::nullopt;
     list.items[*index] = item;
   }
-  list.where = node.where;
+  list.where = map.where;
   return list;
 }
 
@@ -168,9 +167,16 @@ std::string ParameterType::text() const {
 }
 
 void read_parameter(const Parameter& p, void* object, const ConfigNode& written, ConfigErrors& errors) {
-  const ConfigNode value = completed(written, p, object);
-  if (check(value, p, errors))
-    p.read(object, p.path ? relative_path(value) : expand_shorthand(value, p), errors);
+  std::optional<ConfigNode> list;
+  if (p.type.size > 0 && !written.entries.empty()) list = completed(written, p, object);
+  const ConfigNode& value = list ? *list : written;
+  if (!check(value, p, errors)) return;
+  if (p.path)
+    p.read(object, relative_path(value), errors);
+  else if (!p.shorthand_key.empty())
+    p.read(object, expand_shorthand(value, p), errors);
+  else
+    p.read(object, value, errors);
 }
 
 namespace parameter_detail {

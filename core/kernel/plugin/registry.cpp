@@ -138,7 +138,10 @@ std::shared_ptr<void> make_plugin(const Registry& registry, const std::string& k
   const Schema schema = section_schema(*entry);
   const std::shared_ptr<void> values = entry->schema.fresh();
   const size_t faults = errors.size();
-  schema.read(values.get(), node.as_map("type"), errors);
+  if (node.is_scalar())
+    schema.read(values.get(), node.as_map("type"), errors);
+  else
+    schema.read(values.get(), node, errors);  // uncopied: it may have thousands of obstacles
   if (resolved) *resolved = schema.write(values.get());
   if (errors.size() > faults) return nullptr;
   try {
@@ -148,7 +151,7 @@ std::shared_ptr<void> make_plugin(const Registry& registry, const std::string& k
       errors.push_back(
           {location_of(node, fault.path, fault.at), entry->name + ": " + fault.message, fault.shown});
   } catch (...) {
-    errors.push_back({location_of(node, "", std::nullopt), entry->name + ": " + message_in_flight()});
+    errors.push_back({node.where, entry->name + ": " + message_in_flight()});
   }
   return nullptr;
 }
