@@ -23,12 +23,6 @@ constexpr double first_weight = 0.99, least_weight = 1e-4;
 constexpr double loosest_limit = 100;
 constexpr int limit_increments = 12;
 
-ConfigNode list_of(const std::vector<double>& values) {
-  ConfigNode list(ConfigNode::Kind::list);
-  for (const double value : values) list.items.push_back(ConfigNode::of(value));
-  return list;
-}
-
 }  // namespace
 
 void DressParameters::declare(Declaration<DressParameters>& d) {
@@ -112,7 +106,7 @@ void make_dressing_schedule(Experiment& e, ConfigErrors& errors) {
   const auto add = [&](const std::string& parameter, const std::vector<double>& times,
                        const std::vector<double>& values,
                        KeyInterpolation interpolation = KeyInterpolation::linear) {
-    ConfigNode written = list_of(values);
+    ConfigNode written = parameter_detail::to_node(values);
     written.where = e.location_of("dress");
     p.schedule.keys.push_back({parameter, times, std::move(written), interpolation, {}, {}, 0});
   };

@@ -60,9 +60,7 @@ std::vector<const ConfigNode*> numbers_at(const ConfigNode& resolved, const Sche
 /// A key's value as its parameter has it.
 ConfigNode node_of(const ScheduleKey& key, std::span<const double> value) {
   if (key.written.items[0].kind != NodeKind::list) return ConfigNode::of(value[0]);
-  ConfigNode list(NodeKind::list);
-  for (const double number : value) list.items.push_back(ConfigNode::of(number));
-  return list;
+  return parameter_detail::to_node(std::vector<double>(value.begin(), value.end()));
 }
 
 class KeyReader {
