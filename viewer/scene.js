@@ -4,19 +4,14 @@
 /// Arrows along warp on both sides of a cloth, of that length. An item of `warp` has the corners of a triangle, and
 /// warp by its edges.
 function arrows(x, warp, length) {
-  const points = [];
-  for (const [i, j, k, a, b] of warp) {
-    const [p, q, r] = [i, j, k].map(v => new THREE.Vector3().fromArray(x, 3 * v));
-    const centre = p.clone().add(q).add(r).divideScalar(3), e1 = q.sub(p), e2 = r.sub(p);
-    const normal = e1.clone().cross(e2).normalize();
+  const outline = [[-.5, 0], [.5, 0], [.2, .15], [.5, 0], [.2, -.15], [.5, 0]];  // shaft and barbs, along and across warp
+  return new THREE.BufferGeometry().setFromPoints(warp.flatMap(([i, j, k, a, b]) => {
+    const [p, q, r] = [i, j, k].map(v => new THREE.Vector3().fromArray(x, 3 * v)), centre = p.clone().add(q).add(r).divideScalar(3);
+    const e1 = q.sub(p), e2 = r.sub(p), normal = e1.clone().cross(e2).normalize();
     const along = e1.multiplyScalar(a).addScaledVector(e2, b).normalize(), across = normal.clone().cross(along);
-    for (const side of [1, -1]) {
-      const tip = centre.clone().addScaledVector(normal, .04 * side * length).addScaledVector(along, length / 2);
-      const barb = turn => tip.clone().addScaledVector(along, -.3 * length).addScaledVector(across, .15 * turn * length);
-      points.push(tip.clone().addScaledVector(along, -length), tip, barb(1), tip, barb(-1), tip);
-    }
-  }
-  return new THREE.BufferGeometry().setFromPoints(points);
+    return [1, -1].flatMap(side => outline.map(([u, v]) => centre.clone().addScaledVector(along, u * length)
+      .addScaledVector(across, v * length).addScaledVector(normal, .04 * side * length)));
+  }));
 }
 
 /// The ground below a view: nothing but the shadow that `map` holds, as it is seen from above, with soft borders.
@@ -56,7 +51,7 @@ export class Scene {
     Object.assign(this.solid, {polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 61});
     this.shade = new THREE.MeshBasicMaterial({color: 0xffffff, side: THREE.DoubleSide});
     this.sun = new THREE.OrthographicCamera();
-    this.lines = new THREE.LineBasicMaterial({color: 0xb3261e, visible: false});
+    this.warp = new THREE.LineBasicMaterial({color: 0xb3261e, visible: false});
     this.seams = new THREE.LineBasicMaterial({color: 0x3a2d22});
     this.lookAt([0, 0, 0], 1);
     new ResizeObserver(() => this.layOut()).observe(canvas.parentElement);
@@ -113,22 +108,15 @@ export class Scene {
     }
     this.draw();
   }
-
   /// Whether obstacles stand back by some per cent of the scene: a smooth surface lies within its mesh, which rests on them.
   setBack(on) { this.solid.polygonOffsetUnits = on ? 3000 : 61; }
   /// Darkens every other square of this side [m] in the rest shape; 0 for none.
   setSquares(side) {
     for (const material of [this.cloth, this.painted]) material.uniforms.square.value = side;
-    this.draw();
   }
-  /// Shows arrows along warp.
-  setWarp(on) {
-    this.lines.visible = on;
-    this.draw();
-  }
-  /// Shows seams as lines.
-  setSeams(on) {
-    this.seams.visible = on;
+  /// Shows `warp`, as arrows, or `seams`, as lines.
+  setLines(kind, on) {
+    this[kind].visible = on;
     this.draw();
   }
 
@@ -181,7 +169,7 @@ export class Scene {
         lines.setIndex(shape.seams);  // which returns nothing in older versions of three.js
         view.mesh.add(new THREE.LineSegments(lines, this.seams));
       }
-      if (shape.warp) view.mesh.add(new THREE.LineSegments(arrows(shape.x, shape.warp, .06 * this.home.radius), this.lines));
+      if (shape.warp) view.mesh.add(new THREE.LineSegments(arrows(shape.x, shape.warp, .06 * this.home.radius), this.warp));
     }
     if (shape.tints) view.mesh.geometry.setAttribute('tint', new THREE.BufferAttribute(shape.tints, 3, true));
     if (shape.rest) view.mesh.geometry.setAttribute('rest', new THREE.BufferAttribute(shape.rest, 3));
@@ -305,15 +293,15 @@ export class Scene {
     camera.aspect = this.panel.width / this.panel.height;
     this.views.forEach(view => this.cast(view));
     this.renderer.setClearColor(getComputedStyle(this.canvas.parentElement).backgroundColor);
-    const whole = [0, 0, this.panel.width * this.columns, this.panel.height * this.rows];
-    this.renderer.setScissor(...whole);
-    this.renderer.setViewport(...whole);
-    this.renderer.clear();
-    this.views.forEach((view, k) => {
-      const x = k % this.columns * this.panel.width, row = this.rows - 1 - Math.floor(k / this.columns);
-      const place = [x, row * this.panel.height, this.panel.width, this.panel.height];
+    const drawIn = (...place) => {
       this.renderer.setScissor(...place);
       this.renderer.setViewport(...place);
+    };
+    drawIn(0, 0, this.panel.width * this.columns, this.panel.height * this.rows);
+    this.renderer.clear();
+    this.views.forEach((view, k) => {
+      const row = this.rows - 1 - Math.floor(k / this.columns);
+      drawIn(k % this.columns * this.panel.width, row * this.panel.height, this.panel.width, this.panel.height);
       this.aim(view.flat);
       this.renderer.render(view.scene, camera);
     });

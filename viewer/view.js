@@ -36,9 +36,9 @@ export class View {
         tick('obstacles', true, on => { this.obstacles = on; this.show(this.stop); }, 'viewer-obstacles'),
         tick('smooth surface', false, on => { this.smooth = on; this.scene.setBack(on); this.show(this.stop); }, 'viewer-smooth'),
         tick('x-ray', false, on => this.scene.setXray(on), 'viewer-xray'),
-        view.levels.some(level => level.warp) ? tick('warp (red arrows)', false, on => this.scene.setWarp(on), 'viewer-warp') : '',
+        view.levels.some(level => level.warp) ? tick('warp (red arrows)', false, on => this.scene.setLines('warp', on), 'viewer-warp') : '',
         view.levels.some(level => level.rest || level.flat) ? tick('squares at rest', false, on => { this.squares = on; this.show(this.stop); }, 'viewer-squares') : '', this.squareSize,
-        view.levels.some(level => level.seams) ? [tick('seams', true, on => this.scene.setSeams(on), 'viewer-seams'),
+        view.levels.some(level => level.seams) ? [tick('seams', true, on => this.scene.setLines('seams', on), 'viewer-seams'),
           tick('flat pieces', false, on => { this.flat = on; this.listPanels(); this.show(this.stop); }, 'viewer-flat')] : '',
         button('viewer-reset', 'Reset', () => this.scene.resetView()), button('viewer-png', 'PNG', () => this.savePicture())),
       this.legend,
@@ -163,11 +163,11 @@ export class View {
     const [obstacles, index, x, tints] = await Promise.all([this.obstaclesOf(found.state), this.index(entry),
       this.block('x', found.state.x, bytes => positions(bytes, entry.vertices)),
       tinted]);
-    if (this.squares && !this.smooth) {
-      const {flat: pieces, rest} = entry, at = pieces ? await this.flatPieces(pieces, tints, x) : {index, x, tints, rest: rest && await this.block('rest', rest, b => positions(b, entry.vertices))};
-      return {method, end, found, shape: {...at, warp: entry.warp, seams: entry.seams}, obstacles};
-    }
-    return {method, end, found, shape: {...this.smooth && surface({index, x, tints}, block ?? '') || {index, x, tints}, warp: entry.warp, seams: !this.smooth && entry.seams}, obstacles};
+    let shape = {index, x, tints};
+    if (this.smooth) shape = surface(shape, block ?? '') ?? shape;
+    else if (this.squares) shape = entry.flat ? await this.flatPieces(entry.flat, tints, x)
+      : {...shape, rest: entry.rest && await this.block('rest', entry.rest, b => positions(b, entry.vertices))};
+    return {method, end, found, shape: {...shape, warp: entry.warp, seams: !this.smooth && entry.seams}, obstacles};
   }
   /// The pieces of a level as they are cut, or where x has its vertices, with the colours of its vertices.
   async flatPieces(flat, tints, x = null) {
@@ -296,18 +296,13 @@ export class View {
   listen() {
     const {canvas, scene} = this;
     matchMedia('(prefers-color-scheme: dark)').addEventListener('change', () => scene.draw());
+    const go = (right, up) => shift => shift ? scene.move(.05 * right, .05 * up) : scene.turn(.1 * right, .1 * up);
+    const nearer = () => scene.zoom(1 / 1.15), home = () => scene.resetView();
+    const keys = {ArrowLeft: go(-1, 0), ArrowRight: go(1, 0), ArrowUp: go(0, 1), ArrowDown: go(0, -1), '+': nearer, '=': nearer, '-': () => scene.zoom(1.15),
+      0: home, Home: home, PageUp: () => this.changeLevel(true), PageDown: () => this.changeLevel(false), ' ': () => this.play(!this.plays)};
     canvas.addEventListener('keydown', event => {
-      const way = {ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1]}[event.key];
-      if (event.ctrlKey || event.metaKey || event.altKey) return;
-      if (way && event.shiftKey) scene.move(.05 * way[0], .05 * way[1]);
-      else if (way) scene.turn(.1 * way[0], .1 * way[1]);
-      else if (event.key === '+' || event.key === '=') scene.zoom(1 / 1.15);
-      else if (event.key === '-') scene.zoom(1.15);
-      else if (event.key === '0' || event.key === 'Home') scene.resetView();
-      else if (event.key === 'PageUp') this.changeLevel(true);
-      else if (event.key === 'PageDown') this.changeLevel(false);
-      else if (event.key === ' ') this.play(!this.plays);
-      else return;
+      if (event.ctrlKey || event.metaKey || event.altKey || !Object.hasOwn(keys, event.key)) return;
+      keys[event.key](event.shiftKey);
       event.preventDefault();
     });
     canvas.addEventListener('wheel', event => {
