@@ -12,7 +12,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "core/app/picture/surface.h"
+#include "core/numerics/mesh/area_vectors.h"
 
 namespace drape {
 
@@ -189,6 +189,29 @@ bool RayScene::blocked(const Ray& ray, float length) const {
   RTCRayHit query = embree_ray(ray, length);
   occlude(all_.get(), &query.ray);
   return query.ray.tfar < 0;
+}
+
+TriangleMesh split_at_creases(const TriangleMesh& mesh, Positions& normals) {
+  constexpr double cosine_of_crease = 0.766;
+  const Eigen::Index m = mesh.triangles.rows();
+  const Positions areas = area_vectors(mesh);
+  std::vector<std::vector<int>> around(mesh.vertices.rows());
+  for (Eigen::Index t = 0; t < m; ++t)
+    for (int k = 0; k < 3; ++k) around[mesh.triangles(t, k)].push_back(static_cast<int>(t));
+  TriangleMesh split{Positions(3 * m, 3), Triangles(m, 3)};
+  normals = Positions::Zero(3 * m, 3);
+  for (Eigen::Index t = 0; t < m; ++t)
+    for (int k = 0; k < 3; ++k) {
+      const int i = mesh.triangles(t, k), corner = static_cast<int>(3 * t) + k;
+      split.triangles(t, k) = corner;
+      split.vertices.row(corner) = mesh.vertices.row(i);
+      for (const int other : around[i])
+        if (areas.row(t).dot(areas.row(other)) >=
+            cosine_of_crease * areas.row(t).norm() * areas.row(other).norm())
+          normals.row(corner) += areas.row(other);
+      normals.row(corner).normalize();
+    }
+  return split;
 }
 
 }  // namespace drape

@@ -36,6 +36,10 @@ struct SurfacePoint : Seen {
   Eigen::Vector3f edge_distance = Eigen::Vector3f::Zero();  ///< across the ray, to the triangle's edges [m]
 };
 
+/// A mesh whose triangles share no vertices, and its normals, n×3, unit length: smooth, but not across edges
+/// with more than 40° between their triangles' normals.
+TriangleMesh split_at_creases(const TriangleMesh& mesh, Positions& normals);
+
 /// A drawing's surfaces, ready for rays (Embree). Ray queries may run on any number of threads.
 class RayScene {
  public:

@@ -15,4 +15,15 @@ inline Positions area_vectors(const TriangleMesh& mesh) {
   return areas;
 }
 
+/// n×3 unit normals, area-weighted; zero where undefined.
+inline Positions smooth_normals(const TriangleMesh& mesh) {
+  const Positions areas = area_vectors(mesh);
+  Positions normals = Positions::Zero(mesh.vertices.rows(), 3);
+  for (Eigen::Index t = 0; t < mesh.triangles.rows(); ++t)
+    if (areas.row(t).allFinite())
+      for (int k = 0; k < 3; ++k) normals.row(mesh.triangles(t, k)) += areas.row(t);
+  for (Eigen::Index i = 0; i < normals.rows(); ++i) normals.row(i).normalize();
+  return normals;
+}
+
 }  // namespace drape

@@ -9,7 +9,7 @@
 
 #include "core/app/picture/ray_scene.h"
 #include "core/app/picture/render.h"
-#include "core/app/picture/surface.h"
+#include "core/numerics/mesh/area_vectors.h"
 #include "core/numerics/patterns/generate.h"
 #include "tests/support/any_threads.h"
 
