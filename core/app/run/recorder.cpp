@@ -8,7 +8,8 @@
 #include "core/app/files/machine.h"
 #include "core/app/report/run_data.h"
 #include "core/app/run/recorder_files.h"
-#include "core/app/view/garment_fields.h"
+#include "core/app/scene/garment_place.h"
+#include "core/app/view/surface_fields.h"
 #include "core/kernel/files/file.h"
 #include "core/kernel/files/number_text.h"
 #include "core/kernel/threads/parallel.h"
@@ -61,7 +62,7 @@ std::string message_of(const LevelResult& r, const LevelModel& model) {
   for (Eigen::Index i = 0; i < force.rows(); ++i)
     if (model.fixed()[i]) force.row(i).setZero();
   force.rowwise().squaredNorm().maxCoeff(&vertex);
-  return r.message + "; the largest force is at " + garment_place(model.level(), static_cast<int>(vertex));
+  return r.message + "; the largest force is at " + place_in_garment(model.level(), static_cast<int>(vertex));
 }
 
 /// What runs, and where.

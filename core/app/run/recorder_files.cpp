@@ -8,7 +8,7 @@
 
 #include "core/app/files/json_file.h"
 #include "core/app/report/run_data.h"
-#include "core/app/view/garment_fields.h"
+#include "core/app/view/surface_fields.h"
 #include "core/kernel/files/file.h"
 #include "core/kernel/files/number_text.h"
 #include "core/kernel/files/string_utils.h"

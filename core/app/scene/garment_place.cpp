@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "core/app/experiment/pattern_file.h"
+#include "core/kernel/files/string_utils.h"
 
 namespace drape {
 
@@ -64,6 +65,15 @@ GarmentPlace place_in_garment(const ClothParameters& parameters, const Level& co
   if (const Seam* seam = nearest_seam(*pattern, piece, drawn_middle(panel, cloth, triangle)))
     place.text += ", by its seam " + seam->name + " (" + seam->where.text() + ")";
   return place;
+}
+
+std::string place_in_garment(const Level& level, int vertex) {
+  const TriangleMesh& cloth = level.rest;
+  if (cloth.piece_names.empty()) return "";
+  std::vector<std::string> pieces;
+  for (const int t : level.topology.vertex_triangles.row(vertex))
+    add_new(pieces, cloth.piece_names[cloth.piece[t]]);
+  return pieces.size() == 1 ? "piece " + pieces[0] : "the seam of " + joined(pieces, ", ", " and ");
 }
 
 }  // namespace drape

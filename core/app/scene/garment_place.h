@@ -18,4 +18,8 @@ struct GarmentPlace {
 /// with the seam that is nearest to the triangle.
 GarmentPlace place_in_garment(const ClothParameters& cloth, const Level& coarsest, int triangle);
 
+/// The place of a vertex in a cloth of flat pieces, "piece front" or "the seam of front and sleeve_left"; ""
+/// in another cloth.
+std::string place_in_garment(const Level& level, int vertex);
+
 }  // namespace drape

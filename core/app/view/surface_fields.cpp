@@ -3,48 +3,36 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
-#include "core/numerics/collision_detection/box_tree.h"
-#include "core/numerics/collision_detection/closest.h"
+#include "core/numerics/collision_detection/surface_search.h"
+#include "core/numerics/elements/green_strain.h"
 
 namespace drape {
 
 namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-constexpr double quantile = 0.98;  // of the values inside the colours' range
+constexpr double quantile = 0.98;    // of the values inside the colours' range
+constexpr double ease_range = 0.06;  // [m]
+constexpr double pascals_in_mmhg = 133.322;
 
-/// Lowers gap[i] to the distance of each point i to every triangle within `range` that `counts(i, t)`.
+/// The distance of each point (n×3) to the triangles of a surface that `counts(point, triangle)`, where it is
+/// shorter than the one known; NaN stands for one beyond the range.
 template <class Counts>
-void lower_to_distance(Eigen::VectorXd& gap, const BoxTree& points, const Positions& x, const Positions& y,
-                       const Triangles& triangles, double range, const Counts& counts) {
-  if (triangles.rows() == 0) return;
-  std::vector<Box> boxes;
-  for (const auto& v : triangles.rowwise()) {
-    boxes.push_back(Box::around(y.row(v[0]), y.row(v[1]), range));
-    boxes.back().include(Box::around(y.row(v[2]), y.row(v[2]), range));
+void lower_to_distance(Eigen::VectorXd& known, const Positions& x, const TriangleMesh& surface, double range,
+                       const Counts& counts) {
+  const SurfaceSearch search(surface);
+  for (Eigen::Index i = 0; i < x.rows(); ++i) {
+    const double reach = std::isnan(known[i]) ? range : known[i];
+    const NearestPoint near =
+        search.nearest(x.row(i).transpose(), reach, [&](int triangle) { return counts(i, triangle); });
+    if (near.triangle < 0) continue;
+    Eigen::RowVector3d offset = x.row(i);  // summed corner by corner: results have the last bits of `ease`
+    for (int k = 0; k < 3; ++k)
+      offset -= near.weights[k] * surface.vertices.row(surface.triangles(near.triangle, k));
+    known[i] = offset.norm();
   }
-  BoxTree tree;
-  tree.build(boxes);
-  for (int run = 0; run < points.runs(); ++run)
-    points.overlaps(
-        tree, run,
-        [&](int i, int t) {
-          if (!counts(i, t)) return;
-          const auto v = triangles.row(t);
-          const Eigen::Vector3d a = y.row(v[0]), b = y.row(v[1]), c = y.row(v[2]), p = x.row(i);
-          const Eigen::Vector4d w = closest_point_triangle(p, a, b, c).c;
-          gap[i] = std::min(gap[i], (w[0] * p + w[1] * a + w[2] * b + w[3] * c).norm());
-        },
-        [] { return false; });
-}
-
-BoxTree tree_of(const Positions& x) {
-  std::vector<Box> boxes(x.rows());
-  for (Eigen::Index i = 0; i < x.rows(); ++i) boxes[i] = Box::around(x.row(i), x.row(i), 0);
-  BoxTree points;
-  points.build(boxes);
-  return points;
 }
 
 /// The quantile of all finite |values|; 0 without any.
@@ -59,20 +47,24 @@ double magnitude_quantile(const std::vector<const Eigen::VectorXd*>& fields, dou
   return *place;
 }
 
-/// The distance of each point to the obstacles; +∞ where it is known to be beyond the range.
-Eigen::VectorXd nearest_obstacle(const BoxTree& points, const Positions& x,
-                                 const std::vector<TriangleMesh>& obstacles, double range) {
-  Eigen::VectorXd gap = Eigen::VectorXd::Constant(x.rows(), std::numeric_limits<double>::infinity());
-  for (const TriangleMesh& obstacle : obstacles)
-    lower_to_distance(gap, points, x, obstacle.vertices, obstacle.triangles, range,
-                      [](int, int) { return true; });
-  return gap;
-}
+/// Weighted mean and largest of the finite values.
+struct Mean {
+  double sum = 0, weight = 0;
+  std::optional<double> largest;
+
+  void add(double value, double own) {
+    if (!std::isfinite(value)) return;
+    sum += own * value, weight += own;
+    largest = std::max(largest.value_or(value), value);
+  }
+  Json mean() const { return weight > 0 ? Json(sum / weight) : Json(); }
+  Json most() const { return largest ? Json(*largest) : Json(); }
+};
 
 }  // namespace
 
-const std::vector<FieldKind>& surface_fields() {
-  static const std::vector<FieldKind> kinds = {
+std::vector<FieldKind> field_kinds(bool worn) {
+  std::vector<FieldKind> kinds = {
       {"mean_curvature", "mean curvature", "1/m", "diverging",
        "mean curvature; beyond the ends the end colours"},
       {"stretch", "largest stretch", "1", "sequential",
@@ -81,30 +73,33 @@ const std::vector<FieldKind>& surface_fields() {
        "distance to an obstacle or another part of the cloth; farther away in cloth colour"},
       {"contact_pressure", "contact force", "Pa", "force",
        "force of contact on a vertex over its area; without one in cloth colour; known for the ends of "
-       "levels"}};
+       "levels"},
+      {"stretch_warp", "stretch along warp", "%", "diverging", "of the triangles around; 0 is unstretched"},
+      {"stretch_weft", "stretch along weft", "%", "diverging", "of the triangles around; 0 is unstretched"},
+      {"ease", "ease", "mm", "force", "distance to the body; beyond 60 mm in cloth colour"}};
+  if (!worn) kinds.resize(kinds.size() - 3);  // without those of garments
   return kinds;
 }
 
 Eigen::VectorXd obstacle_distance(const Positions& x, const std::vector<TriangleMesh>& obstacles,
                                   double range) {
-  Eigen::VectorXd gap = nearest_obstacle(tree_of(x), x, obstacles, range);
-  for (double& g : gap) g = g <= range ? g : nan;
-  return gap;
+  Eigen::VectorXd distance = Eigen::VectorXd::Constant(x.rows(), nan);
+  for (const TriangleMesh& obstacle : obstacles)
+    lower_to_distance(distance, x, obstacle, range, [](Eigen::Index, int) { return true; });
+  return distance;
 }
 
 Eigen::VectorXd contact_gap(const Level& level, const Positions& x,
                             const std::vector<TriangleMesh>& obstacles, double range) {
-  const BoxTree points = tree_of(x);
-  Eigen::VectorXd gap = nearest_obstacle(points, x, obstacles, range);
+  Eigen::VectorXd gap = obstacle_distance(x, obstacles, range);
   // A vertex's neighbourhood along the cloth is always near and is no contact.
   const Positions& rest = level.rest.vertices;
   const Triangles& triangles = level.rest.triangles;
-  lower_to_distance(gap, points, x, x, triangles, range, [&](int i, int t) {
+  lower_to_distance(gap, x, {x, triangles}, range, [&](Eigen::Index i, int t) {
     for (int k = 0; k < 3; ++k)
       if ((rest.row(triangles(t, k)) - rest.row(i)).norm() < 3 * range) return false;
     return true;
   });
-  for (double& g : gap) g = g <= range ? g : nan;
   return gap;
 }
 
@@ -123,6 +118,54 @@ std::pair<double, double> field_range(const FieldKind& kind,
   if (map == "force") return {0, magnitude_quantile(values, quantile)};
   // Stretch begins at 1; the largest matters, so none is cut off.
   return {1, std::max(1.001, magnitude_quantile(values, 1))};
+}
+
+VertexFields garment_fields_at(const Level& level, const Positions& x,
+                               const std::vector<TriangleMesh>& obstacles) {
+  const std::vector<MaterialTriangle> rest = material_triangles(level);
+  Eigen::VectorXd warp = Eigen::VectorXd::Zero(x.rows()), weft = warp, area = warp;
+  for (int t = 0; t < level.triangle_count(); ++t) {
+    const auto v = level.rest.triangles.row(t);
+    const Eigen::RowVector3d e1 = x.row(v[1]) - x.row(v[0]), e2 = x.row(v[2]) - x.row(v[0]);
+    const MaterialTriangle& m = rest[t];
+    const double along = (m[0] * e1 + m[1] * e2).norm() - 1, across = (m[2] * e1 + m[3] * e2).norm() - 1;
+    for (int k = 0; k < 3; ++k) warp[v[k]] += m[4] * along, weft[v[k]] += m[4] * across, area[v[k]] += m[4];
+  }
+  const auto percent = [&](const Eigen::VectorXd& sums) {
+    return Eigen::VectorXd(100 * sums.cwiseQuotient(area));
+  };
+  return {{"stretch_warp", percent(warp)},
+          {"stretch_weft", percent(weft)},
+          {"ease", 1000 * obstacle_distance(x, obstacles, ease_range)}};
+}
+
+Json garment_pieces(const Level& level, const VertexFields& fields, const Eigen::VectorXd& pressure) {
+  const TriangleMesh& cloth = level.rest;
+  Json pieces = Json::array();
+  for (std::size_t p = 0; p < cloth.piece_names.size(); ++p) {
+    Eigen::VectorXd weight = Eigen::VectorXd::Zero(level.vertex_count());
+    for (int t = 0; t < level.triangle_count(); ++t)
+      for (int k = 0; k < 3; ++k)
+        if (cloth.piece[t] == static_cast<int>(p)) weight[cloth.triangles(t, k)] += 1;
+    const auto over_piece = [&](const Eigen::VectorXd& values) {
+      Mean mean;
+      for (Eigen::Index i = 0; i < values.size(); ++i)
+        if (weight[i] > 0) mean.add(values[i], weight[i]);
+      return mean;
+    };
+    Json& entry = pieces.emplace_back(Json{{"piece", cloth.piece_names[p]}});
+    for (const VertexField& field : fields) {
+      const Mean mean = over_piece(field.values);
+      entry[field.name] = mean.mean();
+      if (field.name != "ease") entry["largest_" + field.name] = mean.most();
+    }
+    if (pressure.size() == 0) continue;
+    const Mean mean = over_piece(pressure);
+    entry["pressure"] = mean.sum / mean.weight / 1000;
+    entry["pressure_mmhg"] = mean.sum / mean.weight / pascals_in_mmhg;
+    entry["largest_pressure"] = mean.largest.value_or(0) / 1000;
+  }
+  return pieces;
 }
 
 }  // namespace drape

@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/app/files/json_file.h"
 #include "core/kernel/interfaces/level.h"
 
 namespace drape {
@@ -17,8 +18,9 @@ struct FieldKind {
   std::string note;          ///< below the legend
   double low = 0, high = 0;  ///< of the colours
 };
-/// The fields that the viewer computes from positions, and the contact forces that runs record.
-const std::vector<FieldKind>& surface_fields();
+/// The fields that the viewer computes from positions, and the contact forces that runs record; of a cloth
+/// that is worn also what a garment maker looks at, `garment_fields_at`.
+std::vector<FieldKind> field_kinds(bool worn);
 
 /// Values by the name of their kind.
 using SurfaceFields = std::map<std::string, Eigen::VectorXd>;
@@ -39,5 +41,14 @@ void add_contact_pressure(SurfaceFields& fields, const Eigen::VectorXd& pressure
 /// The colour range of a kind: nearly all values lie inside.
 std::pair<double, double> field_range(const FieldKind& kind,
                                       const std::vector<const Eigen::VectorXd*>& values, double gap_range);
+
+/// Of a cloth that is worn `stretch_warp` and `stretch_weft` [%], means over the triangles around a vertex,
+/// and `ease` [mm], the distance to the body, NaN beyond 60 mm.
+VertexFields garment_fields_at(const Level& level, const Positions& x,
+                               const std::vector<TriangleMesh>& obstacles);
+
+/// Means over each piece of the cloth, and the largest stretches: an entry for each, with its name.
+/// `pressure` is LevelModel::contact_pressure, or empty.
+Json garment_pieces(const Level& level, const VertexFields& fields, const Eigen::VectorXd& pressure);
 
 }  // namespace drape

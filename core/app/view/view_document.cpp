@@ -10,7 +10,6 @@
 #include <set>
 #include <stdexcept>
 
-#include "core/app/view/garment_fields.h"
 #include "core/kernel/files/file.h"
 #include "core/numerics/elements/green_strain.h"
 #include "core/numerics/elements/vertex_fields.h"
@@ -49,9 +48,7 @@ ViewDocument::ViewDocument(const std::vector<Level>& levels, const Obstacles& ob
       gap_range_(2e-3 * bounding_box_diagonal(levels.front().rest.vertices)),
       obstacles_(obstacles),
       keep_(std::move(keep)),
-      kinds_(surface_fields()) {
-  if (levels.front().rest.sewing)
-    kinds_.insert(kinds_.end(), garment_fields().begin(), garment_fields().end());
+      kinds_(field_kinds(levels.front().rest.sewing.has_value())) {
   kinds_.insert(kinds_.end(), further.begin(), further.end());
   for (const Level& level : levels_) {
     const std::string name = "l" + std::to_string(level.index);
@@ -69,15 +66,15 @@ ViewDocument::ViewDocument(const std::vector<Level>& levels, const Obstacles& ob
       level_entries_.back()["rest"] = name + "-rest";
     }
   }
-  for (std::size_t k = 0; k < obstacles_.size(); ++k) {
-    const std::string name = "obstacle" + std::to_string(k);
-    keep_(name + "-x", encode_positions(obstacles_[k].vertices));
-    keep_(name, encode_triangles(obstacles_[k].triangles));
-    obstacle_entries_.push_back({{"vertices", obstacles_[k].vertices.rows()},
-                                 {"triangles", obstacles_[k].triangles.rows()},
-                                 {"x", name + "-x"},
-                                 {"block", name}});
-  }
+  for (std::size_t k = 0; k < obstacles_.size(); ++k)
+    obstacle_entries_.push_back(
+        mesh_entry("obstacle" + std::to_string(k), obstacles_[k].vertices, obstacles_[k].triangles));
+}
+
+Json ViewDocument::mesh_entry(const std::string& name, const Positions& x, const Triangles& triangles) {
+  keep_(name + "-x", encode_positions(x));
+  keep_(name, encode_triangles(triangles));
+  return {{"vertices", x.rows()}, {"triangles", triangles.rows()}, {"x", name + "-x"}, {"block", name}};
 }
 
 /// Adds the seams, as ends of edges, and the flat pieces: their vertices are those of the level, then others,
@@ -86,17 +83,10 @@ void ViewDocument::add_sewing(const Level& level, Json& entry) {
   for (const int e : seam_edges(level.rest, level.topology))
     for (int k = 0; k < 2; ++k) entry["seams"].push_back(level.topology.edges(e, k));
   const UvVertices flat = laid_out(level.rest);
-  const std::string name = entry["block"].get<std::string>() + "-flat";
   Positions x = Positions::Zero(flat.uv.rows(), 3);
   x.col(0) = flat.uv.col(0), x.col(2) = flat.uv.col(1);
-  keep_(name, encode_triangles(flat.triangles));
-  keep_(name + "-x", encode_positions(x));
-  entry["flat"] = {
-      {"block", name},
-      {"x", name + "-x"},
-      {"vertices", x.rows()},
-      {"triangles", flat.triangles.rows()},
-      {"copies", std::vector<int>(flat.vertex.begin() + level.vertex_count(), flat.vertex.end())}};
+  entry["flat"] = mesh_entry(entry["block"].get<std::string>() + "-flat", x, flat.triangles);
+  entry["flat"]["copies"] = std::vector<int>(flat.vertex.begin() + level.vertex_count(), flat.vertex.end());
 }
 
 SurfaceFields ViewDocument::fields(int level, const Positions& x, const Obstacles* moved) const {

@@ -40,6 +40,7 @@ class ViewDocument {
   Json document(const std::string& title, Json methods) const;
 
  private:
+  Json mesh_entry(const std::string& name, const Positions& x, const Triangles& triangles);
   void add_sewing(const Level& level, Json& entry);
 
   const std::vector<Level>& levels_;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <limits>
 #include <vector>
 
@@ -23,9 +24,10 @@ class SurfaceSearch {
   /// Of these triangles of the mesh.
   SurfaceSearch(const TriangleMesh& mesh, std::vector<int> triangles);
 
-  /// The nearest point to p that is nearer than `reach` [m].
-  NearestPoint nearest(const Eigen::Vector3d& p,
-                       double reach = std::numeric_limits<double>::infinity()) const;
+  /// The nearest point to p that is nearer than `reach` [m], on a triangle that `counts`; all count without
+  /// it.
+  NearestPoint nearest(const Eigen::Vector3d& p, double reach = std::numeric_limits<double>::infinity(),
+                       const std::function<bool(int triangle)>& counts = {}) const;
   /// The shortest vector [m] to a vertex of this surface from the other one; `shortest` if none is shorter.
   Eigen::Vector3d shortest_from(const SurfaceSearch& other, Eigen::Vector3d shortest) const;
 
