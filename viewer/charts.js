@@ -6,14 +6,14 @@ const space = 'http://www.w3.org/2000/svg';
 const s = (tag, attributes = {}, ...children) => filled(document.createElementNS(space, tag), attributes, children);
 
 /// The look of a method, the same on every page and in Python: colour and mark are its solver's, dashes tell methods of one
-/// solver apart. `styles` has the index of every method's solver.
+/// solver apart. `methods` has the `style` of each, an index that is its solver's.
 const marks = ['circle', 'square', 'triangle', 'diamond'], dashes = ['', '9 5', '2 3', '12 4 2 4'];
-export function methodLook(styles, method) {
-  const style = styles[method] ?? 3, alike = Object.keys(styles).filter(name => styles[name] === style);
+export function methodLook(methods, method) {
+  const style = methods[method]?.style ?? 3, alike = Object.keys(methods).filter(name => methods[name].style === style);
   return {colour: `var(--solver-${style})`, mark: marks[style], dash: dashes[Math.max(alike.indexOf(method), 0) % dashes.length]};
 }
 /// The same for the k-th of `count` variations: paler, with other dashes.
-export const variantLook = (styles, method, k, count) => count < 2 ? methodLook(styles, method) : {...methodLook(styles, method), dash: dashes[k % dashes.length], opacity: 1 - .65 * k / count};
+export const variantLook = (methods, method, k, count) => count < 2 ? methodLook(methods, method) : {...methodLook(methods, method), dash: dashes[k % dashes.length], opacity: 1 - .65 * k / count};
 
 function markPath(mark, x, y, r) {
   if (mark === 'square') return `M${x - r} ${y - r}h${2 * r}v${2 * r}h${-2 * r}z`;

@@ -33,9 +33,9 @@ export function livePage({title}) {
       lines.get(name).push({x, y});
       if (lines.get(name).length > 2000) lines.set(name, lines.get(name).filter((_, k) => k % 2));  // more are not visible
     }
-    const styles = Object.fromEntries(news.methods.map(method => [method.name, method.style])), ends = [...lines.values()].map(points => points.at(-1).x);
+    const methods = Object.fromEntries(news.methods.map(method => [method.name, method])), ends = [...lines.values()].map(points => points.at(-1).x);
     chart.draw({x: {title: 'time [s]', name: 'seconds'}, y: {title: 'force residual', name: 'force_residual', log: true}, series: [
-      ...[...lines].map(([label, points]) => ({label, ...methodLook(styles, label), mark: null, points})),
+      ...[...lines].map(([label, points]) => ({label, ...methodLook(methods, label), mark: null, points})),
       ...unique(ends.length ? news.methods.map(method => method.tolerance) : []).map(y =>
         ({label: 'tolerance', colour: 'var(--soft)', dash: '5 4', width: 1, points: [0, Math.max(...ends)].map(x => ({x, y}))}))]});
     say(status, news.outcome ? `The run has ended: ${news.outcome}.`

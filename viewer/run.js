@@ -2,7 +2,7 @@
 import {Chart, distancePlot, methodLook} from './charts.js';
 import {columnsOf, metricColumns, ranking} from './columns.js';
 import {dataTable} from './tables.js';
-import {about, busyWarning, choice, converged, day, count, counted, explained, fold, formula, h, known, number, rowsOf, seconds, unique} from './text.js';
+import {about, busyWarning, choice, converged, day, count, counted, explained, fold, formula, grouped, h, known, number, rowsOf, seconds, unique} from './text.js';
 import {View} from './view.js';
 
 const statusText = status => (status || 'unknown status').replace(/_/g, ' ');
@@ -39,16 +39,13 @@ function hero(run) {
     run.results.complete ? null : h('p', {class: 'poor', id: 'incomplete'}, run.results.aborted ? `The run was aborted (${run.results.aborted}).` : 'The run is not complete.',
       ' These are the figures it had written.'), troubles(run));
   if (!run.view) return h('section', {class: 'hero flat', id: 'in-3d'}, h('div', {class: 'viewer'}, picture || h('p', {class: 'absent'}, 'The run has no state to show yet.')), facts);
-  const totals = {};  // a state's time since the method's start
-  for (const name of run.order) {
-    let total = 0;
-    for (const level of run.results.methods[name].levels || []) {
+  for (const method of run.view.methods) {
+    let total = 0;  // time since the method's start
+    for (const level of run.results.methods[method.name].levels || []) {
       total = level.from_initial_state ? level.seconds : total + level.seconds;
-      totals[name + ' ' + level.level] = total;
+      Object.assign(method.levels.find(each => each.level === level.level)?.states.at(-1) ?? {}, {total});
     }
   }
-  for (const method of run.view.methods)
-    for (const level of method.levels) Object.assign(level.states.at(-1), {total: totals[method.name + ' ' + level.level] ?? null});
   const first = run.view.methods.find(method => method.levels.length).name;
   const view = window.drapeViewer = new View(run.view, {first, beside: true, picture});
   return h('section', {class: 'hero', id: 'in-3d'}, view.element, facts, view.controls);
@@ -79,7 +76,7 @@ function distances(run) {
   const levels = Object.values(run.results.methods).flatMap(method => method.levels || []), recorded = !levels.length || levels.some(level => level.snapshots);
   const plot = distancePlot('distance', 'How soon a method comes near: each point is a state on the way, the larger ones are ends of levels. Lower and further left is better.', 360,
     {measures: run.measures, rows: run.errors, absent: run.results.measured === false ? 'Not measured yet: drape report of the run’s folder does.' : recorded ? 'errors.csv is missing or empty: a run writes it once all its methods have ended.' : 'No states were recorded in this run (snapshots: 0).'},
-    (cost, y) => run.order.map((name, k) => ({label: name, ...methodLook(run.styles, name), width: k ? 1.8 : 2.6, points: curves(run, name, cost, y)})));
+    (cost, y) => run.order.map((name, k) => ({label: name, ...methodLook(run.methods, name), width: k ? 1.8 : 2.6, points: curves(run, name, cost, y)})));
   plot.draw();
   const {reference = {}} = run.results;
   return h('section', {id: 'errors-section'}, h('h2', {}, 'Distance against time'), explained('A method’s own interpolation prolongs every state to the finest level, where it is ' +
@@ -129,10 +126,7 @@ function consistency(run) {
 
 /// Residuals, steps and energies on the way, and the increments of a schedule.
 function convergence(run) {
-  const series = [];
-  for (const method of run.order)
-    for (const level of unique(run.iterations.filter(row => row.method === method).map(row => row.level)))
-      series.push({method, level, rows: run.iterations.filter(row => row.method === method && row.level === level)});
+  const series = run.order.flatMap(method => [...grouped(run.iterations.filter(row => row.method === method), row => row.level)].map(([level, rows]) => ({method, level, rows})));
   const finest = Math.max(0, ...series.map(line => line.level)), lowest = {};
   // Energies compare only within one objective: a level's plain energy, or the proxy that a coarse level minimises instead.
   const proxy = (line, row) => known(row.proxy_energy) && line.level !== finest, objective = (line, row) => proxy(line, row) ? row.proxy_energy : row.energy;
@@ -143,7 +137,7 @@ function convergence(run) {
     }
   // The decrement is that of the first step size; of a shorter one, ‖p‖ was scaled by the square of their ratio (docs/theory/method.md).
   const step = (line, row) => {
-    const first = run.step_sizes[line.method] ?? row.step_size;
+    const first = run.methods[line.method]?.step_size ?? row.step_size;
     return first * row.decrement * Math.min(1, (known(row.step_size) ? row.step_size : first) / first) ** 2;
   };
   const iteration = {title: 'Newton iteration', name: 'row'}, time = {title: 'time [s]', name: 'seconds'}, residual = {title: 'force residual', name: 'force_residual', log: true};
@@ -154,7 +148,7 @@ function convergence(run) {
       (line, row) => [row.seconds, objective(line, row) - lowest[`${line.level} ${proxy(line, row)}`]]],
     step: ['length of Newton steps over iterations', iteration, {title: 'Newton step, RMS [m]', name: 'step', log: true}, (line, row) => [row.row, step(line, row)]]};
   const chart = new Chart('convergence', 'The thinner and paler a line, the coarser its level.');
-  const look = line => ({...methodLook(run.styles, line.method), label: `${line.method}, level ${line.level}`, width: 1 + 1.6 * (line.level + 1) / (finest + 1),
+  const look = line => ({...methodLook(run.methods, line.method), label: `${line.method}, level ${line.level}`, width: 1 + 1.6 * (line.level + 1) / (finest + 1),
     opacity: .5 + .5 * (line.level + 1) / (finest + 1)});
   const draw = kind => {
     const [, x, y, point] = plots[kind], lines = series.map(line => ({...look(line), mark: null, points: line.rows.map(row => { const [a, b] = point(line, row); return {x: a, y: b}; })}));
@@ -185,12 +179,12 @@ function convergence(run) {
     fold('Settings: the experiment with all defaults', h('pre', {tabindex: 0}, run.config || 'config.yaml was not stored.')));
 }
 
-/// {results, table, measures, styles, step_sizes, tolerances, errors and iterations as CSV, config, pictures, notes, view}.
+/// {results, table, measures, methods, errors and iterations as CSV, config, pictures, notes, view}.
 export function runPage(data) {
   const {results, table} = data;
   results.methods ||= {};
   const run = {...data, rows: table.rows.filter(row => results.methods[row.method]), errors: rowsOf(data.errors), iterations: rowsOf(data.iterations),
-    tolerance: name => data.tolerances?.[name] ?? results.tolerance?.force_residual, of: {measures: data.measures, metrics: results.metrics}};
+    tolerance: name => data.methods[name]?.tolerance ?? results.tolerance?.force_residual, of: {measures: data.measures, metrics: results.metrics}};
   run.order = run.rows.map(row => row.method);
   return [h('header', {}, h('h1', {}, results.experiment || 'Unnamed experiment'), results.description ? h('p', {class: 'lead'}, results.description) : null),
     run.order.length ? hero(run) : h('p', {class: 'absent'}, 'The run holds no method’s results yet.'),

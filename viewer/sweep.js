@@ -19,7 +19,7 @@ function medianCurve(repeats, points = 40) {
 
 /// The thumbnails of a method: a cell has all starts of a variation.
 function matrix(all) {
-  const chosen = {across: all.keys.reduce((a, b) => all.values(b).length > all.values(a).length && all.values(b).length <= 8 ? b : a), method: all.methods[0]};
+  const chosen = {across: all.keys.reduce((a, b) => all.values(b).length > all.values(a).length && all.values(b).length <= 8 ? b : a), method: all.order[0]};
   const frame = h('div', {id: 'matrix'}), others = () => all.keys.filter(key => key !== chosen.across);
   const tile = runs => {
     const of = run => run.pictures.find(each => each.method === chosen.method), run = runs.find(of) ?? runs[0], picture = of(run);
@@ -46,7 +46,7 @@ function matrix(all) {
   all.redraw.push(draw);
   const pick = (label, name, options) => Object.keys(options).length > 1 ? choice(label, options, chosen[name], value => { chosen[name] = value; draw(); }, 'matrix-' + name) : '';
   return h('section', {id: 'runs'}, h('p', {class: 'controls'}, all.chooser, pick('across', 'across', all.keyNames),
-    pick('method', 'method', Object.fromEntries(all.methods.map(name => [name, name])))), frame);
+    pick('method', 'method', Object.fromEntries(all.order.map(name => [name, name])))), frame);
 }
 
 /// A value against a varied key: medians, with ranges over starts. Only numbers are joined by lines.
@@ -59,7 +59,7 @@ function against(all) {
     const lines = grouped(all.shownSummary, row => [row.method, variant(row)].filter(part => part).join(', '));
     const wide = numeric && Math.min(...values) > 0 && Math.max(...values) > 20 * Math.min(...values);
     chart.draw({x: {title: all.keyTitle(chosen.key), name: chosen.key, log: wide, categories: numeric ? null : values}, y: {title: describe(all.quantity, all.of).text, name: all.quantity},
-      absent: 'No run has this value.', series: [...lines].map(([label, rows]) => ({label, ...variantLook(all.styles, rows[0].method, variants.indexOf(variant(rows[0])), variants.length),
+      absent: 'No run has this value.', series: [...lines].map(([label, rows]) => ({label, ...variantLook(all.methods, rows[0].method, variants.indexOf(variant(rows[0])), variants.length),
         points: rows.filter(row => row[all.quantity]).map(row => ({x: (chosen.key === 'run' ? row.variation : row[chosen.key]) ?? null, row: row[all.quantity]}))
           .map(({x, row: {median, low, high, count: runs}}) => ({x, y: median, low, high, runs}))}))});
   };
@@ -74,8 +74,8 @@ function errors(all) {
   const line = (variation, method, cost, y) => medianCurve(recorded.filter(run => run.variation === variation && run.shown.some(row => row.method === method)).map(run =>
     run.errors.filter(row => row.method === method && row.level >= (run.first_levels[method] ?? 0)).map(row => ({x: row[cost], y: row[y]}))));
   const plot = distancePlot('errors', 'Medians over the starts, with a band from the lowest to the highest. Lower and further left is better.', 420,
-    {measures: all.measures, rows: recorded.flatMap(run => run.errors)}, (cost, y) => variations.flatMap((variation, v) => all.methods.map(method => ({
-      label: variations.length > 1 ? `${variation}, ${method}` : method, ...variantLook(all.styles, method, v, variations.length),
+    {measures: all.measures, rows: recorded.flatMap(run => run.errors)}, (cost, y) => variations.flatMap((variation, v) => all.order.map(method => ({
+      label: variations.length > 1 ? `${variation}, ${method}` : method, ...variantLook(all.methods, method, v, variations.length),
       mark: null, band: true, points: line(variation, method, cost, y)}))));
   all.redraw.push(plot.draw);
   return fold('Distance against time', ...plot.elements);
@@ -113,7 +113,7 @@ function failures(all) {
     known(run.seed) ? `, seed ${run.seed}` : '', `: ${run.status.replace(/_/g, ' ')}`, run.error ? h('pre', {tabindex: 0}, run.error) : '')))) : null;
 }
 
-/// {name, complete, table, measures, metrics, model_keys, styles, runs}: a run has `count` rows of the table, in order.
+/// {name, complete, table, measures, metrics, model_keys, methods, runs}: a run has `count` rows of the table, in order.
 export function sweepPage(data) {
   const {columns, rows} = data.table, varied = columns.slice(2, columns.indexOf('seed'));
   let at = 0;
@@ -123,7 +123,7 @@ export function sweepPage(data) {
   });
   const values = key => unique(runs.map(run => run.settings[key] ?? null)).sort((a, b) => typeof a === 'number' && typeof b === 'number' ? a - b : 0);
   const keys = ['sweep', ...varied].filter(key => values(key).length > 1), all = {...data, runs, columns, values, rows: runs.flatMap(run => run.rows), redraw: [],
-    methods: unique(runs.flatMap(run => run.rows.map(row => row.method))), seeds: unique(runs.map(run => run.seed ?? null)), of: data};
+    order: unique(runs.flatMap(run => run.rows.map(row => row.method))), seeds: unique(runs.map(run => run.seed ?? null)), of: data};
   all.keys = keys.length ? keys : ['run'];
   // "bending modulus [Pa]", and of a value "bending modulus 8e7 Pa"; the whole path where two keys end alike.
   const last = key => key.split('.').at(-1), plain = key => (keys.filter(each => last(each) === last(key)).length > 1 ? key : last(key)).replace(/[_.]/g, ' '), units = data.table.units ?? {};

@@ -96,8 +96,8 @@ TEST_CASE("a direct method's cost and steps are those of the level it ends with"
     const MethodRecord& m = collection.runs[0].data->methods.at(k);
     INFO(m.name);
     const auto expected = [&](const char* name) {
-      const double fine = m.levels[1].values.of(name).value();
-      return m.name == "newton" ? fine : m.levels[0].values.of(name).value() + fine;
+      const double fine = number_member(m.levels[1].values, name).value();
+      return m.name == "newton" ? fine : number_member(m.levels[0].values, name).value() + fine;
     };
     CHECK(m.cost("flops").value() == expected("flops"));
     CHECK(rows[k]["steps"] == expected("steps"));

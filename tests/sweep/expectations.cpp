@@ -105,7 +105,7 @@ TEST_CASE("every value that a metric declares is a column by its name") {
   for (int level = 0; level < 2; ++level) {
     LevelRecord& one = method.levels.emplace_back();
     one.level = level;
-    one.values.json = {{"sag", 3 - level}, {"worst", 3 - level}};
+    one.values = {{"sag", 3 - level}, {"worst", 3 - level}};
   }
   method.consistency.push_back({0, 1, {{{"drift", 0.5}}}, ""});
   RunRecord run;

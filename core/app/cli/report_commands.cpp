@@ -10,7 +10,6 @@
 #include "core/app/cli/config_arguments.h"
 #include "core/app/experiment/exit_codes.h"
 #include "core/app/report/compare.h"
-#include "core/app/report/data_set.h"
 #include "core/app/report/pictures.h"
 #include "core/app/report/report.h"
 #include "core/app/report/run_collection.h"

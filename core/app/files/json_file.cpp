@@ -44,6 +44,16 @@ std::string text_member(const Json& object, const std::string& key) {
   return text.is_string() ? text.get<std::string>() : std::string();
 }
 
+std::optional<double> number_member(const Json& object, const std::string& key) {
+  const Json& own = member_of(object, key);
+  if (own.is_number() && std::isfinite(own.get<double>())) return own.get<double>();
+  // The key may lead into an object at each of its dots: a member's own name may have some.
+  for (std::size_t dot = key.find('.'); dot != key.npos; dot = key.find('.', dot + 1))
+    if (const auto number = number_member(member_of(object, key.substr(0, dot)), key.substr(dot + 1)))
+      return number;
+  return {};
+}
+
 // Parsing and writing are large templates: they are compiled here alone.
 Json parse_json(const std::string& text) {
   if (!is_nested_deeply(text)) return Json::parse(text, nullptr, false);

@@ -40,6 +40,8 @@ class JsonFile {
 const Json& member_of(const Json& object, std::string_view key);
 /// A member's text; empty if it is none.
 std::string text_member(const Json& object, const std::string& key);
+/// A member's finite number; nothing if it is none. "energy_parts.hinge" is the member hinge of energy_parts.
+std::optional<double> number_member(const Json& object, const std::string& key);
 
 /// The value that a JSON text describes; discarded (nlohmann's is_discarded(), of no type) if it is none.
 Json parse_json(const std::string& text);

@@ -10,8 +10,6 @@
 #include "core/kernel/files/message_text.h"
 #include "core/kernel/files/number_text.h"
 #include "core/kernel/files/string_utils.h"
-#include "core/kernel/interfaces/solver.h"
-#include "core/kernel/plugin/config_node.h"
 
 namespace drape {
 
@@ -62,19 +60,19 @@ void add_method(Side& side, const std::string& name, const RunData& run, const M
   side.converged[name] = has_converged(method.status);
   const TableRow row = row_of(run, method);
   for (const std::string& key : summary_quantities(error_measures(run.metrics)))
-    if (row[key].is_number()) add(name, key, row[key].get<double>());
+    add(name, key, number_member(row, key));
   const bool several = method.levels.size() > 1;
   for (const LevelRecord& level : method.levels) {
     const std::string where = several ? name + ", level " + std::to_string(level.level) : name;
     for (const std::string& key : several ? level_keys : Names{"intersections", "smallest_gap"})
-      add(where, key, level.values.of(key));
+      add(where, key, number_member(level.values, key));
     for (const MetricColumn& column : columns_of(run.metrics, MetricScope::state, Shown::tables))
-      add(where, column.name, level.values.of(column.name), column.better);
+      add(where, column.name, number_member(level.values, column.name), column.better);
   }
   for (const ConsistencyRecord& pair : method.consistency)
     for (const MetricColumn& column : columns_of(run.metrics, MetricScope::pair, Shown::tables))
       add(name + ", levels " + std::to_string(pair.coarse) + " → " + std::to_string(pair.fine), column.name,
-          pair.values.of(column.name), column.better);
+          number_member(pair.values, column.name), column.better);
 }
 
 Side side_of(const RunCollection& collection, bool named) {
@@ -93,7 +91,7 @@ std::string verdict(const Entry& was, double after) {
   const std::string& key = was.key;
   const double difference = after - was.value, noise = is_time(key) ? time_noise : relative_noise;
   if (std::abs(difference) <= noise * std::min(std::abs(was.value), std::abs(after))) return "";
-  if (difference == 0 || (is_time(key) && std::abs(difference) < least_seconds)) return "";
+  if (is_time(key) && std::abs(difference) < least_seconds) return "";
   if (was.better == Better::neither) return "other";
   const bool good = (difference < 0) != (was.better == Better::higher);
   if (is_time(key)) return good ? "faster" : "slower";
@@ -233,30 +231,21 @@ Comparison compare(const RunCollection& before, const RunCollection& after, cons
     if (met[key] == 0)
       throw std::runtime_error("--bound " + key + ": no match has this quantity on both sides");
 
-  std::string lists;
-  const auto list = [&](const char* where, const Side& side, const Side& other) {
-    Names names;
-    for (const auto& [name, converged] : side.converged)
-      if (!other.converged.contains(name)) names.push_back(name);
-    for (const std::string& name : first_of(names, 40))
-      lists += std::string("only in the ") + where + ": " + name + "\n";
-  };
-  list("first", a, b);
-  list("second", b, a);
-  Names changed;
-  for (const auto& [name, was] : a.converged)
-    if (const auto now = b.converged.find(name); now != b.converged.end() && now->second != was)
+  Names first, second, changed;
+  for (const auto& [name, was] : a.converged) {
+    const auto now = b.converged.find(name);
+    const bool gone = now == b.converged.end();
+    if (gone)
+      first.push_back(name);
+    else if (now->second != was)
       changed.push_back(
           name + (was ? ": converged before and does not now" : ": did not converge before and does now"));
-  for (const std::string& line : first_of(changed, 40)) lists += line + "\n";
-  for (const auto& [name, was] : a.converged) {
-    if (ratios.empty()) break;
-    const auto now = b.converged.find(name);
-    if (now == b.converged.end())
-      broken.push_back(name + ": is in the first alone; no bound holds");
-    else if (was && !now->second)
-      broken.push_back(name + ": converged before and does not now; no bound holds");
+    if (!ratios.empty() && (gone || (was && !now->second)))
+      broken.push_back(name + (gone ? ": is in the first alone" : ": converged before and does not now") +
+                       "; no bound holds");
   }
+  for (const auto& [name, now] : b.converged)
+    if (!a.converged.contains(name)) second.push_back(name);
 
   std::string text = rows.size() > 1 ? text_table(rows) + "\n" : "";
   Names sums;
@@ -268,7 +257,9 @@ Comparison compare(const RunCollection& before, const RunCollection& after, cons
       ". Times within 10 % or 0.05 s of each other, and other quantities within 1 %, count as the same.\n";
   if (!differing.empty())
     text += "Energies have no verdict, as their models differ: in " + joined(first_of(differing, 12)) + ".\n";
-  text += lists;
+  for (const auto& [what, names] :
+       {std::pair("only in the first: ", first), {"only in the second: ", second}, {"", changed}})
+    for (const std::string& name : first_of(names, 40)) text += what + name + "\n";
   for (const std::string& line : broken) text += "broken: " + line + "\n";
   if (!ratios.empty() && broken.empty())
     text += ratios.size() == 1 ? "The bound holds.\n" : "All bounds hold.\n";

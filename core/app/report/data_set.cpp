@@ -1,14 +1,11 @@
-#include "core/app/report/data_set.h"
-
 #include <algorithm>
 #include <cmath>
 #include <map>
 #include <regex>
 #include <set>
-#include <stdexcept>
 
-#include "core/app/files/json_file.h"
 #include "core/app/report/report.h"
+#include "core/app/report/run_export.h"
 #include "core/kernel/files/file.h"
 #include "core/kernel/files/number_text.h"
 #include "core/numerics/mesh_files/io.h"
@@ -38,7 +35,7 @@ std::string name_of(const RunRecord& run, const std::string& method, const RunCo
 /// What belongs to the OBJ of a method's end.
 Json description_of(const RunData& run, const LevelRecord& end, const TableRow& row) {
   Json all = row;
-  all["pieces"] = member_of(end.values.json, "pieces");
+  all["pieces"] = member_of(end.values, "pieces");
   all["experiment"] = json_value(run.config);
   all["fields"] = Json::object();
   for (const VertexField& field : read_ply_fields(run.folder / end.mesh)) {

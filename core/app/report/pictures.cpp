@@ -9,12 +9,15 @@
 #include "core/kernel/files/message_text.h"
 #include "core/kernel/files/string_utils.h"
 #include "core/numerics/mesh/seams.h"
+#include "core/numerics/mesh_files/base64.h"
 
 namespace drape {
 
 namespace {
 
 constexpr int most_vertices_with_edges = 4000;  // more lines would merge
+/// Towards the camera: three quarters from above. The top shows how the cloth lies, the side how it folds.
+const Eigen::Vector3d from_above(0.55, -1.0, 0.68);
 /// sRGB: `--accent` of viewer/page.css.
 const Eigen::Vector3f outline_colour = Eigen::Vector3f(0x0b, 0x62, 0xa8) / 255;
 
@@ -63,10 +66,12 @@ std::string file_part(std::string name) {
 
 }  // namespace
 
-PictureScene::PictureScene(const RunData& run, std::vector<std::string>& notes, const PictureFrame& frame,
-                           std::function<bool()> cancelled)
-    : width_(frame.width), edges_(frame.edges), cancelled_(std::move(cancelled)) {
-  std::vector<const Positions*> all = frame.further;
+PictureScene::PictureScene(const RunData& run, std::vector<std::string>& notes, const PictureOptions& options,
+                           const std::vector<const Positions*>& further, std::function<bool()> cancelled)
+    : options_(options),
+      width_(options.width.value_or(default_picture_width)),
+      cancelled_(std::move(cancelled)) {
+  std::vector<const Positions*> all = further;
   for (const MethodRecord& method : run.methods)
     for (const LevelRecord& level : method.levels)
       if (auto mesh = mesh_or_note(run, level.mesh, notes))
@@ -87,7 +92,7 @@ PictureScene::PictureScene(const RunData& run, std::vector<std::string>& notes, 
     }
   for (const Positions& x : near) box.extend(bounding_box(x));
   if (!box.isEmpty()) floor_ = box.min()[2];
-  camera_ = Camera::around(all, frame.direction, double(frame.width) / height_of(frame.width));
+  camera_ = Camera::around(all, options.direction.value_or(from_above), double(width_) / height_of(width_));
 }
 
 const TriangleMesh* PictureScene::state(const LevelRecord& level) const {
@@ -95,10 +100,10 @@ const TriangleMesh* PictureScene::state(const LevelRecord& level) const {
   return found == states_.end() ? nullptr : &found->second;
 }
 
-Image PictureScene::draw(const TriangleMesh& cloth, bool xray) const {
+Image PictureScene::draw(const TriangleMesh& cloth) const {
   Drawing drawing{.mesh = cloth,
-                  .edges = edges_ && cloth.vertices.rows() <= most_vertices_with_edges,
-                  .xray = xray,
+                  .edges = options_.edges && cloth.vertices.rows() <= most_vertices_with_edges,
+                  .xray = options_.xray,
                   .floor = floor_};
   if (const auto seams = seams_.find(cloth.triangles.rows()); seams != seams_.end())
     drawing.seams = seams->second;
@@ -109,11 +114,6 @@ Image PictureScene::draw(const TriangleMesh& cloth, bool xray) const {
 void PictureScene::draw_outline(Image& picture, const TriangleMesh& cloth) const {
   if (cancelled_ && cancelled_()) throw RenderingCancelled();
   drape::draw_outline(picture, cloth, camera_, outline_colour);
-}
-
-const Image* PictureSet::find(const std::string& name) const {
-  const auto found = pictures.find(name);
-  return found == pictures.end() ? nullptr : &found->second;
 }
 
 std::string state_picture(const MethodRecord& method, int level) {
@@ -129,29 +129,40 @@ PictureSet draw_pictures(const RunData& run, const std::function<bool()>& cancel
   PictureSet set;
   const std::filesystem::path folder = run.folder / "pictures";
   make_folder(folder);
-  const PictureScene scene(run, set.notes, {.width = width.value_or(default_picture_width)}, cancelled);
+  const PictureScene scene(run, set.notes, {.width = width}, {}, cancelled);
   const auto keep = [&](const std::string& name, Image image) {
-    write_file(folder / name, encode_png(image));
+    const std::string png = encode_png(image);
+    write_file(folder / name, png);
     set.pictures.insert_or_assign(name, std::move(image));
+    return base64(png);
   };
   try {
     for (const MethodRecord& method : run.methods) {
+      const std::vector<const LevelRecord*> levels = method.recorded_levels();
       for (const LevelRecord& level : method.levels) {
         const std::string name = state_picture(method, level.level);
         // An earlier report may have drawn a state whose mesh is gone.
         std::filesystem::remove(folder / name);
-        if (const TriangleMesh* state = scene.state(level)) keep(name, scene.draw(*state));
+        const TriangleMesh* state = scene.state(level);
+        if (!state) continue;
+        const std::string png = keep(name, scene.draw(*state));
+        if (levels.size() == 1)
+          set.ends.push_back({{"method", method.name}, {"png", png}, {"alt", method.name + ": the cloth"}});
       }
-      const std::vector<const LevelRecord*> levels = method.recorded_levels();
       if (levels.size() < 2) continue;
-      const std::string name = outline_picture(method, levels.front()->level, levels.back()->level);
+      const int coarse = levels.front()->level, fine = levels.back()->level;
+      const std::string name = outline_picture(method, coarse, fine);
       std::filesystem::remove(folder / name);
-      const TriangleMesh* coarse = scene.state(*levels.front());
-      const Image* fine = set.find(state_picture(method, levels.back()->level));
-      if (!coarse || !fine) continue;
-      Image outlined = *fine;
-      scene.draw_outline(outlined, *coarse);
-      keep(name, std::move(outlined));
+      const TriangleMesh* preview = scene.state(*levels.front());
+      const auto end = set.pictures.find(state_picture(method, fine));
+      if (!preview || end == set.pictures.end()) continue;
+      Image outlined = end->second;
+      scene.draw_outline(outlined, *preview);
+      set.ends.push_back({{"method", method.name},
+                          {"png", keep(name, std::move(outlined))},
+                          {"alt", method.name + ": the end, with the outline of the preview"},
+                          {"coarse", coarse},
+                          {"fine", fine}});
     }
   } catch (const RenderingCancelled&) {
     set.notes.push_back("Not all pictures were drawn; drape report " + run.folder.string() + " draws them.");

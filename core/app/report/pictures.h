@@ -15,13 +15,13 @@ namespace drape {
 /// Width of a run's pictures [pixels]: a report's unless another is asked for, and what may be asked for.
 inline constexpr int default_picture_width = 900, least_picture_width = 16, greatest_picture_width = 8000;
 
-/// From where pictures of a run are taken.
-struct PictureFrame {
-  /// Towards the camera: three quarters from above. The top shows how the cloth lies, the side how it folds.
-  Eigen::Vector3d direction{0.55, -1.0, 0.68};
-  int width = default_picture_width;           ///< [pixels]
-  bool edges = true;                           ///< of coarse meshes
-  std::vector<const Positions*> further = {};  ///< in view, beside the run's final states
+/// How pictures of a run look; the defaults are a report's.
+struct PictureOptions {
+  std::optional<int> width = {};                  ///< [pixels]
+  std::optional<Eigen::Vector3d> direction = {};  ///< towards the camera; of any length but 0
+  bool outline = false;  ///< draw the outline of the method's coarsest state: for exports
+  bool xray = false;     ///< let obstacles show faintly through the cloth
+  bool edges = true;     ///< of coarse meshes
 };
 
 /// What a run's pictures have in common: its final states and obstacles, the floor, and one camera around
@@ -29,15 +29,16 @@ struct PictureFrame {
 class PictureScene {
  public:
   /// Reads the states and obstacles of a run that outlives the scene; a mesh that cannot be read becomes a
-  /// note. Once `cancelled`, which may be empty, returns true, drawing throws RenderingCancelled.
-  PictureScene(const RunData& run, std::vector<std::string>& notes, const PictureFrame& frame = {},
-               std::function<bool()> cancelled = {});
+  /// note. `further` are in view too. Once `cancelled`, which may be empty, returns true, drawing throws
+  /// RenderingCancelled.
+  PictureScene(const RunData& run, std::vector<std::string>& notes, const PictureOptions& options,
+               const std::vector<const Positions*>& further = {}, std::function<bool()> cancelled = {});
 
   /// The final state of a level of the run; null without one.
   const TriangleMesh* state(const LevelRecord& level) const;
 
   /// Draws cloth among the obstacles, a coarse mesh with its edges.
-  Image draw(const TriangleMesh& cloth, bool xray = false) const;
+  Image draw(const TriangleMesh& cloth) const;
   /// Draws the outline of a cloth over a picture of this scene.
   void draw_outline(Image& picture, const TriangleMesh& cloth) const;
 
@@ -47,8 +48,8 @@ class PictureScene {
   std::vector<TriangleMesh> obstacles_;
   Camera camera_;
   std::optional<double> floor_;  // height below everything
-  int width_;                    // [pixels]
-  bool edges_;
+  PictureOptions options_;
+  int width_;  // [pixels]
   std::function<bool()> cancelled_;
 };
 
@@ -56,9 +57,9 @@ class PictureScene {
 struct PictureSet {
   /// By file name in DIR/pictures, as the *_picture functions below give it.
   std::map<std::string, Image> pictures;
+  /// For a page, of each method: its end with the outline of its preview, or its only state.
+  Json ends = Json::array();
   std::vector<std::string> notes;  ///< pictures that could not be drawn, one line each
-
-  const Image* find(const std::string& name) const;
 };
 
 std::string state_picture(const MethodRecord& method, int level);

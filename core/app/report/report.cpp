@@ -4,17 +4,13 @@
 
 #include <cerrno>
 #include <map>
-#include <stdexcept>
 #include <system_error>
 
 #include "core/app/experiment/experiment.h"
-#include "core/app/files/json_file.h"
 #include "core/app/report/compare.h"
 #include "core/app/report/pictures.h"
-#include "core/app/report/report_view.h"
 #include "core/app/report/run_table.h"
 #include "core/app/view/page.h"
-#include "core/app/view/view_document.h"
 #include "core/kernel/files/file.h"
 #include "core/kernel/files/string_utils.h"
 #include "core/numerics/mesh_files/base64.h"
@@ -39,10 +35,8 @@ Json csv_json(const Csv& csv) {
     const std::size_t stride = (count + most_rows - 1) / most_rows;
     if ((number - 1) % stride != 0 && number != count) continue;
     Json row = Json::array();
-    for (const std::string& name : csv.names()) {
-      const OptionalNumber value = csv.number(k, name);
-      row.push_back(name == "method" ? Json(csv.text(k, name)) : value ? Json(*value) : Json());
-    }
+    for (const std::string& name : csv.names())
+      row.push_back(name == "method" ? Json(csv.text(k, name)) : json_of(csv.number(k, name)));
     row.push_back(number);
     rows.push_back(std::move(row));
   }
@@ -58,43 +52,21 @@ Json measures_json(const std::vector<ErrorMeasure>& measures) {
   return all;
 }
 
-/// A number of the `newton` of each method that has one.
-Json newton_numbers(const RunData& run, const char* key) {
-  Json numbers = Json::object();
-  for (const MethodRecord& method : run.methods)
-    if (const OptionalNumber number = newton_number(run.config, method.name, key))
-      numbers[method.name] = *number;
-  return numbers;
-}
-
-Json styles_json(const RunCollection& collection) {
-  Json styles = Json::object();
-  for (const RunRecord& run : collection.runs)
-    if (run.data)
-      for (const MethodRecord& method : run.data->methods)
-        styles.emplace(method.name, solver_style(method.solver));
-  return styles;
-}
-
-/// The outline of each method's preview on its end, or its only state.
-Json pictures_json(const RunData& run, const PictureSet& set) {
-  Json pictures = Json::array();
-  for (const MethodRecord& method : run.methods) {
-    const std::vector<const LevelRecord*> levels = method.recorded_levels();
-    if (levels.empty()) continue;
-    const int coarse = levels.front()->level, fine = levels.back()->level;
-    const Image* picture =
-        set.find(coarse < fine ? outline_picture(method, coarse, fine) : state_picture(method, fine));
-    if (!picture) continue;
-    Json entry = {
-        {"method", method.name}, {"png", base64(encode_png(*picture))}, {"alt", method.name + ": the cloth"}};
-    if (coarse < fine) {
-      entry["coarse"] = coarse, entry["fine"] = fine;
-      entry["alt"] = method.name + ": the end, with the outline of the preview";
-    }
-    pictures.push_back(std::move(entry));
+/// What a page draws of each method: its look, and where the experiment has them the settings beside its
+/// lines.
+Json methods_json(const RunCollection& collection) {
+  Json methods = Json::object();
+  for (const RunRecord& run : collection.runs) {
+    if (!run.data) continue;
+    const auto number = [&](const MethodRecord& method, const char* key) {
+      return json_of(newton_number(run.data->config, method.name, key));
+    };
+    for (const MethodRecord& method : run.data->methods)
+      methods.emplace(method.name, Json{{"style", solver_style(method.solver)},
+                                        {"step_size", number(method, "step_size")},
+                                        {"tolerance", number(method, "force_tolerance")}});
   }
-  return pictures;
+  return methods;
 }
 
 /// Small pictures of the ends of a run's methods.
@@ -123,7 +95,7 @@ Json run_json(const RunRecord& run, const fs::path& from) {
     }
   Json entry = {
       {"variation", run.variation},
-      {"seed", run.seed ? Json(*run.seed) : Json()},
+      {"seed", json_of(run.seed)},
       {"status", run.status},
       {"error", run.error},
       {"count", run.data ? run.data->methods.size() : 1},
@@ -180,13 +152,11 @@ std::vector<std::string> write_report(const fs::path& folder, const std::functio
                      {"results", run.results},
                      {"table", table_json(collection)},
                      {"measures", measures_json(error_measures(run.metrics))},
-                     {"styles", styles_json(collection)},
-                     {"step_sizes", newton_numbers(run, "step_size")},
-                     {"tolerances", newton_numbers(run, "force_tolerance")},
+                     {"methods", methods_json(collection)},
                      {"errors", csv_json(run.errors)},
                      {"iterations", csv_json(run.iterations)},
                      {"config", run.configuration},
-                     {"pictures", pictures_json(run, set)},
+                     {"pictures", set.ends},
                      {"notes", set.notes},
                      {"view", view.document}};
   write_file(folder / "report.html",
@@ -214,33 +184,8 @@ void write_runs_report(const std::vector<fs::path>& folders, const fs::path& fil
                          {"measures", measures_json(collection.error_measures())},
                          {"metrics", json_of(collection.metrics())},
                          {"model_keys", model_keys()},
-                         {"styles", styles_json(collection)},
+                         {"methods", methods_json(collection)},
                          {"runs", runs}}));
-}
-
-std::string viewer_page(const RunData& run) {
-  const ReportView view = report_view(run);
-  if (view.document.is_null())
-    throw std::runtime_error(view.notes.empty() ? run.folder.string() + ": the run has no state to show"
-                                                : view.notes.front());
-  return page(run.experiment, {{"kind", "states"}, {"view", view.document}}, view.blocks);
-}
-
-std::string viewer_page(const std::string& title, const Level& level, const Positions& x,
-                        const std::vector<TriangleMesh>& obstacles, const Eigen::VectorXd& pressure) {
-  std::vector<Level> levels = {level};
-  levels.front().index = 0;  // the only one of its document
-  std::string blocks;
-  ViewDocument document(
-      levels, obstacles, pressure.size() > 0,
-      [&](const std::string& name, const std::string& bytes) { blocks += block_element(name, bytes); });
-  SurfaceFields fields = document.fields(0, x);
-  add_contact_pressure(fields, pressure);
-  document.set_ranges({&fields});
-  const Json state = document.state("state", x, fields);
-  const Json entry = {{"level", 0}, {"status", ""}, {"states", Json::array({state})}};
-  const Json method = {{"name", title}, {"levels", Json::array({entry})}};
-  return page(title, {{"kind", "states"}, {"view", document.document(title, Json::array({method}))}}, blocks);
 }
 
 }  // namespace drape

@@ -27,6 +27,17 @@ void write_runs_report(const std::vector<std::filesystem::path>& folders, const 
 /// Whether a page is there that is not older than these results.
 bool is_current(const std::filesystem::path& page, const std::filesystem::path& results);
 
+/// The 3D view of a run.
+struct ReportView {
+  Json document;                   ///< as ViewDocument makes it; null if there is nothing to show
+  std::string blocks;              ///< those of embedded_in
+  std::vector<std::string> notes;  ///< what cannot be shown, with reasons, one line each
+};
+
+/// The meshes in the run's folder: every level's last state and, up to a few megabytes, evenly chosen
+/// snapshots.
+ReportView report_view(const RunData& run);
+
 /// A page with nothing but the 3D view of a run's states. Throws std::runtime_error with the reason if the
 /// run has nothing to show.
 std::string viewer_page(const RunData& run);

@@ -1,8 +1,9 @@
-#include "core/app/report/report_view.h"
-
 #include <algorithm>
 #include <map>
+#include <stdexcept>
 
+#include "core/app/report/report.h"
+#include "core/app/view/page.h"
 #include "core/app/view/view_document.h"
 #include "core/kernel/files/message_text.h"
 #include "core/numerics/mesh_files/io.h"
@@ -101,7 +102,7 @@ Json states_json(const RunData& run, const LevelRecord& level, const State& last
     states.push_back(std::move(state));
   }
   Json state = document.state(name, last.x, last.fields);
-  if (const auto iterations = level.values.of("iterations")) state["iteration"] = *iterations;
+  if (const auto iterations = number_member(level.values, "iterations")) state["iteration"] = *iterations;
   states.push_back(std::move(state));
   return states;
 }
@@ -112,10 +113,7 @@ ReportView view_of(const RunData& run) {
   for (int l = 0; l <= run.finest_level(); ++l) levels.push_back(Level::of(l, run.mesh(rest_file(l))));
   std::vector<TriangleMesh> obstacles;
   for (const ObstacleRecord& obstacle : run.obstacles) obstacles.push_back(run.mesh(obstacle.mesh));
-  ViewDocument document(
-      levels, obstacles, run.has_contact(),
-      [&](const std::string& name, const std::string& bytes) { view.blocks += block_element(name, bytes); },
-      declared_fields(run));
+  ViewDocument document(levels, obstacles, run.has_contact(), embedded_in(view.blocks), declared_fields(run));
   const States states = read_states(run, levels, document, view.notes);
   if (states.empty()) return {nullptr, "", view.notes};
   std::vector<const SurfaceFields*> fields;
@@ -148,6 +146,29 @@ ReportView report_view(const RunData& run) {
   } catch (const std::exception& error) {
     return {nullptr, "", {"3D viewer: " + reason_of(error)}};
   }
+}
+
+std::string viewer_page(const RunData& run) {
+  const ReportView view = report_view(run);
+  if (view.document.is_null())
+    throw std::runtime_error(view.notes.empty() ? run.folder.string() + ": the run has no state to show"
+                                                : view.notes.front());
+  return page(run.experiment, {{"kind", "states"}, {"view", view.document}}, view.blocks);
+}
+
+std::string viewer_page(const std::string& title, const Level& level, const Positions& x,
+                        const std::vector<TriangleMesh>& obstacles, const Eigen::VectorXd& pressure) {
+  std::vector<Level> levels = {level};
+  levels.front().index = 0;  // the only one of its document
+  std::string blocks;
+  ViewDocument document(levels, obstacles, pressure.size() > 0, embedded_in(blocks));
+  SurfaceFields fields = document.fields(0, x);
+  add_contact_pressure(fields, pressure);
+  document.set_ranges({&fields});
+  const Json entry = {
+      {"level", 0}, {"status", ""}, {"states", Json::array({document.state("state", x, fields)})}};
+  const Json method = {{"name", title}, {"levels", Json::array({entry})}};
+  return page(title, {{"kind", "states"}, {"view", document.document(title, Json::array({method}))}}, blocks);
 }
 
 }  // namespace drape

@@ -6,7 +6,6 @@
 #include <stdexcept>
 
 #include "core/app/experiment/exit_codes.h"
-#include "core/app/files/json_file.h"
 #include "core/app/files/yaml_file.h"
 #include "core/kernel/files/file.h"
 #include "core/kernel/files/message_text.h"
@@ -60,7 +59,7 @@ std::string read_sweep(const fs::path& folder, RunCollection& collection) {
       run.expected_message = text_member(expect, "message");
     }
     run.folder = folder / text_member(entry, "folder");
-    if (const Json& seed = member_of(entry, "seed"); seed.is_number()) run.seed = seed.get<double>();
+    run.seed = number_member(entry, "seed");
     // Running and failed runs may have written files; only complete ones have results.
     const bool has_results = run.status == "converged" || run.status == "not_converged";
     if (has_results && fs::is_regular_file(run.folder / "results.json")) read_data(run, collection);

@@ -7,7 +7,6 @@
 #include <stdexcept>
 
 #include "core/app/experiment/exit_codes.h"
-#include "core/app/files/json_file.h"
 #include "core/app/files/yaml_file.h"
 #include "core/kernel/files/file.h"
 #include "core/kernel/interfaces/solver.h"
@@ -24,16 +23,6 @@ const Json& list(const Json& json) {
   return json.is_array() ? json : none;
 }
 
-/// The name may lead into an object at each of its dots: a member's own name may have some.
-OptionalNumber number_in(const Json& object, const std::string& name) {
-  const Json& own = member_of(object, name);
-  if (own.is_number() && std::isfinite(own.get<double>())) return own.get<double>();
-  for (std::size_t dot = name.find('.'); dot != name.npos; dot = name.find('.', dot + 1))
-    if (const OptionalNumber number = number_in(member_of(object, name.substr(0, dot)), name.substr(dot + 1)))
-      return number;
-  return {};
-}
-
 LevelRecord level_of(const Json& json, std::size_t position, const JsonFile& file) {
   LevelRecord r;
   r.level = file.find<int>(json, "level").value_or(static_cast<int>(position));
@@ -41,7 +30,7 @@ LevelRecord level_of(const Json& json, std::size_t position, const JsonFile& fil
   r.message = text_member(json, "message");
   r.mesh = text_member(json, "mesh");
   r.from_initial_state = member_of(json, "from_initial_state") == true;
-  r.values.json = json;
+  r.values = json;
   return r;
 }
 
@@ -56,7 +45,7 @@ MethodRecord method_of(const std::string& name, const Json& json, const JsonFile
     const int coarse = file.find<int>(pair, "coarse").value_or(-1),
               fine = file.find<int>(pair, "fine").value_or(-1);
     if (coarse >= 0 && fine > coarse)
-      method.consistency.push_back({coarse, fine, {pair}, text_member(pair, "fields")});
+      method.consistency.push_back({coarse, fine, pair, text_member(pair, "fields")});
   }
   std::stable_sort(method.levels.begin(), method.levels.end(),
                    [](const LevelRecord& a, const LevelRecord& b) { return a.level < b.level; });
@@ -65,9 +54,7 @@ MethodRecord method_of(const std::string& name, const Json& json, const JsonFile
 
 }  // namespace
 
-OptionalNumber Values::of(const std::string& name) const { return number_in(json, name); }
-
-const Json& LevelRecord::snapshots() const { return member_of(values.json, "snapshots"); }
+const Json& LevelRecord::snapshots() const { return member_of(values, "snapshots"); }
 
 int MethodRecord::first_level() const {
   int first = levels.empty() ? 0 : levels.front().level;
@@ -87,7 +74,7 @@ OptionalNumber MethodRecord::cost(const std::string& value) const {
   OptionalNumber sum;
   for (const LevelRecord& level : levels) {
     if (level.from_initial_state) sum.reset();
-    if (const OptionalNumber known = level.values.of(value)) sum = sum.value_or(0) + *known;
+    if (const OptionalNumber known = number_member(level.values, value)) sum = sum.value_or(0) + *known;
   }
   return sum;
 }
@@ -100,7 +87,7 @@ bool RunData::converged() const {
 bool RunData::has_contact() const {
   for (const MethodRecord& m : methods)
     for (const LevelRecord& r : m.levels)
-      if (r.values.of("intersections") || r.values.of("smallest_gap")) return true;
+      if (number_member(r.values, "intersections") || number_member(r.values, "smallest_gap")) return true;
   return false;
 }
 

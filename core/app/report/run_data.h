@@ -29,21 +29,13 @@ inline constexpr std::pair<const char*, const char*> own_folders[] = {
 /// Whether the name is one of these, in that folder of a run; "" is the run's own.
 bool is_file_of_run(const std::string& folder, const std::string& name);
 
-/// An object of results.json, whose numbers are in SI units.
-struct Values {
-  Json json;
-
-  /// The finite number of a name; energy_parts.hinge is the member hinge of energy_parts.
-  OptionalNumber of(const std::string& name) const;
-};
-
 /// One level of one method.
 struct LevelRecord {
   int level = 0;
   std::string status, message;
   std::string mesh;                 ///< relative to the run's folder; may be empty
   bool from_initial_state = false;  ///< earlier levels do not contribute
-  Values values;                    ///< costs, quantities and state metrics
+  Json values;                      ///< costs, quantities and state metrics, in SI units
 
   /// States on the way, the last of which is the final state; null without any.
   const Json& snapshots() const;
@@ -52,7 +44,7 @@ struct LevelRecord {
 /// Pair metrics of a coarse state, prolonged, against a finer one.
 struct ConsistencyRecord {
   int coarse = 0, fine = 0;
-  Values values;
+  Json values;
   std::string fields;  ///< relative to the run's folder; may be empty
 };
 

@@ -8,9 +8,6 @@
 #include "core/app/experiment/experiment.h"
 #include "core/app/files/gltf.h"
 #include "core/app/files/json_file.h"
-#include "core/app/report/pictures.h"
-#include "core/app/report/run_data.h"
-#include "core/kernel/files/file.h"
 #include "core/kernel/files/string_utils.h"
 #include "core/numerics/mesh/area_vectors.h"
 #include "core/numerics/mesh/flat_pieces.h"
@@ -98,25 +95,14 @@ void convert_uv(TriangleMesh& mesh, const std::string& unit) {
     mesh.uv *= std::exchange(mesh.sewing->uv_length, metres(0, 0)) / metres(0, 0);
 }
 
-/// A level's mesh as the options want it, as bytes of a .obj or .ply.
+/// A level's mesh as the options want it, as bytes of a .obj, .ply or .vtp.
 std::string mesh_bytes(const RunData& run, int level, TriangleMesh mesh, const VertexFields& fields,
                        const std::string& extension, const ExportOptions& options) {
   if (options.as_read) mesh = mesh_as_read(run, level, std::move(mesh));
   if (!options.uv_unit.empty()) convert_uv(mesh, options.uv_unit);
-  return extension == ".obj" ? obj_text(mesh) : ply_bytes(mesh, options.as_read ? VertexFields() : fields);
-}
-
-/// A state with its normals, at the vertices that the texture coordinates have split.
-GltfState gltf_state(const TriangleMesh& mesh, const UvVertices& split) {
-  Positions normals = smooth_normals(mesh);
-  for (Eigen::Index i = 0; i < normals.rows(); ++i)
-    if (!(normals.row(i).squaredNorm() > 0.5)) normals.row(i) << 0, 0, 1;  // glTF asks for length 1
-  return {split.of(mesh.vertices), split.of(normals)};
-}
-
-GltfSurface gltf_surface(const std::string& name, GltfMaterial material, const TriangleMesh& mesh,
-                         const UvVertices& split) {
-  return {name, material, split.triangles, gltf_state(mesh, split), split.uv};
+  if (extension == ".obj") return obj_text(mesh);
+  if (extension == ".vtp") return vtp_text(mesh, fields);
+  return ply_bytes(mesh, options.as_read ? VertexFields() : fields);
 }
 
 /// Why a level has fewer snapshots than an animation needs, with a remedy.
@@ -124,7 +110,7 @@ std::string fault_of_snapshots(const MethodRecord& method, const LevelRecord& le
                                std::size_t least) {
   const std::string name = "level " + std::to_string(level.level);
   if (count == 0) return "the run has no snapshots of " + name + "; run the experiment with snapshots: 8";
-  if (level.values.of("iterations").value_or(0) > 1)
+  if (number_member(level.values, "iterations").value_or(0) > 1)
     return "the run has only the last state of " + name + "; run the experiment with snapshots: 8";
   std::vector<std::string> others;
   for (const LevelRecord& other : method.levels)
@@ -147,20 +133,23 @@ std::vector<Positions> earlier_states(const RunData& run, const MethodRecord& me
   return all;
 }
 
-GltfSurface cloth_surface(const RunData& run, const MethodRecord& method, const LevelRecord& level,
-                          bool with_frames) {
-  TriangleMesh mesh = cloth_mesh(run, level);
+/// The mesh, with its normals, at the vertices that its texture coordinates split. `earlier`: its vertices in
+/// states before.
+GltfSurface gltf_surface(const std::string& name, GltfMaterial material, TriangleMesh mesh,
+                         const std::vector<Positions>& earlier = {}) {
   const double uv_length = scale_to_picture(mesh);
   const UvVertices split = split_at_seams(mesh);
-  const std::string cloth = run.experiment.empty() ? "cloth" : run.experiment;
-  GltfSurface surface =
-      gltf_surface(cloth + " level " + std::to_string(level.level), GltfMaterial::cloth, mesh, split);
+  const auto state = [&](const Positions& x) {
+    Positions normals = smooth_normals({x, mesh.triangles});
+    for (Eigen::Index i = 0; i < normals.rows(); ++i)
+      if (!(normals.row(i).squaredNorm() > 0.5)) normals.row(i) << 0, 0, 1;  // glTF asks for length 1
+    return GltfState{split.of(x), split.of(normals)};
+  };
+  GltfSurface surface{name, material, split.triangles, state(mesh.vertices), split.uv};
+  for (const Positions& x : earlier) surface.earlier.push_back(state(x));
   surface.uv_length = uv_length;
   surface.piece = mesh.piece;
   surface.piece_names = mesh.piece_names;
-  if (with_frames)
-    for (Positions& x : earlier_states(run, method, level, mesh.vertices.rows(), 2))
-      surface.earlier.push_back(gltf_state({std::move(x), mesh.triangles}, split));
   return surface;
 }
 
@@ -169,19 +158,23 @@ std::string gltf_of(const RunData& run, const MethodRecord& method,
   std::vector<GltfSurface> surfaces;
   std::vector<int> obstacles;
   for (std::size_t k = 0; k < run.obstacles.size(); ++k) {
-    const TriangleMesh mesh = run.mesh(run.obstacles[k].mesh);
+    TriangleMesh mesh = run.mesh(run.obstacles[k].mesh);
     if (mesh.triangles.rows() == 0) continue;
     const std::string& given = run.obstacles[k].name;
     const std::string name = given.empty() ? "obstacle " + std::to_string(k) : given;
     obstacles.push_back(static_cast<int>(surfaces.size()));
-    surfaces.push_back(gltf_surface(name, GltfMaterial::obstacle, mesh, split_at_seams(mesh)));
+    surfaces.push_back(gltf_surface(name, GltfMaterial::obstacle, std::move(mesh)));
   }
+  const std::string cloth = run.experiment.empty() ? "cloth" : run.experiment;
   std::vector<GltfScene> scenes;
   for (const LevelRecord* level : levels) {
-    GltfScene scene{"level " + std::to_string(level->level), obstacles};
-    scene.surfaces.push_back(static_cast<int>(surfaces.size()));
-    surfaces.push_back(cloth_surface(run, method, *level, with_frames));
-    scenes.push_back(std::move(scene));
+    const std::string name = "level " + std::to_string(level->level);
+    scenes.push_back({name, obstacles});
+    scenes.back().surfaces.push_back(static_cast<int>(surfaces.size()));
+    TriangleMesh mesh = cloth_mesh(run, *level);
+    std::vector<Positions> earlier;
+    if (with_frames) earlier = earlier_states(run, method, *level, mesh.vertices.rows(), 2);
+    surfaces.push_back(gltf_surface(cloth + " " + name, GltfMaterial::cloth, std::move(mesh), earlier));
   }
   return glb_bytes(surfaces, scenes);
 }
@@ -220,17 +213,16 @@ std::vector<fs::path> export_pictures(const RunData& run, const MethodRecord& me
   for (const fs::path& each : files) refuse_target(each, options.overwrite);
   if (options.frames) refuse_target(numbered(file, files.size()), options.overwrite);
 
-  PictureFrame frame;
-  frame.width = options.picture.width.value_or(2 * default_picture_width);
-  if (options.picture.direction) frame.direction = *options.picture.direction;
-  frame.edges = options.picture.edges;
-  for (const TriangleMesh& state : states) frame.further.push_back(&state.vertices);
+  PictureOptions look = options.picture;
+  look.width = look.width.value_or(2 * default_picture_width);
+  std::vector<const Positions*> drawn;
+  for (const TriangleMesh& state : states) drawn.push_back(&state.vertices);
   std::vector<std::string> notes;  // of states that are not drawn here; the report has them
-  const PictureScene scene(run, notes, frame);
+  const PictureScene scene(run, notes, look, drawn);
   std::optional<TriangleMesh> coarsest;
-  if (options.picture.outline) coarsest = run.mesh(method.recorded_levels().front()->mesh);
+  if (look.outline) coarsest = run.mesh(method.recorded_levels().front()->mesh);
   for (std::size_t k = 0; k < states.size(); ++k) {
-    Image image = scene.draw(states[k], options.picture.xray);
+    Image image = scene.draw(states[k]);
     if (coarsest) scene.draw_outline(image, *coarsest);
     write_file(files[k], encode_png(image), options.existing());
   }
@@ -296,12 +288,10 @@ std::vector<fs::path> export_run(const fs::path& folder, const fs::path& file, c
   if (extension == ".png") return export_pictures(run, method, levels, file, options);
   refuse_target(file, options.overwrite);
   const LevelRecord& level = *levels[0];
-  const auto fields = [&] { return read_ply_fields(run.folder / level.mesh); };
   write_file(file,
              extension == ".glb" ? gltf_of(run, method, levels, options.frames)
-             : extension == ".vtp"
-                 ? vtp_text(cloth_mesh(run, level), fields())
-                 : mesh_bytes(run, level.level, cloth_mesh(run, level), fields(), extension, options),
+                                 : mesh_bytes(run, level.level, cloth_mesh(run, level),
+                                              read_ply_fields(run.folder / level.mesh), extension, options),
              options.existing());
   return {file};
 }

@@ -1,30 +1,22 @@
 #pragma once
 
-#include <Eigen/Core>
 #include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "core/app/report/pictures.h"
+#include "core/app/report/run_table.h"
 #include "core/kernel/files/file.h"
 
 namespace drape {
-
-/// How exported pictures look; the defaults are a report's, at twice the size.
-struct PictureOptions {
-  std::optional<int> width;                  ///< [pixels]
-  std::optional<Eigen::Vector3d> direction;  ///< towards the camera; of any length but 0
-  bool outline = false;                      ///< draw the outline of the method's coarsest state
-  bool xray = false;                         ///< let obstacles show faintly through the cloth
-  bool edges = true;                         ///< of coarse meshes
-};
 
 /// Options of `export_run`.
 struct ExportOptions {
   std::string method;        ///< empty: see default_method
   std::optional<int> level;  ///< empty: every level of a .glb and of numbered pictures, or the finest
   bool frames = false;  ///< the recorded snapshots: of one level, as an animation in a .glb; or as pictures
-  PictureOptions picture;  ///< of a .png alone
+  PictureOptions picture;  ///< of a .png alone; by default twice as wide as a report's
   bool rest = false;       ///< a level's rest shape, by default the finest one's, in place of a state
   bool as_read = false;  ///< in the unit and axes of the cloth's file; on its mesh's level with its vertices
   std::string uv_unit = {};  ///< of the texture coordinates of flat pieces; empty: as they came
@@ -46,5 +38,12 @@ void refuse_target(const std::filesystem::path& file, bool overwrite);
 std::vector<std::filesystem::path> export_run(const std::filesystem::path& folder,
                                               const std::filesystem::path& file,
                                               const ExportOptions& options);
+
+/// Writes the ends of all runs of a sweep that pass as a data set into a folder: NAME.obj as export_run does,
+/// with NAME.json, which has the run's row of the table, the experiment, and the fields at the vertices of
+/// the OBJ; obstacles as OBJ, each once; index.csv, the table with the names of the files; and index.html,
+/// the sweep's page. Returns the table. Throws std::runtime_error with one line as export_run does.
+RunTable export_data_set(const std::filesystem::path& sweep, const std::filesystem::path& folder,
+                         const ExportOptions& options);
 
 }  // namespace drape

@@ -41,36 +41,29 @@ bool all_converged(const std::string& status) {
   });
 }
 
-/// A range of ranks, lower ones better. Where lower values are better, those nearer to zero are: a difference
-/// of energies may be negative.
-struct Ranks {
-  double best, worst;
-};
-
-Ranks ranks_of(const Json& spread, Better better) {
-  const double low = spread["low"], high = spread["high"];
-  if (better == Better::higher) return {-high, -low};
-  const double nearest = low <= 0 && high >= 0 ? 0 : std::min(std::abs(low), std::abs(high));
-  return {nearest, std::max(std::abs(low), std::abs(high))};
-}
-
 /// Names the column in the one row, if there is one, whose range is apart from those of all rivals, and whose
 /// median is so with three digits too.
-void mark_best(const std::vector<TableRow*>& rivals, const std::string& column, Better better) {
-  const auto is_known = [&](const TableRow* row) { return (*row)[column].is_object(); };
-  if (std::ranges::count_if(rivals, is_known) < 2) return;
-  TableRow* best = nullptr;
+void mark_best(std::vector<TableRow*> rivals, const std::string& column, Better better) {
+  std::erase_if(rivals, [&](const TableRow* row) { return !(*row)[column].is_object(); });
+  const auto rank = [&](const TableRow* row, const char* end) {
+    return rank_of(better, (*row)[column][end]);
+  };
+  const auto worst = [&](const TableRow* row) { return std::max(rank(row, "low"), rank(row, "high")); };
+  const auto best = [&](const TableRow* row) {
+    const bool around_zero =
+        better == Better::lower && (*row)[column]["low"] <= 0 && (*row)[column]["high"] >= 0;
+    return around_zero ? 0 : std::min(rank(row, "low"), rank(row, "high"));
+  };
+  const auto median = [&](const TableRow* row) {
+    return number_text((*row)[column]["median"].get<double>());
+  };
+  const auto is_single = [&](const TableRow* row) { return (*row)[column]["count"] == 1; };
+  if (rivals.size() < 2 || std::ranges::any_of(rivals, is_single)) return;  // a single value has no range
   for (TableRow* row : rivals)
-    if (is_known(row) && (*row)[column]["count"] == 1) return;  // its range is not known
-  for (TableRow* row : rivals)
-    if (is_known(row) && std::ranges::all_of(rivals, [&](const TableRow* other) {
-          return other == row || !is_known(other) ||
-                 (ranks_of((*row)[column], better).worst < ranks_of((*other)[column], better).best &&
-                  number_text((*row)[column]["median"].get<double>()) !=
-                      number_text((*other)[column]["median"].get<double>()));
+    if (std::ranges::all_of(rivals, [&](const TableRow* other) {
+          return other == row || (worst(row) < best(other) && median(row) != median(other));
         }))
-      best = row;
-  if (best) (*best)["best"].push_back(column);
+      (*row)["best"].push_back(column);
 }
 
 }  // namespace
@@ -109,7 +102,7 @@ std::vector<TableRow> summary_of(const RunTable& table, const std::vector<Declar
     for (const std::string& column : numbers) {
       std::vector<double> values;
       for (const TableRow* row : good)
-        if (const Json& value = member_of(*row, column); value.is_number()) values.push_back(value);
+        if (const auto value = number_member(*row, column)) values.push_back(*value);
       entry[column] = spread_of(std::move(values));
     }
   }

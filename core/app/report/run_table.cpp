@@ -5,7 +5,6 @@
 #include <map>
 
 #include "core/app/experiment/exit_codes.h"
-#include "core/app/files/json_file.h"
 #include "core/app/report/compare.h"
 #include "core/kernel/files/string_utils.h"
 #include "core/kernel/interfaces/solver.h"
@@ -14,8 +13,7 @@ namespace drape {
 
 namespace {
 
-Json json_of(const OptionalNumber& number) { return number ? Json(*number) : Json(); }
-/// A whole number.
+/// A whole number, or null.
 Json count_of(const OptionalNumber& number) { return number ? Json(std::llround(*number)) : Json(); }
 
 /// What the iterations of a method tell beyond its levels. Shortened steps are counted as costs are, on the
@@ -38,7 +36,7 @@ struct IterationSummary {
     }
     if (rows < method.cost("iterations").value_or(0)) shortened_steps.reset();
     for (const LevelRecord& level : method.levels)
-      note(level.values.of("smallest_gap"), level.values.of("intersections"));
+      note(number_member(level.values, "smallest_gap"), number_member(level.values, "intersections"));
   }
 
   void note(const OptionalNumber& gap, const OptionalNumber& crossing) {
@@ -50,13 +48,13 @@ struct IterationSummary {
 /// Whether the times of a method's levels tell of more than the method: the system had more running tasks
 /// than processors, or not even one thread a processor of its own.
 bool was_busy(const RunData& run, const MethodRecord& method) {
-  const Json& processors = member_of(member_of(run.results, "machine"), "processors");
+  const OptionalNumber processors = number_member(run.results, "machine.processors");
   for (const LevelRecord& level : method.levels) {
-    const OptionalNumber cpu = level.values.of("cpu_seconds"), wall = level.values.of("seconds");
+    const OptionalNumber cpu = number_member(level.values, "cpu_seconds"),
+                         wall = number_member(level.values, "seconds");
     if (cpu && wall && *wall > 0.2 && *cpu < 0.9 * *wall) return true;
     for (const char* load : {"load_before", "load_after"})
-      if (processors.is_number() && level.values.of(load).value_or(0) > processors.get<double>() + 0.5)
-        return true;
+      if (processors && number_member(level.values, load).value_or(0) > *processors + 0.5) return true;
   }
   return false;
 }
@@ -86,22 +84,16 @@ std::string statuses(const MethodRecord& method) {
   return same ? method.status : joined(words);
 }
 
-/// Where lower is better, the value nearer to zero is, because a difference of energies may be negative.
-bool is_worse(Better better, double value, double than) {
-  if (better == Better::lower) return std::abs(value) > std::abs(than);
-  return better == Better::higher ? value < than : value > than;
-}
-
 /// A metric's value of one method: of a state metric, that of the finest level, or for summaries the worst of
 /// all levels; of a pair metric, that of the coarsest level against the finest.
 OptionalNumber metric_value(const MetricColumn& column, MetricScope scope, const MethodRecord& method) {
   if (method.levels.empty()) return {};
   if (scope == MetricScope::state)
     return column.shown == Shown::summary ? worst_over_levels(column, method)
-                                          : method.levels.back().values.of(column.name);
+                                          : number_member(method.levels.back().values, column.name);
   for (const ConsistencyRecord& pair : method.consistency)
     if (pair.coarse == method.levels.front().level && pair.fine == method.levels.back().level)
-      return pair.values.of(column.name);
+      return number_member(pair.values, column.name);
   return {};
 }
 
@@ -115,9 +107,9 @@ std::string status_without_results(const RunRecord& run) {
 }
 
 bool passes(const RunRecord& run, const std::string& status, const TableRow& row) {
-  const Json &energy = member_of(row, "energy_released"), &crossing = member_of(row, "intersections");
   if (!run.data && has_converged(status)) return false;  // its results are gone
-  if (run.data && (energy.is_null() || (crossing.is_number() && crossing.get<double>() > 0))) return false;
+  if (run.data && !number_member(row, "energy_released")) return false;
+  if (number_member(row, "intersections").value_or(0) > 0) return false;
   const bool expected = status == run.expected || (run.expected == "converged" && has_converged(status));
   return expected && text_member(row, "message").find(run.expected_message) != std::string::npos;
 }
@@ -132,6 +124,8 @@ std::vector<std::string> varied_keys(const RunCollection& collection) {
 }
 
 }  // namespace
+
+Json json_of(const OptionalNumber& number) { return number ? Json(*number) : Json(); }
 
 std::vector<std::string> summary_quantities(const std::vector<ErrorMeasure>& measures) {
   std::vector<std::string> names = {"seconds", "iterations", "flops", "energy_released"}, previews;
@@ -148,8 +142,8 @@ std::vector<std::string> summary_quantities(const std::vector<ErrorMeasure>& mea
 TableRow row_of(const RunData& run, const MethodRecord& method) {
   const IterationSummary iterations(run, method);
   const bool several = method.levels.size() > 1;
-  const Values none, &first = several ? method.levels.front().values : none,
-                     &last = method.levels.empty() ? none : method.levels.back().values;
+  const Json none, &first = several ? method.levels.front().values : none,
+                   &last = method.levels.empty() ? none : method.levels.back().values;
   std::string fault, remark;
   if (method.status == "running")
     fault = "if the run has ended, drape run --resume " + run.folder.string() + " goes on with it\n";
@@ -159,11 +153,11 @@ TableRow row_of(const RunData& run, const MethodRecord& method) {
           (several ? "level " + std::to_string(level.level) + ": " : "") + level.message + "\n";
   Json row = {
       {"method", method.name}, {"solver", method.solver}, {"pass", false}, {"status", statuses(method)}};
-  row["stability"] = member_of(member_of(last.json, "stability"), "verdict");
-  row["lowest_eigenvalue"] = json_of(last.of("stability.lowest_eigenvalue"));
-  row["curvature_ratio"] = json_of(last.of("stability.curvature_ratio"));
-  row["force_residual"] = json_of(last.of("force_residual"));
-  row["vertices"] = count_of(last.of("vertices"));
+  row["stability"] = member_of(member_of(last, "stability"), "verdict");
+  row["lowest_eigenvalue"] = json_of(number_member(last, "stability.lowest_eigenvalue"));
+  row["curvature_ratio"] = json_of(number_member(last, "stability.curvature_ratio"));
+  row["force_residual"] = json_of(number_member(last, "force_residual"));
+  row["vertices"] = count_of(number_member(last, "vertices"));
   row["steps"] = count_of(method.cost("steps"));
   row["iterations"] = count_of(method.cost("iterations"));
   row["shortened_steps"] = count_of(iterations.shortened_steps);
@@ -171,10 +165,10 @@ TableRow row_of(const RunData& run, const MethodRecord& method) {
   row["cpu_seconds"] = json_of(method.cost("cpu_seconds"));
   row["machine"] = was_busy(run, method) ? "busy" : "";
   row["flops"] = json_of(method.cost("flops"));
-  row["energy_released"] = json_of(last.of("energy_released"));
+  row["energy_released"] = json_of(number_member(last, "energy_released"));
   row["smallest_gap"] = json_of(iterations.smallest_gap);
   row["intersections"] = count_of(iterations.intersections);
-  row["preview_seconds"] = json_of(first.of("seconds"));
+  row["preview_seconds"] = json_of(number_member(first, "seconds"));
   // The error of the reference against itself says nothing.
   const bool is_reference = run.reference == method.name;
   row["reference"] = is_reference;
@@ -192,11 +186,15 @@ TableRow row_of(const RunData& run, const MethodRecord& method) {
   return row;
 }
 
+double rank_of(Better better, double value) {
+  return better == Better::lower ? std::abs(value) : better == Better::higher ? -value : value;
+}
+
 OptionalNumber worst_over_levels(const MetricColumn& column, const MethodRecord& method) {
   OptionalNumber worst;
   for (const LevelRecord& level : method.levels) {
-    const OptionalNumber value = level.values.of(column.name);
-    if (value && (!worst || is_worse(column.better, *value, *worst))) worst = value;
+    const OptionalNumber value = number_member(level.values, column.name);
+    if (value && (!worst || rank_of(column.better, *value) > rank_of(column.better, *worst))) worst = value;
   }
   return worst;
 }
@@ -244,7 +242,7 @@ RunTable table_of(const RunCollection& collection) {
       for (const MethodRecord& method : run.data->methods) add(method.status, row_of(*run.data, method));
     else
       add(status_without_results(run),
-          {{"method", ""}, {"pass", false}, {"status", status_without_results(run)}, {"message", run.error}});
+          {{"method", ""}, {"status", status_without_results(run)}, {"message", run.error}});
   }
   return table;
 }

@@ -5,6 +5,9 @@
 
 namespace drape {
 
+/// A number, or null.
+Json json_of(const OptionalNumber& number);
+
 /// One method of one run, its cells by the names of the columns: numbers, words, or null if not
 /// known. A run without results is one row.
 using TableRow = Json;
@@ -46,6 +49,10 @@ Json table_json(const RunCollection& collection);
 inline constexpr const char* bold_text =
     "Bold: over at least two starts, the whole range is better than that of every other row of the same "
     "physics.";
+
+/// For comparing values: the lower, the better. Where lower is better, the value nearer to zero is, because a
+/// difference of energies may be negative; where neither is, a larger one counts as worse.
+double rank_of(Better better, double value);
 
 /// The worst of a state metric's values over a method's levels: where neither direction is better, the
 /// largest.

@@ -213,7 +213,7 @@ FitSample FitRuns::measured(const Sweep& sweep, double factor) const {
       continue;
     }
     const MethodRecord method = read_run(files.folder).methods.at(0);
-    const std::optional<double> value = method.levels.back().values.of(setup_.metric);
+    const std::optional<double> value = number_member(method.levels.back().values, setup_.metric);
     value ? sample.values.push_back(*value) : leave_out("has no " + setup_.metric);
   }
   std::ranges::sort(sample.values);

@@ -4,10 +4,7 @@
 #include <boost/algorithm/string/replace.hpp>
 #include <cctype>
 #include <iterator>
-#include <string_view>
 #include <utility>
-
-#include "core/app/files/json_file.h"
 
 // The assembler includes the file as it is.
 #ifndef DRAPE_PAGE

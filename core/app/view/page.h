@@ -9,7 +9,7 @@
 namespace drape {
 
 /// The page of viewer/ about `data`, which its script reads: "kind" says what they are of (viewer/page.js).
-/// It needs no other file and no network. `blocks` are elements of block_element.
+/// It needs no other file and no network. `blocks` are those of embedded_in.
 std::string page(const std::string& title, const Json& data, const std::string& blocks = "");
 
 /// The look of a solver's methods in every chart, of Python too: an index of the colours --solver-N in

@@ -210,9 +210,11 @@ std::string deflated(std::string_view bytes) {
   return packed;
 }
 
-std::string block_element(const std::string& name, const std::string& bytes) {
-  return "<script type=\"application/octet-stream\" id=\"viewer-" + name + "\">" + base64(deflated(bytes)) +
-         "</script>\n";
+ViewDocument::Keep embedded_in(std::string& blocks) {
+  return [&](const std::string& name, const std::string& bytes) {
+    blocks += "<script type=\"application/octet-stream\" id=\"viewer-" + name + "\">" +
+              base64(deflated(bytes)) + "</script>\n";
+  };
 }
 
 }  // namespace drape

@@ -67,7 +67,7 @@ std::string encode_scalars(const Eigen::VectorXd& values, double low, double hig
 /// In zlib's format, which browsers call "deflate".
 std::string deflated(std::string_view bytes);
 
-/// A named block as a <script> element, for pages that embed it.
-std::string block_element(const std::string& name, const std::string& bytes);
+/// Appends each block to a page's `blocks` as a <script> element.
+ViewDocument::Keep embedded_in(std::string& blocks);
 
 }  // namespace drape

@@ -167,7 +167,7 @@ TEST_CASE("a summary has the worst of a method's levels") {
   const MetricColumn lower{.name = "m"}, higher{.name = "m", .better = Better::higher},
       neither{.name = "m", .better = Better::neither};
   CHECK_FALSE(worst_over_levels(lower, method));
-  for (const double value : {2.0, 5.0, 3.0}) method.levels.emplace_back().values.json["m"] = value;
+  for (const double value : {2.0, 5.0, 3.0}) method.levels.emplace_back().values["m"] = value;
   CHECK(worst_over_levels(lower, method) == 5);
   CHECK(worst_over_levels(higher, method) == 2);
   CHECK(worst_over_levels(neither, method) == 5);
@@ -200,10 +200,11 @@ TEST_CASE("values within objects have their path as name") {
       "results.json",
       R"({"methods": {"pcs": {"levels": [{"height": {"lowest": 0.25, "highest": null, "at 0.5": 3}}]}}})");
   const RunData run = read_run(folder.path);
-  const Values& values = run.methods[0].levels[0].values;
-  CHECK(values.of("height.lowest") == 0.25);
-  CHECK(values.of("height.at 0.5") == 3);
-  for (const char* none : {"height.highest", "height", "lowest", "height.lowest.0"}) CHECK(!values.of(none));
+  const Json& values = run.methods[0].levels[0].values;
+  CHECK(number_member(values, "height.lowest") == 0.25);
+  CHECK(number_member(values, "height.at 0.5") == 3);
+  for (const char* none : {"height.highest", "height", "lowest", "height.lowest.0"})
+    CHECK(!number_member(values, none));
 }
 
 TEST_CASE("a table of errors that is damaged before its end is refused") {
