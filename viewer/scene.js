@@ -40,15 +40,12 @@ export class Scene {
     this.renderer.setScissorTest(true);
     this.camera = new THREE.PerspectiveCamera(28, 1, .01, 100);
     this.camera.up.set(0, 0, 1);
-    this.cloth = Scene.material(false);
-    this.painted = Scene.material(true);
-    this.solid = Scene.material(false);
+    const front = [.83, .76, .66], back = [.62, .7, .77], grey = [.45, .47, .5];
     // Seams are drawn in front of the cloth that they are in; a factor of the slope would show its back along folds.
-    for (const material of [this.cloth, this.painted]) Object.assign(material, {polygonOffset: true, polygonOffsetFactor: 0, polygonOffsetUnits: 60});
-    this.solid.uniforms.front.value.set(.45, .47, .5);
-    this.solid.uniforms.back.value.set(.45, .47, .5);
+    this.cloth = Scene.material(false, front, back, {polygonOffsetFactor: 0, polygonOffsetUnits: 60});
+    this.painted = Scene.material(true, front, back, {polygonOffsetFactor: 0, polygonOffsetUnits: 60});
     // What lies on an obstacle is drawn in front of it, without speckles.
-    Object.assign(this.solid, {polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 61});
+    this.solid = Scene.material(false, grey, grey, {polygonOffsetFactor: 1, polygonOffsetUnits: 61});
     this.shade = new THREE.MeshBasicMaterial({color: 0xffffff, side: THREE.DoubleSide});
     this.sun = new THREE.OrthographicCamera();
     this.warp = new THREE.LineBasicMaterial({color: 0xb3261e, visible: false});
@@ -60,10 +57,10 @@ export class Scene {
   }
 
   /// Light comes from above the viewer's left shoulder: both sides of the cloth are lit from every direction.
-  static material(painted) {
+  static material(painted, front, back, offset) {
     return new THREE.ShaderMaterial({
-      side: THREE.DoubleSide,
-      uniforms: {painted: {value: painted ? 1 : 0}, square: {value: 0}, opacity: {value: 1}, front: {value: new THREE.Vector3(.83, .76, .66)}, back: {value: new THREE.Vector3(.62, .70, .77)}},
+      side: THREE.DoubleSide, polygonOffset: true, ...offset,
+      uniforms: {painted: {value: painted ? 1 : 0}, square: {value: 0}, opacity: {value: 1}, front: {value: new THREE.Vector3(...front)}, back: {value: new THREE.Vector3(...back)}},
       vertexShader: `
         attribute vec3 tint, rest;
         varying vec3 eyeNormal, eyePosition, colour;

@@ -48,20 +48,19 @@ std::vector<std::string> chosen_columns(const RunTable& table, const std::vector
                                         TableFormat format) {
   const std::vector<std::string>& known = table.columns;
   for (const std::string& column : chosen) {
-    if (is_one_of(column, known)) continue;
-    if (!table.has_results) continue;  // a metric might declare it
+    if (is_one_of(column, known) || !table.has_results) continue;  // a metric might declare it
     throw std::runtime_error("there is no column \"" + excerpt(column) + "\"; " +
                              did_you_mean(column, known, "the columns are " + joined(known)));
   }
   if (!chosen.empty()) return chosen;
-  std::vector<std::string> columns;
-  for (const std::string& column : known) {
-    if (format == TableFormat::markdown && is_one_of(column, table.in_files)) continue;
-    const auto is_filled = [&](const TableRow& row) {
-      return !cell_text(member_of(row, column), true).empty();
+  std::vector<std::string> columns = known;
+  std::erase_if(columns, [&](const std::string& column) {
+    const auto is_empty = [&](const TableRow& row) {
+      return cell_text(member_of(row, column), true).empty();
     };
-    if (std::any_of(table.rows.begin(), table.rows.end(), is_filled)) columns.push_back(column);
-  }
+    return (format == TableFormat::markdown && is_one_of(column, table.in_files)) ||
+           std::ranges::all_of(table.rows, is_empty);
+  });
   return columns;
 }
 
