@@ -64,9 +64,10 @@ States read_states(const RunData& run, const std::vector<Level>& levels, const V
       try {
         State state{run.mesh(level.mesh).vertices, {}};
         if (state.x.rows() != levels[level.level].vertex_count()) continue;
-        state.fields = document.fields(level.level, state.x);
-        for (const VertexField& field : read_ply_fields(run.folder / level.mesh))
-          if (field.name == "contact_pressure") add_contact_pressure(state.fields, field.values);
+        Eigen::VectorXd pressure;
+        for (VertexField& field : read_ply_fields(run.folder / level.mesh))
+          if (field.name == "contact_pressure") pressure = std::move(field.values);
+        state.fields = document.fields(level.level, state.x, pressure);
         try {
           add_declared(run, method, level.level, state);
         } catch (const std::exception& damaged) {
@@ -162,8 +163,7 @@ std::string viewer_page(const std::string& title, const Level& level, const Posi
   levels.front().index = 0;  // the only one of its document
   std::string blocks;
   ViewDocument document(levels, obstacles, pressure.size() > 0, embedded_in(blocks));
-  SurfaceFields fields = document.fields(0, x);
-  add_contact_pressure(fields, pressure);
+  const SurfaceFields fields = document.fields(0, x, pressure);
   document.set_ranges({&fields});
   const Json entry = {
       {"level", 0}, {"status", ""}, {"states", Json::array({document.state("state", x, fields)})}};

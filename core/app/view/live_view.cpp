@@ -78,8 +78,7 @@ void LiveView::show(LevelView& view, int level, const Positions& x, const Eigen:
   }
   view.x = x;
   view.obstacles = obstacles_;
-  view.fields = document_.fields(level, x, obstacles_.get());
-  add_contact_pressure(view.fields, pressure);
+  view.fields = document_.fields(level, x, pressure, obstacles_.get());
   std::vector<const SurfaceFields*> shown;
   for (const auto& [key, other] : levels_) shown.push_back(&other.fields);
   // Others are encoded again where the ranges grow, since their colours are cut off, and at the end of a

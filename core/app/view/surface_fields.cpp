@@ -5,6 +5,7 @@
 #include <limits>
 #include <optional>
 
+#include "core/numerics/collision_detection/closest.h"
 #include "core/numerics/collision_detection/surface_search.h"
 #include "core/numerics/elements/green_strain.h"
 
@@ -17,21 +18,21 @@ constexpr double quantile = 0.98;    // of the values inside the colours' range
 constexpr double ease_range = 0.06;  // [m]
 constexpr double pascals_in_mmhg = 133.322;
 
-/// The distance of each point (n×3) to the triangles of a surface that `counts(point, triangle)`, where it is
-/// shorter than the one known; NaN stands for one beyond the range.
+/// Lowers known[i], NaN at first, to the distance of each point i to every triangle of a surface within
+/// `range` that `counts(i, t)`.
 template <class Counts>
 void lower_to_distance(Eigen::VectorXd& known, const Positions& x, const TriangleMesh& surface, double range,
                        const Counts& counts) {
   const SurfaceSearch search(surface);
   for (Eigen::Index i = 0; i < x.rows(); ++i) {
-    const double reach = std::isnan(known[i]) ? range : known[i];
-    const NearestPoint near =
-        search.nearest(x.row(i).transpose(), reach, [&](int triangle) { return counts(i, triangle); });
-    if (near.triangle < 0) continue;
-    Eigen::RowVector3d offset = x.row(i);  // summed corner by corner: results have the last bits of `ease`
-    for (int k = 0; k < 3; ++k)
-      offset -= near.weights[k] * surface.vertices.row(surface.triangles(near.triangle, k));
-    known[i] = offset.norm();
+    const Eigen::Vector3d p = x.row(i);
+    search.visit_near(p, range, [&](int t) {
+      if (!counts(i, t)) return;
+      const Eigen::Matrix3d c = surface.vertices(surface.triangles.row(t), Eigen::all).transpose();
+      const Eigen::Vector4d w = closest_point_triangle(p, c.col(0), c.col(1), c.col(2)).c;
+      const double distance = (w[0] * p + w[1] * c.col(0) + w[2] * c.col(1) + w[3] * c.col(2)).norm();
+      if (distance <= range) known[i] = std::fmin(known[i], distance);
+    });
   }
 }
 
@@ -101,10 +102,6 @@ Eigen::VectorXd contact_gap(const Level& level, const Positions& x,
     return true;
   });
   return gap;
-}
-
-void add_contact_pressure(SurfaceFields& fields, const Eigen::VectorXd& pressure) {
-  if (pressure.size() > 0) fields.emplace("contact_pressure", (pressure.array() > 0).select(pressure, nan));
 }
 
 std::pair<double, double> field_range(const FieldKind& kind,

@@ -35,9 +35,6 @@ Eigen::VectorXd contact_gap(const Level& level, const Positions& x,
 Eigen::VectorXd obstacle_distance(const Positions& x, const std::vector<TriangleMesh>& obstacles,
                                   double range);
 
-/// Adds LevelModel::contact_pressure, unless it is empty. NaN where there is no force.
-void add_contact_pressure(SurfaceFields& fields, const Eigen::VectorXd& pressure);
-
 /// The colour range of a kind: nearly all values lie inside.
 std::pair<double, double> field_range(const FieldKind& kind,
                                       const std::vector<const Eigen::VectorXd*>& values, double gap_range);

@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <set>
 #include <stdexcept>
 
@@ -89,7 +90,8 @@ void ViewDocument::add_sewing(const Level& level, Json& entry) {
   entry["flat"]["copies"] = std::vector<int>(flat.vertex.begin() + level.vertex_count(), flat.vertex.end());
 }
 
-SurfaceFields ViewDocument::fields(int level, const Positions& x, const Obstacles* moved) const {
+SurfaceFields ViewDocument::fields(int level, const Positions& x, const Eigen::VectorXd& pressure,
+                                   const Obstacles* moved) const {
   const Level& l = levels_[level];
   SurfaceFields all = {{"mean_curvature", mean_curvature(x, l.rest.triangles, l.hinges)},
                        {"stretch", largest_stretch(l, x)}};
@@ -97,6 +99,8 @@ SurfaceFields ViewDocument::fields(int level, const Positions& x, const Obstacle
   if (l.rest.sewing)
     for (VertexField& field : garment_fields_at(l, x, moved ? *moved : obstacles_))
       all.emplace(field.name, std::move(field.values));
+  constexpr double none = std::numeric_limits<double>::quiet_NaN();
+  if (pressure.size() > 0) all.emplace("contact_pressure", (pressure.array() > 0).select(pressure, none));
   return all;
 }
 

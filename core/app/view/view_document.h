@@ -26,8 +26,10 @@ class ViewDocument {
 
   // `moved`: the obstacles where that state has them; null for where the document has them.
 
-  /// The fields that depend on positions only.
-  SurfaceFields fields(int level, const Positions& x, const Obstacles* moved = nullptr) const;
+  /// The fields that depend on positions, and contact forces: `pressure` is LevelModel::contact_pressure,
+  /// empty where they are not known.
+  SurfaceFields fields(int level, const Positions& x, const Eigen::VectorXd& pressure = {},
+                       const Obstacles* moved = nullptr) const;
   /// Sets the colour ranges, which are empty at first, to those of the states, usually the last of each
   /// level; a field that no state has keeps its range. Returns whether one reaches beyond its old ends, at
   /// which states that were encoded before are cut off.

@@ -36,15 +36,13 @@ Eigen::Matrix3d SurfaceSearch::corners(int triangle) const {
   return mesh_.vertices(mesh_.triangles.row(triangle), Eigen::all).transpose();
 }
 
-NearestPoint SurfaceSearch::nearest(const Eigen::Vector3d& p, double reach,
-                                    const std::function<bool(int)>& counts) const {
+NearestPoint SurfaceSearch::nearest(const Eigen::Vector3d& p, double reach) const {
   NearestPoint nearest;
   const Box at = Box::around(p, p, 0);
   tree_.visit_near(
       tie * reach * reach, [&](const Box& box) { return box.squared_distance(at); },
       [&](int i) {
         const int t = triangles_[i];
-        if (counts && !counts(t)) return tie * reach * reach;
         const Eigen::Matrix3d c = corners(t);
         const Eigen::Vector3d weights = -closest_point_triangle(p, c.col(0), c.col(1), c.col(2)).c.tail<3>(),
                               offset = p - c * weights;

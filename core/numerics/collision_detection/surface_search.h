@@ -1,6 +1,5 @@
 #pragma once
 
-#include <functional>
 #include <limits>
 #include <vector>
 
@@ -24,10 +23,20 @@ class SurfaceSearch {
   /// Of these triangles of the mesh.
   SurfaceSearch(const TriangleMesh& mesh, std::vector<int> triangles);
 
-  /// The nearest point to p that is nearer than `reach` [m], on a triangle that `counts`; all count without
-  /// it.
-  NearestPoint nearest(const Eigen::Vector3d& p, double reach = std::numeric_limits<double>::infinity(),
-                       const std::function<bool(int triangle)>& counts = {}) const;
+  /// The nearest point to p that is nearer than `reach` [m].
+  NearestPoint nearest(const Eigen::Vector3d& p,
+                       double reach = std::numeric_limits<double>::infinity()) const;
+  /// Calls visit(triangle) for each triangle whose bounding box is within `reach` of p [m].
+  template <class Visit>
+  void visit_near(const Eigen::Vector3d& p, double reach, const Visit& visit) const {
+    const Box at = Box::around(p, p, 0);
+    tree_.visit_near(
+        reach * reach, [&](const Box& box) { return box.squared_distance(at); },
+        [&](int i) {
+          visit(triangles_[i]);
+          return reach * reach;
+        });
+  }
   /// The shortest vector [m] to a vertex of this surface from the other one; `shortest` if none is shorter.
   Eigen::Vector3d shortest_from(const SurfaceSearch& other, Eigen::Vector3d shortest) const;
 

@@ -117,8 +117,7 @@ TEST_CASE("contact forces are coloured from zero, and not where there are none")
   std::map<std::string, std::string> blocks;
   ViewDocument view(levels, no_obstacles, true,
                     [&](const std::string& name, const std::string& bytes) { blocks[name] = bytes; });
-  SurfaceFields fields = view.fields(0, levels[0].rest.vertices);
-  add_contact_pressure(fields, Eigen::Vector4d(0, 2, 4, 4));
+  const SurfaceFields fields = view.fields(0, levels[0].rest.vertices, Eigen::Vector4d(0, 2, 4, 4));
   view.set_ranges({&fields});
   const Json state = view.state("s", levels[0].rest.vertices, fields),
              document = view.document("a title", {}), last = document["fields"].back();
