@@ -1,6 +1,7 @@
 // What a run of one method leaves to measure until somebody asks.
 
 #include "tests/configs/resuming.h"
+#include "tests/support/registry.h"
 
 TEST_CASE("a table measures what a run of one method has left: once, with the results of --measure") {
   const Scratch folder;
@@ -45,4 +46,27 @@ TEST_CASE("a run that can no longer be measured is reported with a warning") {
   CHECK_THAT(drape_ends("table out", folder).err,
              Contains("what the run in out left to measure is missing: out/config.yaml: is not the one"));
   CHECK(results_in(folder / "out")["measured"] == false);
+}
+
+TEST_CASE("results stay complete while what was left is measured, also if that is stopped") {
+  const Scratch folder;
+  write_sheets(folder);
+  drape_ends("run e.yaml --quiet --no-report --out out --method pcs --threads 1", folder);
+  const std::string results = text_of(folder / "out/results.json");
+  std::vector<std::string> warnings;
+  drape::ConfigErrors errors;
+  auto saved = read_saved_run(folder / "out", test_registry(), drape::LargeMemory::allowed, warnings, errors);
+  drape::RunOptions options = silent(folder / "out");
+  int asked = 0, changed = 0;
+  options.stop = [&] {
+    changed += text_of(folder / "out/results.json") != results;
+    return ++asked > 0;
+  };
+  resume_experiment(saved->experiment, *saved->scene, options, std::move(*saved->interrupted));
+  CHECK(asked > 0);
+  CHECK(changed == 0);
+  CHECK((text_of(folder / "out/results.json") == results));
+  saved.reset();
+  drape_ends("table out", folder);
+  CHECK(!results_in(folder / "out").contains("measured"));
 }

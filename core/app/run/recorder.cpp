@@ -117,9 +117,9 @@ Recorder::Recorder(const RunFolder& folder, const Experiment& experiment, const 
   results_ = parse_json(std::exchange(s_.results, ""));
   const Json now = program_and_machine(),
              before = results_.contains("resumed") ? results_["resumed"].back() : results_;
-  const bool solved = !complete_results(folder.path()).is_null();  // only measures are left
+  solved_ = !complete_results(folder.path()).is_null();
   for (const auto& [key, value] : now.items())
-    if (!solved && member_of(before, key) != value) {
+    if (!solved_ && member_of(before, key) != value) {
       results_["resumed"].push_back(now);
       break;
     }
@@ -161,7 +161,9 @@ void Recorder::log(const char* event, const Json& more) {
   require_written(log_, "log.jsonl");
 }
 
-void Recorder::save() const { write_file(folder_.file("results.json"), json_text(results_, 1) + "\n"); }
+void Recorder::save() const {
+  if (!solved_) write_file(folder_.file("results.json"), json_text(results_, 1) + "\n");
+}
 
 void Recorder::method_started(const std::string& method) {
   s_.method = method;
@@ -318,6 +320,7 @@ void Recorder::run_finished(bool complete, bool measured) {
   results_["complete"] = complete;
   if (!measured) results_["measured"] = false;
   results_["ended"] = wall_clock();
+  if (complete) solved_ = false;
   save();
   log("run_finished", {{"complete", complete}});
   // The checkpoint, from which they could be written again, is removed next.

@@ -149,6 +149,8 @@ class Recorder : public Observer {
   const Scene& scene_;
   std::ofstream iterations_, log_;
   Json results_;
+  bool solved_ =
+      false;  ///< only measures are left: results.json, which is complete, stays until they are there
   std::map<std::string, std::string> not_measured_;
   std::vector<std::string> written_, restored_;  // names of files that were missing or different
   State s_;                                      // without results
