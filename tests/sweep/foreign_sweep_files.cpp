@@ -100,3 +100,21 @@ TEST_CASE("what is cancelled is a job's number") {
   CHECK_THAT(refused_by("sweep s.yaml --out out --engine slurm --cancel", folder.path),
              Contains("jobs.json: a job is a number, not --user=me; see which of its jobs are in the queue"));
 }
+
+TEST_CASE("a sweep.json leads to no run outside of its folder") {
+  const SmallSweep folder("seeds: [1]\n");
+  folder.sweep();
+  fs::rename(folder / run_of_sweep, folder / "other");
+  fs::remove(folder / "other/report.html");
+  const std::string text = text_of(folder / "out/sweep.json"), own = "\"runs/base/seed_1\"";
+  fs::create_directory_symlink("../../../other", folder / run_of_sweep);
+  const std::string absolute = fs::absolute(folder / "other").string();
+  for (const std::string& named : {std::string("../other"), absolute, std::string("runs/base/seed_1")}) {
+    CAPTURE(named);
+    folder.write("out/sweep.json", replaced(text, own, "\"" + named + "\""));
+    for (const std::string command : {"report out", "table out", "sweep s.yaml --out out"})
+      CHECK_THAT(refused_by(command, folder.path),
+                 Contains("out") && (Contains("leads out of") || Contains("is a link")));
+    CHECK_FALSE(fs::exists(folder / "other/report.html"));
+  }
+}

@@ -84,6 +84,15 @@ std::string fault_of_file_name(const std::string& name) {
 
 void JsonFile::refuse(const std::string& fault) const { refuse_path(path_, fault + "; " + remedy_); }
 
+std::filesystem::path JsonFile::place(const Json& object, const std::string& key) const {
+  const std::string name = at<std::string>(object, key);
+  const std::filesystem::path folder = path_.parent_path(),
+                              way =
+                                  weakly_canonical(folder / name).lexically_relative(canonical(folder / "."));
+  if (way.empty() || *way.begin() == "..") refuse("\"" + excerpt(name) + "\" leads out of the folder");
+  return folder / name;
+}
+
 template <class T>
 std::optional<T> JsonFile::find(const Json& object, const std::string& key) const {
   const Json& value = member_of(object, key);

@@ -29,6 +29,8 @@ class JsonFile {
     if (const std::optional<T> value = find<T>(object, key)) return *value;
     refuse("\"" + key + "\" is missing");
   }
+  /// The place below the file's folder that a required text names; refuses one that leads out of the folder.
+  std::filesystem::path place(const Json& object, const std::string& key) const;
   [[noreturn]] void refuse(const std::string& fault) const;
 
  private:

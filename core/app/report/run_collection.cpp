@@ -58,7 +58,7 @@ std::string read_sweep(const fs::path& folder, RunCollection& collection) {
       run.expected = text_member(expect, "status");
       run.expected_message = text_member(expect, "message");
     }
-    run.folder = folder / text_member(entry, "folder");
+    run.folder = file.place(entry, "folder");
     run.seed = number_member(entry, "seed");
     // Running and failed runs may have written files; only complete ones have results.
     const bool has_results = run.status == "converged" || run.status == "not_converged";

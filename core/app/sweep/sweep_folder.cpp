@@ -39,7 +39,7 @@ Json SweepFolder::read() const {
   if (!json["runs"].is_array()) sweep.refuse("\"runs\" must be a list");
   for (const Json& run : json["runs"]) {
     sweep.at<std::string>(run, "name");
-    sweep.at<std::string>(run, "folder");
+    sweep.place(run, "folder");
     sweep.at<int>(run, "seed");
     const Json& expect = member_of(run, "expect");
     for (const std::string key : {"status", "message"})
