@@ -329,6 +329,9 @@ TEST_CASE("What cannot be dressed is refused in a sentence") {
   TubeDress giant = small_tube();
   giant.radius = 5, giant.body_height = 30, giant.at = {1, 0, 0};
   CHECK_THAT(refused(giant), Catch::Contains("the garment is inside its body: it is 0.28 × 0.4 × 0.2 m"));
+  TubeDress dwarf = small_tube();
+  dwarf.radius = 1e-4, dwarf.body_height = 6e-4;
+  CHECK_THAT(refused(dwarf), Catch::Contains("the garment is far too large for its body: it is 0.28 × 0.4 "));
   const TubeDress beside{.at = {0, -0.2, 0}};  // the front passes through the axis
   CHECK_THAT(refused(beside),
              Catch::Matches(".*no start is free of intersections: of all that were tried, the best "

@@ -27,6 +27,8 @@ constexpr double inflations[] = {0, 0.2};
 /// A body that fits stretches the placed pieces, which are much longer than they are sewn, by less than a
 /// hundredth while it grows.
 constexpr double largest_placed_stretch = 0.1;
+/// Of the garment's size: less is a body in another unit.
+constexpr double smallest_body = 0.01;
 
 /// The triangles of the cloth that a start's intersections name.
 std::vector<int> triangles_in(const std::vector<Intersection>& found) {
@@ -106,6 +108,7 @@ void find_dressing_start(const Experiment& e, Scene& scene, ConfigErrors& errors
                                  "; are the unit, the axis and the place of both right?"});
   };
   if (!body.intersects(own)) return refuse("nowhere near");
+  if (body.sizes().norm() < smallest_body * own.sizes().norm()) return refuse("far too large for");
   std::vector<Intersection> least;
   bool inside = false;  // of the starts without intersections, which smoothing has drawn into the body
   for (const double inflation : inflations) {
