@@ -121,6 +121,14 @@ def test_files_that_are_there_stay_unless_they_are_to_be_replaced(small_run, tmp
     assert victim.read_text() == "mine" and not (out / name).is_symlink()
 
 
+@pytest.mark.parametrize("text", ["method,level", "\udcff", "method,level\nnewton,x\n", "method,seconds,own_rms\nnewton,1,2\n",
+                                  "method,level,seconds,iterations,own_rms\nnewton,0,\x1b[1m,1,2\n"])
+def test_errors_of_another_form_are_refused_in_a_line(small_run, tmp_path, text):
+    (small_run / "errors.csv").write_bytes(text.encode(errors="surrogateescape"))
+    said = command("figures", small_run, "-o", tmp_path / "out", code=2).stderr
+    assert said.startswith("error: the results are not as drape writes them (") and said.count("\n") == 1 and said[:-1].isprintable()
+
+
 def test_a_sweep_is_one_table_and_has_figures(written, swept):
     sweep = swept(GRID)
     frame, files = drape.read_sweep(sweep), written(sweep)

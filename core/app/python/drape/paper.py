@@ -84,7 +84,7 @@ def _save(figure, rows: pandas.DataFrame, file: pathlib.Path) -> list[pathlib.Pa
     figure.set_layout_engine("none")  # as it is laid out now
     for each in files[:3]:
         figure.savefig(each, metadata={".pdf": {"CreationDate": None}, ".svg": {"Date": None}}.get(each.suffix))
-    rows.apply(lambda column: column.map(_cell)).to_csv(files[3], index=False)
+    rows.apply(lambda column: column.map(_cell)).rename(columns=_cell).to_csv(files[3], index=False)
     matplotlib.pyplot.close(figure)
     return files
 
@@ -175,6 +175,10 @@ def figures(results, out, overwrite: bool = False, *, measures=(), methods=(), w
     return written
 
 
+def _printable(text) -> str:
+    return "".join(c if c.isprintable() else ascii(c)[1:-1] for c in str(text))
+
+
 def main() -> int:
     parser = argparse.ArgumentParser(prog="drape figures", description=__doc__)
     parser.add_argument("results", help="results folder of a run, or a sweep's")
@@ -188,9 +192,10 @@ def main() -> int:
     given = vars(parser.parse_args())
     try:
         for file in figures(given.pop("results"), given.pop("out"), given.pop("overwrite"), **given):
-            print("".join(c if c.isprintable() else ascii(c)[1:-1] for c in str(file)))
-    except (RuntimeError, OSError) as error:
-        print(f"error: {error}", file=sys.stderr)
+            print(_printable(file))
+    except Exception as error:  # of pandas and matplotlib too: of names and numbers that no run writes
+        known = isinstance(error, (RuntimeError, OSError))
+        print("error: " + _printable(error if known else f"the results are not as drape writes them ({type(error).__name__}: {error})"), file=sys.stderr)
         return 2
     return 0
 

@@ -96,7 +96,7 @@ def _rows(methods: Mapping[str, Any], entries: str) -> pandas.DataFrame:
 
 
 def _read_csv(file: pathlib.Path) -> pandas.DataFrame:
-    if not file.exists():
+    if not file.is_file():
         return pandas.DataFrame()
     text = file.read_text(encoding="utf-8")
     whole = text[:text.rfind("\n") + 1]  # a killed run may leave a part of a line
