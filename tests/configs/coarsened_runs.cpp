@@ -3,6 +3,7 @@
 #include "core/numerics/mesh_files/io.h"
 #include "core/numerics/patterns/generate.h"
 #include "tests/configs/resuming.h"
+#include "tests/support/meshes.h"
 #include "tests/support/solve.h"
 #include "tests/support/tube_dress.h"
 
@@ -105,6 +106,46 @@ TEST_CASE("A finer level begins beside a sharp rim over which the coarse cloth i
   CHECK(s.levels[1].outcome == Outcome::converged);
   for (const auto& contact : s.scene->models[1]->contacts())
     CHECK(contact->intersections(s.levels[1].x).empty());
+}
+
+TEST_CASE(
+    "A moulded cap has levels below it, and each finer one starts with the curvature that it rests with") {
+  const Scratch folder;
+  write_mesh(folder / "cap.obj", hemisphere(1200));
+  folder.write("e.yaml", R"(
+name: cap
+cloth: {shape: file, file: cap.obj}
+hierarchy: {coarsen: 2}
+material: {membrane_modulus: 8e4, bending_modulus: 8e4}
+start: {translate: [0, 0, 0.005], perturbation: 1e-4}
+energies: [neo_hookean, hinge, gravity]
+contact: [ipc, shapes]
+obstacles: [{shape: sphere, radius: 0.08}]
+friction: 0.3
+newton: {force_tolerance: 1e-2}
+methods: {pcs: {}}
+)");
+  const Solved s = solved(experiment_in(folder / "e.yaml"));
+  REQUIRE(s.levels.size() == 3);
+  const Hierarchy& hierarchy = s.scene->hierarchy;
+  for (const LevelResult& level : s.levels) {
+    INFO(level.message);
+    CHECK(level.message.empty());
+    CHECK(level.outcome == Outcome::converged);
+    CHECK(level.from_initial_state == (level.level == 0));
+    for (const auto& contact : s.scene->models[level.level]->contacts())
+      CHECK(contact->intersections(level.x).empty());
+  }
+  for (const int l : {0, 1}) {
+    const auto above_end = [&](const Positions& x) {
+      return s.scene->models[l + 1]->energy_without_contact(x) -
+             s.scene->models[l + 1]->energy_without_contact(s.levels[l + 1].x);
+    };
+    const double with = above_end(hierarchy.prolong(s.levels[l].x, l, l + 1, hierarchy.linear)),
+                 without = above_end(hierarchy.linear[l] * s.levels[l].x);
+    INFO(with << " J above the end of level " << l + 1 << ", " << without << " J without offsets");
+    CHECK(with < 0.5 * without);
+  }
 }
 
 TEST_CASE("A garment with levels below it is dressed on the coarsest, and each finer one starts from it") {

@@ -27,6 +27,26 @@ inline drape::Positions rolled(drape::Positions x, double radius, int axis = 0) 
   return x;
 }
 
+/// A disc of radius 1 that is shaped by its distance r from the middle: the place is (p/r · out, up).
+template <class Shape>
+drape::TriangleMesh shaped_disc(int vertices, const Shape& shape) {
+  drape::TriangleMesh mesh = drape::disc(1, vertices);
+  for (auto x : mesh.vertices.rowwise()) {
+    const double r = x.norm();
+    const Eigen::Vector2d out_up = shape(r);
+    if (r > 0) x *= out_up.x() / r;
+    x[2] = out_up.y();
+  }
+  return mesh;
+}
+
+/// Half a sphere with a radius of 0.1 m about the origin, open below.
+inline drape::TriangleMesh hemisphere(int vertices) {
+  return shaped_disc(vertices, [](double r) {
+    return Eigen::Vector2d(.1 * std::sin(r * M_PI / 2), .1 * std::cos(r * M_PI / 2));
+  });
+}
+
 inline drape::TriangleMesh mesh_of(const std::vector<Eigen::Vector3d>& vertices,
                                    const std::vector<Eigen::Vector3i>& triangles) {
   drape::TriangleMesh mesh;

@@ -38,7 +38,8 @@ class SolverProblem {
   Positions prolong(int level, const State& x) const {
     checked(level + 1);
     const Problem& p = problem();
-    Positions y = p.hierarchy.linear[checked(level)] * x.of(p.models[level]->level().vertex_count());
+    Positions y = p.hierarchy.prolong(x.of(p.models[checked(level)]->level().vertex_count()), level,
+                                      level + 1, p.hierarchy.linear);
     p.model(level + 1)->set_dirichlet(y);
     return y;
   }

@@ -253,7 +253,8 @@ void warm_start_scene(const Experiment& experiment, Scene& scene, int level, con
   scene.starts[level] = x;
   refuse_intersecting_start(experiment, model, x, errors);
   for (std::size_t l = level + 1; l < scene.starts.size(); ++l)
-    scene.starts[l] = scene.hierarchy.midpoints[l - 1] * scene.starts[l - 1];
+    scene.starts[l] = scene.hierarchy.prolong(scene.starts[l - 1], static_cast<int>(l) - 1,
+                                              static_cast<int>(l), scene.hierarchy.midpoints);
 }
 
 }  // namespace drape

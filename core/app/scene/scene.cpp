@@ -72,7 +72,8 @@ std::vector<Positions> start_shapes(const Experiment& e, const Hierarchy& hierar
     if (level.index < cloth)
       shapes[level.index] = shapes[cloth](level.cloth_vertices, Eigen::all);
     else if (level.index > cloth)
-      shapes[level.index] = hierarchy.linear[level.index - 1] * shapes[level.index - 1];
+      shapes[level.index] =
+          hierarchy.prolong(shapes[level.index - 1], level.index - 1, level.index, hierarchy.linear);
   return shapes;
 }
 

@@ -99,11 +99,13 @@ void Hierarchy::add_coarser(const Refiner& refiner, int count) {
       for (const int v : fine.own_vertices) own.push_back(coarse.own_vertices[v]);
       coarse.own_vertices = std::move(own);
     }
+    offsets.push_back(NormalOffsets::of(coarse, made.weights, fine));
     prolongations.push_back(std::move(made.weights));
     levels.push_back(std::move(coarse));
   }
   std::ranges::reverse(levels);
   std::ranges::reverse(prolongations);
+  std::ranges::reverse(offsets);
   midpoints = linear = prolongations;
 }
 
@@ -135,6 +137,7 @@ void Hierarchy::add_finer(const Refiner& refiner, int count) {
     midpoints.push_back(midpoint_weights(coarse));
     if (coarse.rest.sewing) require_unmoved(weights, midpoints.back());
     linear.push_back(rest_interpolation(coarse, fine.rest.vertices));
+    offsets.emplace_back();
     prolongations.push_back(std::move(weights));
     levels.push_back(std::move(fine));
   }
@@ -150,7 +153,11 @@ Positions Hierarchy::prolong(const Positions& x, int from, int to,
                              std::to_string(levels[from].vertex_count()) + " vertices of level " +
                              std::to_string(from));
   Positions fine = x;
-  for (int l = from; l < to; ++l) fine = (weights[l] * fine).eval();
+  for (int l = from; l < to; ++l) {
+    const Positions coarse = std::move(fine);
+    fine = weights[l] * coarse;
+    offsets[l].add(levels[l].rest.triangles, coarse, fine);
+  }
   return fine;
 }
 

@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "core/kernel/interfaces/refiner.h"
+#include "core/numerics/hierarchy/normal_offsets.h"
 
 namespace drape {
 
@@ -17,6 +18,9 @@ struct Hierarchy {
   /// contains its rest position. Equals the midpoint weights wherever the refiner does not move rest
   /// positions.
   std::vector<ProlongationMatrix> linear;
+  /// [l]: how the vertices of level l + 1 rest above the triangles of level l, where that is coarsened from a
+  /// curved level l + 1; `prolong` adds them.
+  std::vector<NormalOffsets> offsets;
   /// Prolongations from coarser meshes to level 0, coarsest first, on which nothing is solved: for multigrid.
   std::vector<ProlongationMatrix> below;
   int cloth = 0;  ///< the level of the cloth's own mesh; levels below it are coarsened, levels above refined
@@ -39,7 +43,8 @@ struct Hierarchy {
   /// Whether level l + 1 splits each triangle of level l into four.
   bool splits(int l) const { return l >= cloth; }
 
-  /// W_{to-1} ⋯ W_{from} x for x (n_from × 3) and weights [l]: n_{l+1} × n_l; 0 ≤ from ≤ to < level_count().
+  /// W_{to-1} ⋯ W_{from} x, each with its offsets, for x (n_from × 3) and weights [l]: n_{l+1} × n_l;
+  /// 0 ≤ from ≤ to < level_count().
   Positions prolong(const Positions& x, int from, int to,
                     const std::vector<ProlongationMatrix>& weights) const;
 

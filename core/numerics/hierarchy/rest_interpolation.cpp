@@ -9,16 +9,20 @@
 namespace drape {
 namespace {
 
-/// A point as a combination of a triangle's corners.
-struct EmbeddedPoint {
-  int triangle = -1;
-  Eigen::Vector3d weights = Eigen::Vector3d::Zero();          ///< barycentric, of its projection to the plane
-  double distance = std::numeric_limits<double>::infinity();  ///< from the triangle [m]
-};
-
-EmbeddedPoint embed(const TriangleMesh& rest, int triangle, const Eigen::Vector3d& point) {
+double longest_side(const TriangleMesh& rest, int triangle) {
   const auto v = rest.triangles.row(triangle);
-  const Eigen::Vector3d a = rest.vertices.row(v[0]), b = rest.vertices.row(v[1]), c = rest.vertices.row(v[2]);
+  double longest = 0;
+  for (int k = 0; k < 3; ++k)
+    longest = std::max(longest, (rest.vertices.row(v[k]) - rest.vertices.row(v[(k + 1) % 3])).norm());
+  return longest;
+}
+
+}  // namespace
+
+EmbeddedPoint EmbeddedPoint::of(const Eigen::Vector3d& point, const Positions& vertices,
+                                const Triangles& triangles, int triangle) {
+  const auto v = triangles.row(triangle);
+  const Eigen::Vector3d a = vertices.row(v[0]), b = vertices.row(v[1]), c = vertices.row(v[2]);
   const Eigen::Vector3d normal = (b - a).cross(c - a), sides((c - b).norm(), (a - c).norm(), (b - a).norm());
   const double double_area = normal.norm();
   EmbeddedPoint embedded;
@@ -30,16 +34,6 @@ EmbeddedPoint embed(const TriangleMesh& rest, int triangle, const Eigen::Vector3
   embedded.distance = std::hypot(std::max(0.0, -inside.minCoeff()), (point - a).dot(normal) / double_area);
   return embedded;
 }
-
-double longest_side(const TriangleMesh& rest, int triangle) {
-  const auto v = rest.triangles.row(triangle);
-  double longest = 0;
-  for (int k = 0; k < 3; ++k)
-    longest = std::max(longest, (rest.vertices.row(v[k]) - rest.vertices.row(v[(k + 1) % 3])).norm());
-  return longest;
-}
-
-}  // namespace
 
 ProlongationMatrix rest_interpolation(const Level& coarse, const Positions& fine_rest) {
   // Relative to the longest side of an adjacent triangle: round-off of the refiner's sums.
@@ -63,7 +57,8 @@ ProlongationMatrix rest_interpolation(const Level& coarse, const Positions& fine
     EmbeddedPoint nearest;
     for (const int parent : {a, b})
       for (const int t : around.row(parent))
-        if (const EmbeddedPoint embedded = embed(rest, t, point); embedded.distance < nearest.distance)
+        if (const auto embedded = EmbeddedPoint::of(point, rest.vertices, rest.triangles, t);
+            embedded.distance < nearest.distance)
           nearest = embedded;
     for (int k = 0; k < 3; ++k)
       weights.emplace_back(v, rest.triangles(nearest.triangle, k), nearest.weights[k]);

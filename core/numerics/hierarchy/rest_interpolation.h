@@ -1,8 +1,20 @@
 #pragma once
 
+#include <limits>
+
 #include "core/kernel/interfaces/refiner.h"
 
 namespace drape {
+
+/// A point as a combination of a triangle's corners.
+struct EmbeddedPoint {
+  int triangle = -1;
+  Eigen::Vector3d weights = Eigen::Vector3d::Zero();          ///< barycentric, of its projection to the plane
+  double distance = std::numeric_limits<double>::infinity();  ///< from the triangle [m]
+
+  static EmbeddedPoint of(const Eigen::Vector3d& point, const Positions& vertices, const Triangles& triangles,
+                          int triangle);
+};
 
 /// Linear interpolation over the coarse rest shape (n_f × n_c, rows sum to 1).
 ///

@@ -183,7 +183,11 @@ LevelResult refine_safely(const Problem& problem, int level, const Positions& x,
   const Stopwatch watch;
   const std::shared_ptr<const LevelModel> finer = problem.model(level + 1);
   const LevelModel& model = *finer;
+  const auto add_offsets = [&](Positions& fine) {
+    problem.hierarchy.offsets[level].add(problem.model(level)->level().rest.triangles, x, fine);
+  };
   Positions target = weights * x;
+  add_offsets(target);
   model.set_dirichlet(target);
   LevelResult refined;
   std::optional<Positions> goal;  // of a cloth that begins far from its target
@@ -196,6 +200,7 @@ LevelResult refine_safely(const Problem& problem, int level, const Positions& x,
                lifted && left_behind(model.level(), *lifted, refined.x) == 0) {
       if (refined.x != *lifted) {
         refined.x = target = std::move(*lifted);
+        add_offsets(target);
         model.set_dirichlet(target);
       }
       target = within_limits(model, std::move(target));

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <array>
 #include <stdexcept>
 #include <utility>
 
@@ -7,12 +8,13 @@
 #include "core/numerics/hierarchy/midpoint.h"
 #include "core/numerics/mesh/grain.h"
 #include "plugins/refiner/coarsen/choose_vertices.h"
+#include "plugins/refiner/coarsen/curved_cloth.h"
 #include "plugins/refiner/coarsen/former_pieces.h"
 #include "plugins/refiner/coarsen/interpolation.h"
 
 namespace drape {
 
-/// Coarser levels under a mesh of flat cloth or of flat pieces (after Zhang et al., Progressive Shell
+/// Coarser levels under a given mesh (after Zhang et al., Progressive Shell
 /// Quasistatics for Unstructured Meshes, 2023); finer ones by midpoint subdivision.
 class CoarsenRefiner : public Refiner {
  public:
@@ -26,7 +28,18 @@ class CoarsenRefiner : public Refiner {
   ProlongationMatrix weights(const Level& coarse) const override { return midpoint_weights(coarse); }
 
   std::optional<CoarserMesh> coarser(const Level& fine) const override {
-    const FlatCloth flat = FlatCloth::of(fine);
+    const std::optional<FlatCloth> flat = FlatCloth::of(fine);
+    CoarserMesh made = flat ? of_pieces(fine, *flat) : of_surface(fine);
+    if (std::ssize(made.vertices) == fine.vertex_count())
+      throw std::runtime_error(
+          "level " + std::to_string(fine.index) + " of " + std::to_string(fine.vertex_count()) +
+          " vertices has no vertex that its corners, outlines and seams do not need; ask for "
+          "fewer coarser levels");
+    return made;
+  }
+
+ private:
+  CoarserMesh of_pieces(const Level& fine, const FlatCloth& flat) const {
     std::optional<CoarsePieces> former;
     if (ratio == 4) former = former_pieces(fine, flat);
     const CoarsePieces pieces =
@@ -35,39 +48,67 @@ class CoarsenRefiner : public Refiner {
     std::vector<int> number(fine.vertex_count(), -1);
     for (int v = 0; v < fine.vertex_count(); ++v)
       if (pieces.kept[v]) number[v] = static_cast<int>(made.vertices.size()), made.vertices.push_back(v);
-    const auto count = static_cast<int>(made.vertices.size());
-    if (count == fine.vertex_count())
-      throw std::runtime_error(
-          "level " + std::to_string(fine.index) + " of " + std::to_string(count) +
-          " vertices has no vertex that its corners, outlines and seams do not need; ask for "
-          "fewer coarser levels");
     made.rest = coarse_rest(fine, flat, pieces, made.vertices, number);
-    made.weights = flat_interpolation(flat, pieces, number, count);
+    made.weights = flat_interpolation(flat, pieces, number, static_cast<int>(made.vertices.size()));
     return made;
   }
 
- private:
-  static TriangleMesh coarse_rest(const Level& fine, const FlatCloth& flat, const CoarsePieces& pieces,
-                                  const std::vector<int>& vertices, const std::vector<int>& number) {
-    TriangleMesh rest{fine.rest.vertices(vertices, Eigen::all), pieces.triangles};
-    for (int& corner : rest.triangles.reshaped()) corner = number[flat.images[corner].vertex];
-    rest.sewing = fine.rest.sewing;
-    rest.piece_names = fine.rest.piece_names;
-    if (fine.rest.uv.rows() > 0) {
-      rest.uv.resize(pieces.triangles.rows(), 6);
-      for (Eigen::Index t = 0; t < rest.uv.rows(); ++t)
-        for (int k = 0; k < 3; ++k)
-          rest.uv.block<1, 2>(t, 2 * k) = flat.images[pieces.triangles(t, k)].uv.transpose();
+  CoarserMesh of_surface(const Level& fine) const {
+    CoarseSurface coarse = CoarseSurface::of(fine, ratio);
+    CoarserMesh made{{fine.rest.vertices(coarse.vertices, Eigen::all), coarse.triangles},
+                     std::move(coarse.vertices),
+                     std::move(coarse.weights)};
+    std::vector<int> number(fine.vertex_count(), -1), same;
+    for (int i = 0; i < std::ssize(made.vertices); ++i) number[made.vertices[i]] = i;
+    for (int& corner : made.rest.triangles.reshaped()) corner = number[corner];
+    const bool has_uv = fine.rest.uv.rows() > 0;
+    if (has_uv) made.rest.uv.resize(coarse.triangles.rows(), 6);
+    for (Eigen::Index t = 0; t < coarse.triangles.rows(); ++t) {
+      const Eigen::Vector3d own = centroid(fine, coarse.triangles.row(t));
+      const auto distance = [&](int f) { return (centroid(fine, fine.rest.triangles.row(f)) - own).norm(); };
+      std::array<int, 3> near;  // at each corner
+      for (int k = 0; k < 3; ++k) {
+        near[k] = *std::ranges::min_element(fine.topology.vertex_triangles.row(coarse.triangles(t, k)), {},
+                                            distance);
+        const auto f = fine.rest.triangles.row(near[k]);
+        const auto corner = std::ranges::find(f, coarse.triangles(t, k)) - f.begin();
+        if (has_uv) made.rest.uv.block<1, 2>(t, 2 * k) = fine.rest.uv.block<1, 2>(near[k], 2 * corner);
+      }
+      same.push_back(*std::ranges::min_element(near, {}, distance));
     }
-    if (fine.rest.piece.empty() && fine.rest.warp.rows() == 0) return rest;
-    std::vector<int> same;  // the fine triangle whose piece and warp each has
-    for (const auto& t : pieces.triangles.rowwise()) same.push_back(fine_triangle_near(fine, flat, t));
+    take_directions(fine, same, made.rest);
+    return made;
+  }
+
+  static Eigen::Vector3d centroid(const Level& level, const Eigen::RowVector3i& vertices) {
+    return level.rest.vertices(vertices, Eigen::all).colwise().mean().transpose();
+  }
+
+  /// Gives the coarse triangles piece and warp of fine ones.
+  static void take_directions(const Level& fine, const std::vector<int>& same, TriangleMesh& rest) {
+    rest.piece_names = fine.rest.piece_names;
     if (!fine.rest.piece.empty())
       for (const int t : same) rest.piece.push_back(fine.rest.piece[t]);
     if (fine.rest.warp.rows() > 0) {
       rest.warp = fine.rest.warp(same, Eigen::all);
       if (!rest.sewing) rest.warp = projected_warp(rest.warp, rest);
     }
+  }
+
+  static TriangleMesh coarse_rest(const Level& fine, const FlatCloth& flat, const CoarsePieces& pieces,
+                                  const std::vector<int>& vertices, const std::vector<int>& number) {
+    TriangleMesh rest{fine.rest.vertices(vertices, Eigen::all), pieces.triangles};
+    for (int& corner : rest.triangles.reshaped()) corner = number[flat.images[corner].vertex];
+    rest.sewing = fine.rest.sewing;
+    if (fine.rest.uv.rows() > 0) {
+      rest.uv.resize(pieces.triangles.rows(), 6);
+      for (Eigen::Index t = 0; t < rest.uv.rows(); ++t)
+        for (int k = 0; k < 3; ++k)
+          rest.uv.block<1, 2>(t, 2 * k) = flat.images[pieces.triangles(t, k)].uv.transpose();
+    }
+    std::vector<int> same;
+    for (const auto& t : pieces.triangles.rowwise()) same.push_back(fine_triangle_near(fine, flat, t));
+    take_directions(fine, same, rest);
     return rest;
   }
 
@@ -92,6 +133,5 @@ class CoarsenRefiner : public Refiner {
 
 DRAPE_PLUGIN(registry) {
   registry.add<drape::Refiner, drape::CoarsenRefiner>(
-      "coarsen",
-      "Coarser levels under a mesh of flat cloth, whose vertices they share; finer ones by midpoints.");
+      "coarsen", "Coarser levels under a given mesh, whose vertices they share; finer ones by midpoints.");
 }

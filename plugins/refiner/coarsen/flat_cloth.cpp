@@ -11,8 +11,8 @@
 namespace drape {
 namespace {
 
-/// The places of each triangle's corners in the planes of their parts, m×6 [m].
-CornerUv places_of_parts(const TriangleMesh& mesh, const std::vector<int>& part, int count) {
+/// The places of each triangle's corners in the planes of their parts, m×6 [m]; nothing if one is not flat.
+std::optional<CornerUv> places_of_parts(const TriangleMesh& mesh, const std::vector<int>& part, int count) {
   std::vector<std::vector<int>> triangles(count);
   for (int t = 0; t < std::ssize(part); ++t) triangles[part[t]].push_back(t);
   CornerUv places(mesh.triangles.rows(), 6);
@@ -21,11 +21,7 @@ CornerUv places_of_parts(const TriangleMesh& mesh, const std::vector<int>& part,
     own.vertices = mesh.vertices(own.triangles.reshaped<Eigen::RowMajor>(), Eigen::all);
     for (Eigen::Index k = 0; k < own.triangles.size(); ++k) own.triangles.data()[k] = static_cast<int>(k);
     const std::optional<PlanarUv> plane = PlanarUv::of(own);
-    if (!plane)
-      throw std::runtime_error("part " + std::to_string(p) +
-                               " of the cloth is not flat; coarser levels are made of flat cloth, or of flat "
-                               "pieces (\"rest: uv\" in "
-                               "cloth): leave \"hierarchy\" out, and let a coarser mesh be the cloth");
+    if (!plane) return std::nullopt;
     const Eigen::Matrix<double, 2, 3> axes = plane->axes.rowwise().normalized();
     for (std::size_t k = 0; k < triangles[p].size(); ++k)
       for (int c = 0; c < 3; ++c)
@@ -57,19 +53,20 @@ void turn_fronts_up(FlatCloth& flat) {
 
 }  // namespace
 
-FlatCloth FlatCloth::of(const Level& level) {
+std::optional<FlatCloth> FlatCloth::of(const Level& level) {
   const TriangleMesh& mesh = level.rest;
   FlatCloth flat;
   flat.piece = mesh.sewing ? flat_pieces(mesh, level.topology) : connected_parts(mesh);
   flat.piece_count = 1 + *std::ranges::max_element(flat.piece);
-  const CornerUv places = mesh.sewing ? CornerUv(mesh.sewing->uv_length * mesh.uv)
-                                      : places_of_parts(mesh, flat.piece, flat.piece_count);
+  const std::optional<CornerUv> places = mesh.sewing ? CornerUv(mesh.sewing->uv_length * mesh.uv)
+                                                     : places_of_parts(mesh, flat.piece, flat.piece_count);
+  if (!places) return std::nullopt;
   std::vector<std::vector<int>> of_vertex(level.vertex_count());
   flat.triangles.resize(mesh.triangles.rows(), 3);
   for (int t = 0; t < level.triangle_count(); ++t)
     for (int k = 0; k < 3; ++k) {
       const int v = mesh.triangles(t, k), piece = flat.piece[t];
-      const Eigen::Vector2d place = places.block<1, 2>(t, 2 * k).transpose();
+      const Eigen::Vector2d place = places->block<1, 2>(t, 2 * k).transpose();
       auto& own = of_vertex[v];
       const auto same = std::ranges::find_if(own, [&](int i) {
         return flat.images[i].piece == piece && (!mesh.sewing || flat.images[i].place == place);

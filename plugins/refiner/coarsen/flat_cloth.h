@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <vector>
 
 #include "core/kernel/interfaces/level.h"
@@ -29,9 +30,9 @@ struct FlatCloth {
   std::vector<char> on_outline;   ///< n flags
   Eigen::VectorXd triangle_area;  ///< n, mean area at rest of the triangles around each vertex [m²]
 
-  /// Of a cloth of flat pieces, or of a mesh whose connected parts are flat. Throws std::runtime_error naming
-  /// what is not.
-  static FlatCloth of(const Level& level);
+  /// Of a cloth of flat pieces, or of a mesh whose connected parts are flat; nothing of another mesh. Throws
+  /// std::runtime_error naming a triangle that is turned over.
+  static std::optional<FlatCloth> of(const Level& level);
 };
 
 }  // namespace drape

@@ -9,8 +9,6 @@
 namespace drape {
 namespace {
 
-/// Outlines that turn by more than this have a corner there [rad].
-constexpr double corner_angle = 40 * std::numbers::pi / 180;
 /// The least distance of kept vertices along an outline that is finer than the cloth inside, over that
 /// inside.
 constexpr double densest = 0.8;

@@ -1,10 +1,14 @@
 #pragma once
 
+#include <numbers>
 #include <vector>
 
 #include "plugins/refiner/coarsen/flat_cloth.h"
 
 namespace drape {
+
+/// Outlines that turn by more than this have a corner there [rad].
+constexpr double corner_angle = 40 * std::numbers::pi / 180;
 
 /// Edges of borders and seams from one corner to the next, or of a loop without corners, which ends at its
 /// first vertex.

@@ -113,7 +113,12 @@ void ProxyObjective::make_parts() {
     }
     FinerPart& finer = finer_.emplace_back();
     finer.part = part;
-    for (int k = 0; k < part.above; ++k) finer.transfers.emplace_back((*part.interpolation)[level_ + k]);
+    const Hierarchy& hierarchy = problem_.hierarchy;
+    for (int l = level_; l < level_ + part.above; ++l) {
+      finer.transfers.emplace_back((*part.interpolation)[l]);
+      finer.triangles.push_back(&hierarchy.levels[l].rest.triangles);
+      finer.offsets.push_back(&hierarchy.offsets[l]);
+    }
     finer.prolonged.resize(part.above);
     finer.forces.resize(part.above);
   }
@@ -158,9 +163,18 @@ const Positions& ProxyObjective::FinerPart::prolong(const Positions& x, int coun
   const Positions* from = &x;
   for (int k = 0; k < count; ++k) {
     transfers[k].prolong(*from, prolonged[k]);
+    offsets[k]->add(*triangles[k], *from, prolonged[k]);
     from = &prolonged[k];
   }
   return *from;
+}
+
+void ProxyObjective::FinerPart::restrict(const Positions& x, Positions& coarse) {
+  for (int k = part.above - 1; k >= 0; --k) {
+    Positions& to = k == 0 ? coarse : forces[k - 1];
+    transfers[k].restrict(forces[k], to);
+    offsets[k]->add_forces(*triangles[k], k == 0 ? x : prolonged[k - 1], forces[k], to);
+  }
 }
 
 double ProxyObjective::smooth_gradient(const Positions& x, Positions& g) {
@@ -183,8 +197,7 @@ double ProxyObjective::smooth_gradient(const Positions& x, Positions& g) {
     const int above = finer.part.above;
     sum += finer.part.factor *
            finer.model->gradient(finer.prolong(x, above), finer.forces[above - 1], finer.part.roles);
-    for (int k = above - 1; k > 0; --k) finer.transfers[k].restrict(finer.forces[k], finer.forces[k - 1]);
-    finer.transfers[0].restrict(finer.forces[0], part_gradient_);
+    finer.restrict(x, part_gradient_);
     add(finer.part.factor);
   }
   return sum;

@@ -82,12 +82,16 @@ class ProxyObjective : public Objective {
     ProxyPart part;
     std::shared_ptr<const LevelModel> model, matrix_model;  // part.above and part.matrix_above levels up
     std::vector<Transfer> transfers;                        // level_ + k → level_ + k + 1
+    std::vector<const Triangles*> triangles;                // of level_ + k
+    std::vector<const NormalOffsets*> offsets;              // level_ + k → level_ + k + 1
     std::vector<Positions> prolonged, forces;               // on level_ + 1 + k
     std::vector<GalerkinProduct> products;                  // from level_ + matrix_above downwards
     std::vector<BlockMatrix> matrices;                      // the finer model's first, then each product
     std::vector<int> slots;  // index in matrix_ of each block of the last matrix
 
     const Positions& prolong(const Positions& x, int count);
+    /// The forces on the level, in `coarse`, of those on the finest one in forces.back(), at x as prolonged.
+    void restrict(const Positions& x, Positions& coarse);
   };
 
   void make_parts();

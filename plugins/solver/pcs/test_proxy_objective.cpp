@@ -1,9 +1,11 @@
 #include <catch2/catch.hpp>
 
 #include "core/numerics/hierarchy/hierarchy.h"
+#include "core/numerics/mesh_files/io.h"
 #include "core/numerics/model/required.h"
 #include "plugins/solver/pcs/proxy_objective.h"
 #include "tests/support/evaluate.h"
+#include "tests/support/meshes.h"
 #include "tests/support/solve.h"
 
 using namespace drape;
@@ -129,6 +131,27 @@ TEST_CASE("The proxy's gradient is that of its value, and the finest level's Gal
     // Deeper than there are levels: as deep as there are.
     ProxyObjective proxy = proxy_of(f.problem, level, 8, interpolation);
     check_derivatives(proxy, f.state(level), 1e-5, 1e-8);
+  }
+}
+
+TEST_CASE("The gradient of energies that are evaluated on a curved finest mesh goes through its offsets") {
+  const Scratch folder;
+  write_mesh(folder / "cap.obj", hemisphere(150));
+  const Fixture f(Overrides{{"cloth", "{shape: file, file: " + (folder / "cap.obj").string() + "}"},
+                            {"levels", "1"},
+                            {"hierarchy", "{coarsen: 2}"},
+                            {"energies", "[neo_hookean, midedge_bending]"}});
+  REQUIRE_FALSE(f.problem.hierarchy.offsets[0].triangle.empty());
+  for (const ProxyInterpolation& interpolation : {by_refiner, by_midpoints}) {
+    ProxyObjective proxy = proxy_of(f.problem, 0, 8, interpolation);
+    const Positions& rest = f.coarse.level().rest.vertices;
+    CHECK(std::abs(value_of(proxy, rest)) < 1e-12);
+    Positions x = rest;
+    for (auto p : x.rowwise()) p[2] *= 1 + 2 * p[0], p[0] += .3 * p[1] * p[1];
+    const auto value = [&](const Positions& y) { return proxy.max_step(y, y), value_of(proxy, y); };
+    proxy.max_step(x, x);
+    const Eigen::VectorXd g = flat(gradient_at(proxy, x));
+    CHECK((differences(value, x, 1e-6).transpose() - g).norm() <= 1e-7 * g.norm());
   }
 }
 
