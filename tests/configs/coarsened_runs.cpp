@@ -116,7 +116,7 @@ TEST_CASE(
 name: cap
 cloth: {shape: file, file: cap.obj}
 hierarchy: {coarsen: 2}
-material: {membrane_modulus: 8e4, bending_modulus: 8e4}
+material: {membrane_modulus: 1e6, bending_modulus: 8e7}
 start: {translate: [0, 0, 0.005], perturbation: 1e-4}
 energies: [neo_hookean, hinge, gravity]
 contact: [ipc, shapes]
