@@ -10,9 +10,9 @@ namespace drape {
 /// Prolongs the state x of `level` to the next one by `weights`, free of intersections and within the strain
 /// limits (PCS section 4.3). An outcome `stalled` has a message that names the triangles beyond their limits.
 ///
-/// The result is y^p = weights · x, with the hierarchy's offsets, if that satisfies contact and limits. Otherwise the midpoint split, which
-/// does not move the surface, or, where the next level does not split this one and y^p intersects something,
-/// the scene's start, starts a descent towards y^p on
+/// The result is y^p = weights · x, with the hierarchy's offsets, if that satisfies contact and limits.
+/// Otherwise the midpoint split, which does not move the surface, or, where the next level does not split
+/// this one and y^p intersects something, the scene's start, starts a descent towards y^p on
 ///   1/(2h²) ‖y − y^p‖²_M + B(y) + S(y)|_F + κ_a Σ_{f ∉ F} V_f Σ_i (σ_i − 1)²,
 /// F the triangles within their limit. While triangles violate their limit, each round relaxes the target by
 /// a factor of ten in 1/h².
