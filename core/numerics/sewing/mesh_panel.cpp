@@ -151,7 +151,7 @@ TriangleMesh mesh_panel(const std::vector<Polygon>& loops, double edge_length) {
   const std::size_t first_inner = points.size();
   for (const Vector2d& p : lattice(own, box, edge_length)) points.push_back(p);
   Triangles triangles = triangles_within(points, border);
-  for (int round = 0; round < rounds; ++round) {
+  for (int round = 0; round < rounds && first_inner < points.size(); ++round) {
     smooth(points, first_inner, triangles);
     triangles = triangles_within(points, border);
   }
