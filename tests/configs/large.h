@@ -8,8 +8,11 @@ inline const std::string rest_of_experiment = "energies: [neo_hookean, hinge]\nm
 
 /// `drape check e.yaml`, which gets ten times the processor time that it may take, and a small part of what
 /// it would take with a time that grows with the square.
-inline Ended checked(const Scratch& folder) {
-  const Ended ended = Command("ulimit -t 20; exec " + drape_command + " check e.yaml", folder.path).wait();
+inline Ended checked(const Scratch& folder, int seconds = 20) {
+  const Ended ended =
+      Command("ulimit -t " + std::to_string(seconds) + "; exec " + drape_command + " check e.yaml",
+              folder.path)
+          .wait();
   INFO(ended.err.substr(0, 1000));
   CHECK((ended.exit_code == 0 || ended.exit_code == 2));  // else a signal ended it
   return ended;
