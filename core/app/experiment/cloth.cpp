@@ -247,12 +247,14 @@ Eigen::Vector2i grid_counts(const ClothParameters& c) {
   return counts.cast<int>();
 }
 
-std::vector<double> estimated_vertices(const ExperimentParameters& p) {
+std::vector<double> estimated_vertices(const ExperimentParameters& p, std::optional<double> of_pattern) {
   std::vector<double> vertices;
   try {
     const bool grid = is_grid(p.cloth);
     const Eigen::Vector2i counts = grid ? grid_counts(p.cloth) : Eigen::Vector2i(0, 0);
-    const double coarsest = is_of_file(p.cloth) ? vertices_of_file(p.cloth) : vertices_of(p.cloth);
+    const double coarsest = of_pattern            ? *of_pattern
+                            : is_of_file(p.cloth) ? vertices_of_file(p.cloth)
+                                                  : vertices_of(p.cloth);
     for (int l = p.hierarchy.coarsen; l > 0; --l) vertices.push_back(coarsest / std::pow(4.0, l));
     for (int l = 0; l < p.levels; ++l) {
       const double cells = std::pow(2.0, l);  // of the level, along a cell of the coarsest one
@@ -271,8 +273,9 @@ double estimated_memory(double vertices) {
 
 std::string memory_text(double bytes) { return fixed_text(bytes / 1e9, bytes < 9.95e9 ? 1 : 0) + " GB"; }
 
-void refuse_too_large(const Experiment& e, LargeMemory large, ConfigErrors& errors) {
-  const std::vector<double> vertices = estimated_vertices(e.parameters);
+void refuse_too_large(const Experiment& e, LargeMemory large, ConfigErrors& errors,
+                      std::optional<double> of_pattern) {
+  const std::vector<double> vertices = estimated_vertices(e.parameters, of_pattern);
   if (vertices.empty()) return;
   const double machine = machine_memory();
   const auto can_be_counted = [&](double n) { return n <= max_finest_vertices; };

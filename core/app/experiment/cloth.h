@@ -23,8 +23,9 @@ Eigen::Vector2i grid_counts(const ClothParameters& cloth);
 int vertices_within(const OutlineSize& outline, double edge_length);
 
 /// Estimated vertices of each level. Builds no level, but reads a cloth's file, and meshes a sewing pattern
-/// to count its vertices. Empty if the cloth cannot be made, which checked_cloth reports.
-std::vector<double> estimated_vertices(const ExperimentParameters& p);
+/// to count its vertices unless that has been done. Empty if the cloth cannot be made, which checked_cloth
+/// reports.
+std::vector<double> estimated_vertices(const ExperimentParameters& p, std::optional<double> of_pattern = {});
 
 /// Estimated peak memory of a run whose finest level has so many vertices [bytes].
 double estimated_memory(double vertices);
@@ -37,6 +38,7 @@ enum class LargeMemory { refused, allowed };
 
 /// Appends an error for levels with more vertices than indices can count and, unless allowed, for a run that
 /// may need more memory than this machine has.
-void refuse_too_large(const Experiment& e, LargeMemory large, ConfigErrors& errors);
+void refuse_too_large(const Experiment& e, LargeMemory large, ConfigErrors& errors,
+                      std::optional<double> of_pattern = {});
 
 }  // namespace drape

@@ -223,9 +223,11 @@ std::vector<std::string> remarks_of(const Experiment& e, const Scene& scene) {
 std::unique_ptr<Scene> build_scene(const Experiment& e, ConfigErrors& errors, LargeMemory large,
                                    IntersectingStart intersecting) {
   const ExperimentParameters& p = e.parameters;
-  if (errors.empty()) refuse_too_large(e, large, errors);
+  const bool is_pattern = p.cloth.shape == "pattern";  // of which the mesh itself tells its size
+  if (errors.empty() && !is_pattern) refuse_too_large(e, large, errors);
   if (!errors.empty()) return nullptr;
   std::optional<TriangleMesh> cloth = checked_cloth(e, errors);
+  if (cloth && is_pattern) refuse_too_large(e, large, errors, static_cast<double>(cloth->vertices.rows()));
   if (!cloth && !p.start.file.empty()) start_mesh(e, errors);
   if (!errors.empty()) return nullptr;
 
