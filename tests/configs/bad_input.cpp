@@ -92,7 +92,7 @@ TEST_CASE("output is short for any number and length of errors") {
 
 TEST_CASE("terminal control characters are printed escaped") {
   CHECK(said_of_edit("levels: 2", "levels: \"\\e[2J\\x07\"") ==
-        "error: e.yaml:3:9: \"levels\" must be an integer, not the text \"\\x1b[2J\\x07\"\n");
+        "error: e.yaml:3:9: \"levels\" must be an integer, not \"\\x1b[2J\\x07\"\n");
   check_error(said_of_edit("levels: 2", "\"\\e[2J\\n\": 2"), "e.yaml:3:1: unknown key \"\\x1b[2J\\n\"; ");
   const std::string red = "$(printf '\\033[31m')", shown = "\\x1b[31m";
   check_refusals(
