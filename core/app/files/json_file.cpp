@@ -84,13 +84,19 @@ std::string fault_of_file_name(const std::string& name) {
 
 void JsonFile::refuse(const std::string& fault) const { refuse_path(path_, fault + "; " + remedy_); }
 
+void refuse_links(const std::filesystem::path& folder, const std::filesystem::path& way) {
+  std::filesystem::path place = folder;
+  for (const auto& part : way)
+    if (is_symlink(place /= part))
+      refuse_path(place, "is a link, and a sweep writes into folders of its own; remove it");
+}
+
 std::filesystem::path JsonFile::place(const Json& object, const std::string& key) const {
-  const std::string name = at<std::string>(object, key);
-  const std::filesystem::path folder = path_.parent_path(),
-                              way =
-                                  weakly_canonical(folder / name).lexically_relative(canonical(folder / "."));
-  if (way.empty() || *way.begin() == "..") refuse("\"" + excerpt(name) + "\" leads out of the folder");
-  return folder / name;
+  const std::filesystem::path way = std::filesystem::path(at<std::string>(object, key)).lexically_normal();
+  if (way.empty() || way.is_absolute() || *way.begin() == "..")
+    refuse("\"" + excerpt(way.string()) + "\" leads out of the folder");
+  refuse_links(path_.parent_path(), way);
+  return path_.parent_path() / way;
 }
 
 template <class T>

@@ -29,7 +29,8 @@ class JsonFile {
     if (const std::optional<T> value = find<T>(object, key)) return *value;
     refuse("\"" + key + "\" is missing");
   }
-  /// The place below the file's folder that a required text names; refuses one that leads out of the folder.
+  /// The place below the file's folder that a required text names; refuses one that leads out of the folder,
+  /// also by a link.
   std::filesystem::path place(const Json& object, const std::string& key) const;
   [[noreturn]] void refuse(const std::string& fault) const;
 
@@ -37,6 +38,9 @@ class JsonFile {
   std::filesystem::path path_;
   std::string remedy_;
 };
+
+/// Throws if a part of the way below a folder is a symbolic link.
+void refuse_links(const std::filesystem::path& folder, const std::filesystem::path& way);
 
 /// A member of an object; null if the key is absent or it is no object.
 const Json& member_of(const Json& object, std::string_view key);

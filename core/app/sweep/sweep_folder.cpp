@@ -71,9 +71,7 @@ std::vector<RunStatus> SweepFolder::checked_statuses(const Sweep& sweep, int thr
   std::vector<RunStatus> statuses;
   for (const SweepRun& run : sweep.runs) {
     const RunFiles files = this->files(run.folder);
-    for (fs::path part = files.folder; part != path_; part = part.parent_path())
-      if (fs::is_symlink(part))
-        refuse_path(part, "is a link, and a sweep writes into folders of its own; remove it");
+    refuse_links(path_, run.folder);
     const RunStatus& status = statuses.emplace_back(resolve_status(files, read_status(files)));
     // A status is written before the config, and the log when the run begins. A link is replaced, not
     // followed.
