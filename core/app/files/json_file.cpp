@@ -86,9 +86,11 @@ void JsonFile::refuse(const std::string& fault) const { refuse_path(path_, fault
 
 void refuse_links(const std::filesystem::path& folder, const std::filesystem::path& way) {
   std::filesystem::path place = folder;
-  for (const auto& part : way)
-    if (is_symlink(place /= part))
+  for (const auto& part : way) {
+    place /= part;
+    if (is_symlink(place))
       refuse_path(place, "is a link, and a sweep writes into folders of its own; remove it");
+  }
 }
 
 std::filesystem::path JsonFile::place(const Json& object, const std::string& key) const {

@@ -51,7 +51,8 @@ BoundMidedgeBending::BoundMidedgeBending(const Level& level, const ShapeOperator
   stencils_.topLeftCorner(angle_count_, 4) = in_order(level.hinges, angle_order_);
   stencils_.bottomLeftCorner(vertices.rows(), vertices.cols()) = in_order(vertices, triangle_order_);
   make_terms(operators, positions_in(angle_order_));
-  for (const int h : angle_order_.elements) folds_.push_back((sharpness[h] - 1) * operators.lone_folds[h]);
+  for (const int h : angle_order_.elements)
+    folds_.push_back(sharpness.size() == 0 ? 0 : (sharpness[h] - 1) * operators.lone_folds[h]);
   if (friction.f == 0) return;
   for (const int t : triangle_order_.elements) {
     const Eigen::Matrix3d x = rest_corners(level.rest, t);

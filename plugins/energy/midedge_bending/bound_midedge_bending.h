@@ -28,9 +28,9 @@ namespace drape {
 /// friction, which is linear in the curvature of a sharp fold, is that of the coarse mesh.
 class BoundMidedgeBending final : public BoundEnergy {
  public:
-  /// `sharpness` [1] of each hinge, 2^k or 1, as Energy::bind_sharp has it.
+  /// `sharpness` [1] of each hinge, as Energy::bind_sharp has it; empty: 1.
   BoundMidedgeBending(const Level& level, const ShapeOperators& operators, const BendingFriction& friction,
-                      const Eigen::VectorXd& sharpness);
+                      const Eigen::VectorXd& sharpness = {});
 
   double value(const Positions& x) const override;
   double add_gradient(const Positions& x, Positions& g) const override;

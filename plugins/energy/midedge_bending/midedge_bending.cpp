@@ -29,7 +29,7 @@ class MidedgeBending final : public Energy {
   EnergyRole role() const override { return EnergyRole::bending; }
   double plate_stiffness(const Material& material) const override { return 2 * bending_stiffness(material); }
   std::unique_ptr<BoundEnergy> bind(const Level& level, const Material& material) const override {
-    return bind_sharp(level, material, Eigen::VectorXd::Ones(level.hinges.rows()));
+    return bind_sharp(level, material, {});
   }
   std::unique_ptr<BoundEnergy> bind_sharp(const Level& level, const Material& material,
                                           const Eigen::VectorXd& sharpness) const override {

@@ -57,7 +57,7 @@ class CoarsenRefiner : public Refiner {
     CoarseSurface coarse = CoarseSurface::of(fine, ratio);
     CoarserMesh made{{fine.rest.vertices(coarse.vertices, Eigen::all), coarse.triangles},
                      std::move(coarse.vertices),
-                     std::move(coarse.weights)};
+                     coarse.weights};
     std::vector<int> number(fine.vertex_count(), -1), same;
     for (int i = 0; i < std::ssize(made.vertices); ++i) number[made.vertices[i]] = i;
     for (int& corner : made.rest.triangles.reshaped()) corner = number[corner];
