@@ -270,8 +270,13 @@ void read_keys(Experiment& experiment, ConfigErrors& errors) { KeyReader(experim
 
 std::vector<const ScheduleKey*> set_values(const Experiment& e, std::vector<double> values, Load& load,
                                            ConfigErrors& errors) {
-  ConfigNode source = e.source;
-  source.remove("schedule");  // of which each load would have a copy
+  ConfigNode source(NodeKind::map);  // without the schedule, of which each load would have a copy
+  source.where = e.source.where;
+  for (std::size_t i = 0; i < e.source.entries.size(); ++i) {
+    if (e.source.entries[i].first == "schedule") continue;
+    source.entries.push_back(e.source.entries[i]);
+    source.key_locations.push_back(e.source.key_locations[i]);
+  }
   DressParameters dress = e.parameters.dress;
   std::vector<const ScheduleKey*> changed;
   for (std::size_t first = 0; const ScheduleKey& key : e.parameters.schedule.keys) {
