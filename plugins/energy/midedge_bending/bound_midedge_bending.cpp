@@ -51,8 +51,8 @@ BoundMidedgeBending::BoundMidedgeBending(const Level& level, const ShapeOperator
   stencils_.topLeftCorner(angle_count_, 4) = in_order(level.hinges, angle_order_);
   stencils_.bottomLeftCorner(vertices.rows(), vertices.cols()) = in_order(vertices, triangle_order_);
   make_terms(operators, positions_in(angle_order_));
-  for (const int h : angle_order_.elements)
-    folds_.push_back(sharpness.size() == 0 ? 0 : (sharpness[h] - 1) * operators.lone_folds[h]);
+  if (sharpness.size() > 0)
+    for (const int h : angle_order_.elements) folds_.push_back((sharpness[h] - 1) * operators.lone_folds[h]);
   if (friction.f == 0) return;
   for (const int t : triangle_order_.elements) {
     const Eigen::Matrix3d x = rest_corners(level.rest, t);
@@ -167,32 +167,32 @@ BoundMidedgeBending::Density BoundMidedgeBending::density(int triangle, double q
 
 double BoundMidedgeBending::value(const Positions& x) const {
   const std::vector<double> bend = bends(x);
-  const double sum = parallel_sum(static_cast<int>(triangle_order_.elements.size()), triangles_at_once,
-                                  [&](int begin, int end) {
-                                    double own = 0;
-                                    for (int t = begin; t < end; ++t)
-                                      own += density(t, numbers_of(t, bend).squaredNorm()).value;
-                                    return own;
-                                  }) +
-                     fold_energy(bend);
+  const double sum =
+      fold_energy(bend) + parallel_sum(static_cast<int>(triangle_order_.elements.size()), triangles_at_once,
+                                       [&](int begin, int end) {
+                                         double own = 0;
+                                         for (int t = begin; t < end; ++t)
+                                           own += density(t, numbers_of(t, bend).squaredNorm()).value;
+                                         return own;
+                                       });
   return std::isnan(sum) ? std::numeric_limits<double>::infinity() : sum;
 }
 
 double BoundMidedgeBending::add_gradient(const Positions& x, Positions& g) const {
   const std::vector<double> bend = bends(x);
   Numbers numbers(triangle_order_.elements.size());
-  const double sum = parallel_sum(static_cast<int>(numbers.size()), triangles_at_once,
-                                  [&](int begin, int end) {
-                                    double own = 0;
-                                    for (int t = begin; t < end; ++t) {
-                                      numbers[t] = numbers_of(t, bend);
-                                      const Density phi = density(t, numbers[t].squaredNorm());
-                                      own += phi.value;
-                                      numbers[t] *= phi.first;
-                                    }
-                                    return own;
-                                  }) +
-                     fold_energy(bend);
+  const double sum =
+      fold_energy(bend) +
+      parallel_sum(static_cast<int>(numbers.size()), triangles_at_once, [&](int begin, int end) {
+        double own = 0;
+        for (int t = begin; t < end; ++t) {
+          numbers[t] = numbers_of(t, bend);
+          const Density phi = density(t, numbers[t].squaredNorm());
+          own += phi.value;
+          numbers[t] *= phi.first;
+        }
+        return own;
+      });
   angle_order_.for_each_chunk([&](int c) {
     for_each_angle_pack(
         c, [&](const Angles& pack) __attribute__((flatten)) {
@@ -207,7 +207,7 @@ double BoundMidedgeBending::add_gradient(const Positions& x, Positions& g) const
 
 double BoundMidedgeBending::fold_energy(const std::vector<double>& bends) const {
   double sum = 0;
-  for (int i = 0; i < angle_count_; ++i) sum += folds_[i] * bends[i] * bends[i];
+  for (std::size_t i = 0; i < folds_.size(); ++i) sum += folds_[i] * bends[i] * bends[i];
   return sum;
 }
 
@@ -217,7 +217,7 @@ Pack<BoundMidedgeBending::W> BoundMidedgeBending::moments(const Angles& pack,
   Pack<W> result = 0.0;
   for (int lane = 0; lane < pack.active; ++lane) {
     const int i = pack.first + lane;
-    double sum = folds_[i] * bends[i];
+    double sum = fold(i) * bends[i];
     for (const Term& term : of_angle_.row(i)) sum += term.weight.dot(numbers[term.item]);
     result.v[lane] = 2 * sum;
   }
@@ -240,10 +240,10 @@ void BoundMidedgeBending::add_hessian(const Positions& x, Projection projection,
           Angles::Vector d[3];
           SymmetricMatrix<9, Pack<W>> h;
           pack.gather(x, d);
-          Pack<W> numbers_of_angle[2] = {0.0, moments(pack, bend, scaled)};
+          Pack<W> stiffness_and_moment[2] = {0.0, moments(pack, bend, scaled)};
           for (int lane = 0; lane < pack.active; ++lane)
-            numbers_of_angle[0].v[lane] = 2 * folds_[pack.first + lane];
-          projected_hessian(AngleKernel(), d, numbers_of_angle, projection, h);
+            stiffness_and_moment[0].v[lane] = 2 * fold(pack.first + lane);
+          projected_hessian(AngleKernel(), d, stiffness_and_moment, projection, h);
           pack.scatter(h, sink);
         });
   });
@@ -256,38 +256,24 @@ void BoundMidedgeBending::add_hessian(const Positions& x, Projection projection,
 
 void BoundMidedgeBending::add_triangle(int t, const Eigen::Vector3d& numbers,
                                        const std::vector<AngleGradient>& gradients, BlockSink& sink) const {
+  using Jacobian = Eigen::Matrix3d;  // row i: ∂s_i/∂x of one vertex
+  Jacobian jacobians[most_vertices];
   const auto row = stencils_.row(angle_count_ + t);
-  const auto count = static_cast<int>(std::find(row.begin(), row.end(), -1) - row.begin());
-  // A column for each coordinate of the vertices, and more to fill whole packs, as the loops over them do.
-  constexpr int most_columns = (3 * most_vertices + W - 1) / W * W;
-  const int columns = (3 * count + W - 1) / W * W;
-  using Rows = double[3][most_columns];
-  Rows jacobian, right;  // ∂s_i/∂x, and that times the inner matrix
-  for (double* by_x : jacobian) std::fill_n(by_x, columns, 0.0);
+  int count = 0;
+  while (count < row.size() && row[count] != -1) jacobians[count++].setZero();
   for (int i = of_triangle_.start[t]; i < of_triangle_.start[t + 1]; ++i) {
     const Term& term = of_triangle_.items[i];
-    for (int k = 0; k < 4; ++k)
-      for (int r = 0; r < 3; ++r)
-        for (int c = 0; c < 3; ++c)
-          jacobian[r][3 * local_[i][k] + c] += term.weight[r] * gradients[term.item][k][c];
+    const AngleGradient& g = gradients[term.item];
+    for (int k = 0; k < 4; ++k) jacobians[local_[i][k]] += term.weight * g[k].transpose();
   }
   const Density phi = density(t, numbers.squaredNorm());
   const Eigen::Matrix3d inner =
       2 * phi.first * Eigen::Matrix3d::Identity() + 4 * phi.second * numbers * numbers.transpose();
-  const auto combine = [&](const Rows& rows, double w0, double w1, double w2, int begin, double* sum) {
-    for (int c = begin; c < columns; ++c) sum[c] = w0 * rows[0][c] + w1 * rows[1][c] + w2 * rows[2][c];
-  };
-  for (int r = 0; r < 3; ++r) combine(jacobian, inner(r, 0), inner(r, 1), inner(r, 2), 0, right[r]);
-  for (int a = 0; a < count; ++a) {
-    Rows h;
-    for (int r = 0; r < 3; ++r) {
-      const int column = 3 * a + r;
-      combine(right, jacobian[0][column], jacobian[1][column], jacobian[2][column], 3 * a / W * W, h[r]);
-    }
-    for (int b = a; b < count; ++b) {
-      double block[9];
-      for (int r = 0; r < 3; ++r) std::copy_n(h[r] + 3 * b, 3, block + 3 * r);
-      sink.add(t, a, b, block);
+  for (int b = 0; b < count; ++b) {
+    const Jacobian right = inner * jacobians[b];
+    for (int a = 0; a <= b; ++a) {
+      const Eigen::Matrix<double, 3, 3, Eigen::RowMajor> block = jacobians[a].transpose() * right;
+      sink.add(t, a, b, block.data());
     }
   }
 }

@@ -64,6 +64,8 @@ class BoundMidedgeBending final : public BoundEnergy {
     double value, first, second;
   };
   Density density(int triangle, double q) const;
+  /// κ_h [J].
+  double fold(int angle) const { return folds_.empty() ? 0 : folds_[angle]; }
   /// Σ_h κ_h (θ - θ̄)² [J].
   double fold_energy(const std::vector<double>& bends) const;
   /// ∂E/∂θ of a pack's angles.
@@ -74,9 +76,10 @@ class BoundMidedgeBending final : public BoundEnergy {
   // Angles and triangles are numbered by their positions in these.
   ElementOrder angle_order_, triangle_order_;
   std::vector<Angles> packs_;
-  std::vector<int> first_pack_;              // of each chunk of angles, and one more
-  std::vector<double> rest_angles_, folds_;  // θ̄ [rad] and κ_h [J] of each angle
-  std::vector<BendingFriction> friction_;    // f √Ā and q0 Ā of each triangle; empty without friction
+  std::vector<int> first_pack_;  // of each chunk of angles, and one more
+  std::vector<double> rest_angles_;
+  std::vector<double> folds_;              // κ_h of each angle [J]; empty for the plate's energy
+  std::vector<BendingFriction> friction_;  // f √Ā and q0 Ā of each triangle; empty without friction
   Grouped<Term> of_triangle_, of_angle_;
   // For each term of of_triangle_: columns of its angle's vertices in the triangle's row of stencils_.
   std::vector<std::array<signed char, 4>> local_;

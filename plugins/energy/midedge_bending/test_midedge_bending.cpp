@@ -211,11 +211,11 @@ TEST_CASE(
       if (level.topology.on_border[v[0]] || level.topology.on_border[v[1]] || level.topology.on_border[v[2]])
         for (const int corner : v) near_border[corner] = 1;
     for (const Material& of : {material, woven}) {
-      Positions x = shaken(mesh.vertices, 0.02, 5), split_x = x;
+      Positions x = shaken(mesh.vertices, 0.02, 5);
       for (int v = 0; v < x.rows(); ++v)
         if (near_border[v]) x.row(v) = mesh.vertices.row(v);
       Level split = level;
-      split_x = x;
+      Positions split_x = x;
       for (const double sharpness : {2, 4}) {
         const ProlongationMatrix midpoints = midpoint_weights(split);
         split_x = (midpoints * split_x).eval();
