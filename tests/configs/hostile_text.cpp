@@ -99,6 +99,16 @@ TEST_CASE("a table of fabrics without a row is said to be empty") {
   }
 }
 
+TEST_CASE("a table of fabrics has the line ends of any system, and a refused cell has no wake") {
+  const Scratch folder;
+  folder.write("cr.csv", "name,mass,warp_bending\ra,0.3,1e-5\r");
+  CHECK_THAT(shown_by("fabric a --file cr.csv", folder.path), Contains("300 g/m"));
+  folder.write("bad.csv", "name,mass,warp_stiffness,weft_stiffness,warp_bending\na,0.3,1e400,5,1e-5\n");
+  folder.write("e.yaml", "name: e\nmaterial: {fabric: {file: bad.csv, row: a}}\n");
+  CHECK_THAT(refused_by("check e.yaml", folder.path),
+             Contains("\"1e400\" in column") && !Contains("needs \"warp_stiffness\""));
+}
+
 TEST_CASE("a text that a spreadsheet would compute is marked as a text in CSV, and a number stays one") {
   using namespace drape;
   RunTable table;

@@ -291,3 +291,10 @@ TEST_CASE("A mesh or an experiment that is linked to a file without an end is re
     fs::remove(folder / "a.ply");
   }
 }
+
+TEST_CASE("a table of fabrics with many rows and columns takes time by its size") {
+  const Scratch folder("name: e\nmaterial: {fabric: {file: wide.csv, row: a}}\n" + rest_of_experiment);
+  folder.write("wide.csv", "name,mass,warp_bending" + repeated(400'000, [](int) { return ",c"; }) +
+                               "\na,0.3,1e-5" + repeated(200'000, [](int) { return "\nb,0.3,1e-5"; }));
+  checked(folder, 10);
+}

@@ -93,16 +93,18 @@ struct Table {
   std::vector<std::vector<std::string>> rows;
 
   Table(std::string name, const std::string& text) : file(std::move(name)) {
-    std::istringstream lines{std::string(utf8_text(file, text))};
+    std::string endings(utf8_text(file, text));
+    std::ranges::replace(endings, '\r', '\n');  // empty lines count for nothing
+    std::istringstream lines(endings);
     char separator = ',';
     for (std::string line; std::getline(lines, line);) {
-      if (line.find_first_not_of(" \t\r") == std::string::npos) continue;
+      if (line.find_first_not_of(" \t") == std::string::npos) continue;
       if (header.empty())  // the first of these that it has
         if (const std::size_t k = std::string(",;\t").find_first_of(line); k != std::string::npos)
           separator = ",;\t"[k];
       std::vector<std::string> cells = cells_of(line, separator);
       for (std::string& cell : cells) {
-        const std::size_t first = cell.find_first_not_of(" \t\r"), last = cell.find_last_not_of(" \t\r");
+        const std::size_t first = cell.find_first_not_of(" \t"), last = cell.find_last_not_of(" \t");
         cell = first == std::string::npos ? "" : cell.substr(first, last - first + 1);
       }
       if (header.empty())
@@ -119,18 +121,22 @@ struct Table {
       for (char& c : head) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
   }
 
-  /// Empty without the column. Throws std::runtime_error if there are two.
-  std::string cell(std::size_t row, const std::string& column) const {
-    if (std::count(header.begin(), header.end(), column) > 1)
+  /// The column's number, past the last without one. Throws std::runtime_error if there are two.
+  std::ptrdiff_t place_of(const std::string& column) const {
+    if (std::ranges::count(header, column) > 1)
       throw std::runtime_error(file + " has two columns \"" + column + "\"; leave one out");
-    const auto i = std::find(header.begin(), header.end(), column) - header.begin();
+    return std::ranges::find(header, column) - header.begin();
+  }
+  std::string cell(std::size_t row, std::ptrdiff_t i) const {
     return i < std::ssize(header) && i < std::ssize(rows[row]) ? rows[row][i] : "";
   }
+  std::string cell(std::size_t row, const std::string& column) const { return cell(row, place_of(column)); }
   /// Of each row, or its number.
   std::vector<std::string> names() const {
     std::vector<std::string> all;
+    const std::ptrdiff_t place = place_of("name");
     for (std::size_t i = 0; i < rows.size(); ++i) {
-      const std::string name = cell(i, "name");
+      const std::string name = cell(i, place);
       all.push_back(name.empty() ? std::to_string(i + 1) : name);
     }
     return all;
@@ -163,6 +169,7 @@ ConfigNode material_of(const Table& table, std::size_t row, const std::string& n
   const auto refuse = [&](const std::string& what) {
     errors.push_back({where, table.file + ": row \"" + name + "\" " + what});
   };
+  const std::size_t before = errors.size();
   const std::optional<double> measured = number_of(table.cell(row, "thickness"));
   const double own = measured.value_or(Material().thickness), in_force = thickness.value_or(own);
   // A number per volume that the source gives without a thickness stays as it is.
@@ -193,6 +200,7 @@ ConfigNode material_of(const Table& table, std::size_t row, const std::string& n
   if (!has_mass && !material.find("density")) refuse("lacks column \"mass\" [kg/m²]");
   if (!material.find("warp_bending") && !material.find("bending_modulus"))
     refuse("lacks column \"warp_bending\" [N m]");
+  if (errors.size() > before) return {};  // what is left would be refused for what it lacks
   if (const std::string source = table.cell(row, "source"); !source.empty())
     material.add("source", ConfigNode::of(source));
   return material;
