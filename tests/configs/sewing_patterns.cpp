@@ -109,6 +109,7 @@ TEST_CASE("patterns that cannot be sewn are refused with file, line, panel and e
   check_error(said(&Bag::stitches, "{left: [fornt.left, back.left]}"),
               "p.yaml:11:21: seam left: there is no panel \"fornt\"; did you mean \"front\"?");
   check_error(said(&Bag::stitches, "{left: [front.left]}"), "p.yaml:11:14: seam left needs two sides");
+  check_error(said(&Bag::stitches, "left"), "p.yaml:11:13: seam must be a list or a map, not \"left\"");
   // Loops that do not close, that cross themselves, that are empty.
   check_error(said(&Bag::front_edges, "{bottom: [0, 1], right: [1, 2], left: [3, 0]}"),
               "p.yaml:7:46: panel front: edge left begins at vertex 3, but the one before ends at 2: the "

@@ -74,7 +74,7 @@ class PanelReader {
         named_vertices_.try_emplace(vertex.name, static_cast<int>(vertex_names_.size()));
       vertex_names_.push_back(vertex.name);
     }
-    if (vertices_.size() < 3)
+    if (!failed() && vertices_.size() < 3)
       refuse(p_.vertices.kind == Kind::null ? node_.where : p_.vertices.where,
              "it is empty: it has " + std::to_string(vertices_.size()) + " vertices, and needs three");
   }
@@ -157,7 +157,7 @@ class PanelReader {
       read_.panel.edges.push_back({name, *curve, e.label, written.where});
       ends_.push_back({*a, *b});
     }
-    if (ends_.empty())
+    if (!failed() && ends_.empty())
       refuse(p_.edges.kind == Kind::null ? node_.where : p_.edges.where, "it is empty: it has no edges");
   }
 
@@ -252,6 +252,7 @@ class PanelReader {
 std::vector<NamedNode> named_nodes(const ConfigNode& node, const std::string& kind, ConfigErrors& errors) {
   std::vector<NamedNode> all;
   std::set<std::string> names;
+  if (node.is_scalar()) errors.push_back({node.where, kind + "must be a list or a map, not " + node.shown()});
   for (const ConfigNode& item : node.items) all.push_back({"", &item, item.where});
   for (std::size_t i = 0; i < node.entries.size(); ++i) {
     const auto& [name, value] = node.entries[i];
