@@ -41,6 +41,8 @@ TEST_CASE("Checkpoints that cannot be resumed are refused with the reason") {
   {
     FileLock other(folder / "out/checkpoint/lock");
     REQUIRE(other.acquire(0));
+    fs::resize_file(folder / "out/checkpoint/lock", 0);  // as before it has written who it is
+    CHECK_THAT(refused(folder, "run --resume out"), Contains("out: another process uses this folder"));
     const std::string in_use = "uses this folder; wait for it, or stop it";
     CHECK_THAT(refused(folder, "run --resume out"), Contains(in_use));
     // Before the checkpoint is read, which the other process goes on to replace.

@@ -56,6 +56,9 @@ bool FileLock::acquire(double patience) {
   refuse_path(name_, "cannot write (is the disk full?)");
 }
 
-std::string FileLock::holder() const { return boost::trim_right_copy(read_file(name_)); }
+std::string FileLock::holder() const {
+  const std::string holder = boost::trim_right_copy(read_file(name_));
+  return holder.empty() ? "another process" : holder;  // which has not written its number yet
+}
 
 }  // namespace drape
