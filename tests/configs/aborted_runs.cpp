@@ -164,7 +164,7 @@ TEST_CASE("A run that has lost a file it cannot be resumed without is to be run 
                   drape::exit_aborted)
             .err ==
         "error: cannot write out/iterations.csv: No such file or directory; the run is aborted. Once the "
-        "cause is removed, run the experiment again: its iterations.csv is missing\n");
+        "cause is removed, run the experiment again with --overwrite: its iterations.csv is missing\n");
   CHECK(fs::exists(folder / "out/checkpoint/state.bin"));
 }
 

@@ -49,7 +49,7 @@ class UnrecordedObserver : public Observer {
 
 /// What to do about an aborted run.
 std::string way_on(const RunFolder& folder) {
-  const std::string again = "run the experiment again: ";
+  const std::string again = "run the experiment again with --overwrite: ";
   if (!has_checkpoint(folder.path())) return again + "there is no checkpoint of it";
   for (const char* needed : {"iterations.csv", "log.jsonl"})
     if (const auto file = folder.file(needed); !std::filesystem::exists(file))
