@@ -227,3 +227,21 @@ def test_names_in_the_results_of_others_lead_nowhere(tmp_path):
     said = command("figures", tmp_path / "run", "-o", tmp_path / "made").stdout
     assert "_end.png" in said and "\x1b" not in said
     assert sorted(file.name for file in tmp_path.iterdir()) == ["made", "run"]
+
+
+def test_figures_that_cannot_all_be_written_are_no_refusal(tmp_path):
+    command("run", SMALL_FILE, "-o", tmp_path / "run", "--no-report", "-q", "--measure")
+    (tmp_path / "made").mkdir()
+    call = """if True:
+        import resource
+        import drape.paper as paper
+        write = paper._core._write_file
+        def limited(*given):
+            resource.setrlimit(resource.RLIMIT_FSIZE, (9000, 9000))
+            write(*given)
+        paper._core._write_file = limited
+        raise SystemExit(paper.main())
+    """
+    ended = subprocess.run([sys.executable, "-c", call, tmp_path / "run", "-o", tmp_path / "made"], capture_output=True, text=True)
+    assert ended.returncode == 3 and ended.stderr.startswith("error: cannot write ")
+    assert (tmp_path / "made/table.csv").exists()

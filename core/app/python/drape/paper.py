@@ -170,8 +170,11 @@ def figures(results, out, overwrite: bool = False, *, measures=(), methods=(), w
         written = [out / file.name for file in files]
         for target in written:
             _core._refuse_target(target, overwrite)
-        for file, target in zip(files, written):
-            _core._write_file(target, file.read_bytes(), overwrite)
+        try:
+            for file, target in zip(files, written):
+                _core._write_file(target, file.read_bytes(), overwrite)
+        except RuntimeError as error:  # as on a full disk
+            raise _core.RunAborted(str(error)) from None
     return written
 
 
@@ -196,7 +199,7 @@ def main() -> int:
     except Exception as error:  # of pandas and matplotlib too: of names and numbers that no run writes
         known = isinstance(error, (RuntimeError, OSError))
         print("error: " + _printable(error if known else f"the results are not as drape writes them ({type(error).__name__}: {error})"), file=sys.stderr)
-        return 2
+        return 3 if isinstance(error, _core.RunAborted) else 2
     return 0
 
 
