@@ -37,17 +37,22 @@ Pairs missing_in(const BlockPattern& pattern, const std::vector<Stencils>& stenc
 
 /// Pads the pairs: adds those of each end with the neighbours of the other. Leaves out blocks of `base`.
 Pairs padded_pairs(const Pairs& pairs, const AdjacencyList& neighbours, const BlockPattern& base) {
+  const AdjacencyList partners = AdjacencyList::of(base.rows(), [&](const auto& add) {
+    for (const auto& [i, j] : pairs) add(i, j), add(j, i);
+  });
+  const AdjacencyList padded = collect_columns(base.rows(), base.rows(), [&](int i, const auto& add) {
+    const auto add_above = [&](const AdjacencyList& first, const AdjacencyList& second) {
+      for (const int j : first.row(i))
+        for (const int k : second.row(j))
+          if (k > i) add(k);
+    };
+    add_above(partners, neighbours);
+    add_above(neighbours, partners);
+  });
   Pairs all;
-  const auto add = [&](int i, int j) {
-    if (i != j) all.emplace_back(std::min(i, j), std::max(i, j));
-  };
-  for (const auto& [i, j] : pairs) {
-    for (const int k : neighbours.row(j)) add(i, k);
-    for (const int k : neighbours.row(i)) add(k, j);
-  }
-  std::sort(all.begin(), all.end());
-  all.erase(std::unique(all.begin(), all.end()), all.end());
-  std::erase_if(all, [&](const auto& pair) { return base.find(pair.first, pair.second) >= 0; });
+  for (int i = 0; i < base.rows(); ++i)
+    for (const int j : padded.row(i))
+      if (base.find(i, j) < 0) all.emplace_back(i, j);
   return all;
 }
 
