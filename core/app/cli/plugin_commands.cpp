@@ -9,7 +9,6 @@
 #include "core/app/experiment/pattern_parameters.h"
 #include "core/app/files/json_file.h"
 #include "core/app/sweep/sweep.h"
-#include "core/kernel/files/file.h"
 #include "core/kernel/files/message_text.h"
 #include "core/kernel/files/string_utils.h"
 #include "core/kernel/plugin/registry.h"
@@ -51,30 +50,8 @@ int print_schema(const std::string& of, const Registry& registry) {
   return exit_done;
 }
 
-/// Newton's settings, which experiments and methods have alike: described once, at this link.
-SharedSection newton_section(const std::string& link) {
-  return {schema_of<NewtonParameters>("newton"), "[Newton](" + link + ")"};
-}
-
-/// Writes every plugin's parameters into FOLDER/KIND/NAME/README.md, if that exists.
-int reference_into(const std::filesystem::path& folder, const Registry& registry) {
-  const SharedSection newton = newton_section("../../../docs/reference/configuration.md#newton");
-  int pages = 0;
-  for (const auto& entry : registry.entries()) {
-    const std::filesystem::path file = folder / entry->kind / entry->name / "README.md";
-    if (!std::filesystem::exists(file)) continue;
-    write_file(file, with_parameters(read_file(file), *entry, &newton));
-    ++pages;
-  }
-  if (pages == 0)
-    throw std::runtime_error("--readmes " + folder.string() +
-                             ": no KIND/NAME/README.md of a plugin there; give the folder `plugins`");
-  std::cout << pages << " pages written\n";
-  return exit_done;
-}
-
 int reference(const Registry& registry) {
-  const SharedSection newton = newton_section("#newton");
+  ReferencePage page{schema_of<NewtonParameters>("newton"), "[Newton](#newton)", {}};
   std::cout << "# Configuration reference\n\n"
                "```sh\n"
                "drape describe experiment              # a table of this page, in the terminal\n"
@@ -82,14 +59,14 @@ int reference(const Registry& registry) {
                "drape run my_drape.yaml --set newton.force_tolerance=1e-4 --set contact.shapes.dhat=2e-3\n"
                "```\n\n"
                "Made by `drape reference`; do not edit.\n\n## Experiment\n\n"
-            << describe_markdown(schema_of<ExperimentParameters>("experiment"), &newton)
+            << describe_markdown(schema_of<ExperimentParameters>("experiment"), &page)
             << "\n## Newton\n\nThe section `newton` of an experiment applies to every method. A method's own "
                "`newton` takes precedence, key by key.\n\n"
-            << describe_markdown(newton.schema);
+            << describe_markdown(page.shared);
   for (const std::string& kind : plugin_kinds()) {
     std::cout << "\n## Kind: " << kind << "\n";
     for (const RegistryEntry* entry : registry.of_kind(kind))
-      std::cout << "\n" << describe_markdown(*entry, &newton);
+      std::cout << "\n" << describe_markdown(*entry, page);
   }
   std::cout << "\n## Sewing pattern\n\n" << describe_pattern_markdown();
   std::cout << "\n## Sweep\n\n" << describe_sweep_markdown();
@@ -121,15 +98,11 @@ void add_plugin_commands(Commands& commands) {
 }
 
 void add_reference_command(Commands& commands) {
-  const auto folder = std::make_shared<std::string>();
-  CLI::App& command = commands.add_with_plugins(
-      "reference", "print the configuration reference (Markdown)", "drape reference --readmes plugins",
-      [folder](const Registry& registry) {
-        return folder->empty() ? reference(registry) : reference_into(*folder, registry);
-      });
-  command.group("For developers of drape");
-  add_option(command, "--readmes FOLDER", *folder,
-             "instead, write each plugin's parameters into FOLDER/KIND/NAME/README.md");
+  commands
+      .add_with_plugins("reference", "print the configuration reference (Markdown)",
+                        "drape reference > docs/reference/configuration.md",
+                        [](const Registry& registry) { return reference(registry); })
+      .group("For developers of drape");
 }
 
 }  // namespace drape

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "core/kernel/files/number_text.h"
 #include "core/kernel/files/string_utils.h"
 #include "core/kernel/plugin/parameters.h"
 
@@ -20,10 +21,14 @@ ConfigNode defaults_of(const Schema& schema) { return schema.write(schema.fresh(
 std::string range_text(const Parameter& p) {
   std::vector<std::string> parts;
   const auto bound = [&](const char* sign, double value) {
-    if (std::isfinite(value)) parts.push_back(sign + ConfigNode::of(value).scalar);
+    if (std::isfinite(value)) parts.push_back(sign + exact_text(value));
   };
-  bound(p.open_minimum ? "> " : ">= ", p.minimum);
-  bound(p.open_maximum ? "< " : "<= ", p.maximum);
+  if (std::isfinite(p.minimum) && std::isfinite(p.maximum) && !p.open_minimum && !p.open_maximum) {
+    parts.push_back(exact_text(p.minimum) + " to " + exact_text(p.maximum));
+  } else {
+    bound(p.open_minimum ? "> " : ">= ", p.minimum);
+    bound(p.open_maximum ? "< " : "<= ", p.maximum);
+  }
   if (!p.choices.empty()) parts.push_back(joined(p.choices));
   return joined(parts);
 }
@@ -38,14 +43,14 @@ std::string type_text(const Parameter& p) {
 
 /// Every parameter in order; a section is followed by its parameters, unless it is the shared one.
 void collect(const Schema& schema, const ConfigNode& defaults, int depth, const std::string& prefix,
-             const SharedSection* shared, std::vector<Row>& rows) {
+             const ReferencePage* page, std::vector<Row>& rows) {
   for (const Parameter& p : schema.parameters) {
     const ConfigNode* initial = defaults.find(p.name);
     Row row{depth, prefix + p.name, &p, type_text(p), "", range_text(p), ""};
     const bool is_section = p.type.is_one(ValueKind::section);
-    const bool is_shared = shared && is_section && p.section->name == shared->schema.name &&
-                           initial->one_line() == defaults_of(shared->schema).one_line();
-    if (is_shared) row.link = shared->link;
+    const bool is_shared = page && is_section && p.section->name == page->shared.name &&
+                           initial->one_line() == defaults_of(page->shared).one_line();
+    if (is_shared) row.link = page->link;
     if (p.required)
       row.initial = "required";
     else if (!is_section && initial)
@@ -53,15 +58,15 @@ void collect(const Schema& schema, const ConfigNode& defaults, int depth, const 
     rows.push_back(row);
     if (is_shared) continue;
     if (is_section)
-      collect(*p.section, *initial, depth + 1, row.path + ".", shared, rows);
+      collect(*p.section, *initial, depth + 1, row.path + ".", page, rows);
     else if (p.section)
-      collect(*p.section, defaults_of(*p.section), depth + 1, row.path + "[].", shared, rows);
+      collect(*p.section, defaults_of(*p.section), depth + 1, row.path + "[].", page, rows);
   }
 }
 
-std::vector<Row> rows_of(const Schema& schema, const SharedSection* shared = nullptr) {
+std::vector<Row> rows_of(const Schema& schema, const ReferencePage* page = nullptr) {
   std::vector<Row> rows;
-  collect(schema, defaults_of(schema), 0, "", shared, rows);
+  collect(schema, defaults_of(schema), 0, "", page, rows);
   return rows;
 }
 
@@ -75,6 +80,29 @@ std::string cell(const std::string& text) {
   std::string escaped;
   for (const char c : text) escaped += c == '|' ? "\\|" : c == '\n' ? " " : std::string(1, c);
   return " " + escaped + " |";
+}
+
+/// What a parameter may be: "number [m], > 0".
+std::string value_of(const Row& row) {
+  const std::string unit = unit_of(*row.parameter);
+  return row.type + (unit.empty() ? "" : " [" + unit + "]") +
+         (row.range.empty() ? "" : (row.parameter->choices.empty() ? ", " : ": ") + row.range);
+}
+
+/// The cells of a row after its path.
+std::string cells_of(const Row& row) {
+  const Parameter& p = *row.parameter;
+  const std::string initial = row.initial.empty() || p.required ? row.initial : "`" + row.initial + "`";
+  std::string meaning = description_of(p) + (row.link.empty() ? "" : "; see " + row.link);
+  if (!p.source.empty()) meaning += (meaning.empty() ? "[" : " [") + p.source + "]";
+  return cell(value_of(row)) + cell(initial) + cell(meaning);
+}
+
+/// "`obstacles[]` of `ipc`"; nothing at the top of an experiment.
+std::string place_of(const std::string& section, const std::string& plugin) {
+  std::string place = section.empty() ? "" : "`" + section.substr(0, section.size() - 1) + "`";
+  if (!plugin.empty()) place += (place.empty() ? "`" : " of `") + plugin + "`";
+  return place;
 }
 
 }  // namespace
@@ -104,34 +132,33 @@ std::string describe(const RegistryEntry& entry) {
          describe(entry.schema) + (entry.details.empty() ? "" : "\n" + entry.details);
 }
 
-std::string describe_markdown(const Schema& schema, const SharedSection* shared) {
-  const std::vector<Row> rows = rows_of(schema, shared);
+std::string describe_markdown(const Schema& schema, ReferencePage* page, const std::string& plugin) {
+  ReferencePage alone;
+  if (!page) page = &alone;
+  const std::vector<Row> rows = rows_of(schema, page);
   if (rows.empty()) return "No parameters.\n";
-  std::string text =
-      "| name | type | default | unit | range | description | source |\n|---|---|---|---|---|---|---|\n";
+  std::vector<std::string> cells, elsewhere;  // of each row; where the page describes it already, if it does
   for (const Row& row : rows) {
-    const Parameter& p = *row.parameter;
-    const std::string initial = row.initial.empty() || p.required ? row.initial : "`" + row.initial + "`";
-    text += "|" + cell("`" + row.path + "`") + cell(row.type) + cell(initial) + cell(unit_of(p)) +
-            cell(row.range) + cell(description_of(p) + (row.link.empty() ? "" : "; see " + row.link)) +
-            cell(p.source) + "\n";
+    const std::string& name = row.parameter->name;
+    const std::string place = place_of(row.path.substr(0, row.path.size() - name.size()), plugin);
+    cells.push_back(cells_of(row));
+    const std::string& known = page->places.try_emplace(name + cells.back(), place).first->second;
+    elsewhere.push_back(known == place || !row.link.empty() ? "" : known);
+  }
+  std::string text = "| key | value | default | meaning |\n|---|---|---|---|\n";
+  for (std::size_t i = 0, end; i < rows.size(); i = end) {
+    for (end = i + 1; end < rows.size() && elsewhere[end] == elsewhere[i];) ++end;
+    std::string keys = "`" + rows[i].path + "`";
+    if (elsewhere[i].empty() || end - i < 3) end = i + 1;  // a few keys are read more easily where they stand
+    for (std::size_t k = i + 1; k < end; ++k) keys += ", `" + rows[k].parameter->name + "`";
+    text += "|" + cell(keys) + (end - i < 3 ? cells[i] : cell("as of " + elsewhere[i]) + "  |  |") + "\n";
   }
   return text;
 }
 
-std::string describe_markdown(const RegistryEntry& entry, const SharedSection* shared) {
+std::string describe_markdown(const RegistryEntry& entry, ReferencePage& page) {
   return "### " + entry.kind + " `" + entry.name + "`\n\n" + entry.summary + "\n\n" +
-         describe_markdown(entry.schema, shared);
-}
-
-std::string with_parameters(const std::string& page, const RegistryEntry& entry,
-                            const SharedSection* shared) {
-  static const std::string heading = "## Parameters\n";
-  const std::size_t at = page.find("\n" + heading);
-  const std::size_t next = at == std::string::npos ? at : page.find("\n## ", at + heading.size());
-  const std::string before = at == std::string::npos ? page + "\n" : page.substr(0, at + 1);
-  return before + heading + "\nMade by `drape reference --readmes`; do not edit.\n\n" +
-         describe_markdown(entry.schema, shared) + (next == std::string::npos ? "" : page.substr(next));
+         describe_markdown(entry.schema, &page, entry.name);
 }
 
 }  // namespace drape

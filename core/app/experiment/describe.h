@@ -1,5 +1,6 @@
 #pragma once
 
+#include <map>
 #include <string>
 
 #include "core/app/files/json_file.h"
@@ -12,21 +13,21 @@ namespace drape {
 std::string describe(const Schema& schema);
 std::string describe(const RegistryEntry& entry);  ///< with the entry's name, summary and library above
 
-/// A section that several schemas have, which a page describes once.
-struct SharedSection {
-  Schema schema;
-  std::string link;  ///< Markdown link to its description
+/// What the tables of a reference page share, so that it describes each thing once.
+struct ReferencePage {
+  Schema shared;     ///< a section that several schemas have, which the page describes apart
+  std::string link;  ///< Markdown link to that description
+  std::map<std::string, std::string>
+      places;  ///< a row without its path, and the place that described it first
 };
 
-/// A Markdown table for the reference page; parameters of sections appear as `section.name`. A section with
-/// the name, parameters and defaults of the shared one is a single row with its link.
-std::string describe_markdown(const Schema& schema, const SharedSection* shared = nullptr);
+/// A Markdown table; parameters of sections appear as `section.name`. A section with the name, parameters and
+/// defaults of the shared one is a single row with its link; keys that another section of the page has alike
+/// are a row that names it.
+std::string describe_markdown(const Schema& schema, ReferencePage* page = nullptr,
+                              const std::string& plugin = "");
 /// The table of a plugin's parameters, below a heading and its summary.
-std::string describe_markdown(const RegistryEntry& entry, const SharedSection* shared = nullptr);
-
-/// A plugin's README with its section "## Parameters" replaced; the section is appended if there was none.
-std::string with_parameters(const std::string& page, const RegistryEntry& entry,
-                            const SharedSection* shared = nullptr);
+std::string describe_markdown(const RegistryEntry& entry, ReferencePage& page);
 
 /// The JSON Schema of configs with this schema, for editors. With a registry, nodes that choose a plugin
 /// accept the registered names and parameters; without, anything.

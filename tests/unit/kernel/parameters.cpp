@@ -243,9 +243,10 @@ TEST_CASE("a schema describes sections and lists of them") {
         "  limit     number or null    null\n"
         "  density   number            required   kg/m³\n");
   const std::string page = describe_markdown(schema);
-  CHECK(page.find("| `ball.radius` | number | `0.3` | m | > 0 |  |  |\n") != std::string::npos);
-  CHECK(page.find("| `balls[].radius` | number |") != std::string::npos);
-  CHECK(page.find("| `word` | text | `left` |  | left, right | one \\| other | Loop 1987 |\n") != page.npos);
+  CHECK(page.find("| `ball.radius` | number [m], > 0 | `0.3` |  |\n") != std::string::npos);
+  CHECK(page.find("| `balls[].radius` | number [m], > 0 |") != std::string::npos);
+  CHECK(page.find("| `word` | text: left, right | `left` | one \\| other [Loop 1987] |\n") != page.npos);
+  CHECK(page.find("| `density` | number [kg/m³] | required |  |\n") != page.npos);
 
   const std::string ball_json = R"("type": "object", "properties": {"radius": {"type": "number",
     "exclusiveMinimum": 0.0, "description": "[m]", "default": 0.3}}, "additionalProperties": false)";
