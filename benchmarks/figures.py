@@ -19,10 +19,12 @@ MEASURED = ["cotton-broad", "wool-tropical", "polyester-tropical", "polyester-fa
 STRETCHED = ["11oz-black-denim", "tango-red-jet-set", "gray-interlock"]  # their tension
 FABRICS = [*MEASURED, *(f"{fabric} elastic" for fabric in MEASURED), *STRETCHED, *(f"{fabric} default tension" for fabric in STRETCHED), "cotton"]
 
+
 def table(head, rows, right):
     """A Markdown table; `right` has an r for each column of numbers."""
     rule = "|".join("---:" if k < len(right) and right[k] == "r" else "---" for k in range(len(head)))
     return ["| " + " | ".join(head) + " |", f"|{rule}|"] + ["| " + " | ".join(row) + " |" for row in rows]
+
 
 def runs(study, method, scene=None, variant=None):
     found = [r for r in read(f"{study}.json") if r["method"] == method and scene in (None, r["scene"])
@@ -31,6 +33,7 @@ def runs(study, method, scene=None, variant=None):
         raise KeyError(f"{study}, {method}")
     return found
 
+
 def finished(study, method, scene=None, variant=None):
     """Runs of which all came to rest: a preview is near to an end that is none."""
     found = runs(study, method, scene, variant)
@@ -38,8 +41,10 @@ def finished(study, method, scene=None, variant=None):
         raise LookupError(f"{study}: {method} has not come to rest from every start")
     return found
 
+
 def of(records, key):
     return median([r[key] for r in records])
+
 
 def grouped(records, *keys):
     """Lists of records by their values of these keys."""
@@ -48,33 +53,41 @@ def grouped(records, *keys):
         found.setdefault(itemgetter(*keys)(r), []).append(r)
     return found
 
+
 def start_by_start(study, value, other="cascadic"):
     """PCS's value over another method's, scene by scene and start by start."""
     base = {(r["scene"], r["seed"]): value(r) for r in finished(study, other)}
     return [value(r) / base[r["scene"], r["seed"]] for r in finished(study, "pcs", variant="default")]
+
 
 def starts_above(study, value):
     """Number of starts from which PCS has more than the cascadic method."""
     ratios = start_by_start(study, value)
     return f"{sum(ratio > 1 for ratio in ratios)} of {len(ratios)}"
 
+
 def lowest_to_highest(values):
     """The range of a figure, for a sentence; one figure where the two read alike."""
     lowest, highest = figure(min(values), 2), figure(max(values), 2)
     return lowest if lowest == highest else f"{lowest} to {highest}"
 
+
 def iterations(records):
     return [median(level) for level in zip(*(r["iterations"] for r in records))]
+
 
 def plain_name(variation):
     """A variation's name as pages have it; records made before `psd_blend: adaptive` had its name call it "least"."""
     return variation.replace("_", " ").replace("as it is", "defaults").replace("least", "adaptive")
 
+
 def distance_of_previews(records):
     return median([r["preview"]["distance_rms"] for r in records])
 
+
 def preview(records, measure):
     return figure(median([r["preview"][measure] for r in records]))
+
 
 def sphere(columns):
     """A row a method of the sphere to 98K vertices."""
@@ -92,21 +105,25 @@ def sphere(columns):
     return table(["method"] + ["Newton iterations by level" if c == "iterations" else c for c in columns], rows,
                  "ll" + "r" * (len(columns) - 1))
 
+
 def rows_of(record):
     """The rows of a record's first Markdown table, by the names of its columns."""
     from_table = itertools.dropwhile(lambda line: not line.startswith("|"), (RESULTS / record).read_text().splitlines())
     cells = [[c.strip() for c in line.strip("|").split("|")] for line in itertools.takewhile(lambda line: line.startswith("|"), from_table)]
     return [dict(zip(cells[0], row)) for row in cells[2:]]
 
+
 def limp_cloth():
     """The scene with the softest cloth to its finest level."""
     return next(r for r in rows_of("scenes.md") if r["run"] == "sphere_fine")
+
 
 def scenes(study, columns):
     """PCS, the cascadic method and the direct solve, a row a scene: the columns of the study's summary that are asked for."""
     rows = [[r["scene"]] + [r[c] for c in columns] for r in rows_of(f"{study}.md")]
     right = "l" + "".join("r" if c in ("preview's flops, relative to cascadic", TOP[-1]) else "l" for c in columns)
     return table(["scene"] + columns, rows, right)
+
 
 def best_in_table1():
     """For each scene, of the rows of curvature, of distance and of energy: how many, and on how many each method is best."""
@@ -117,6 +134,7 @@ def best_in_table1():
         found[scene] = [(int(rows_of), {method: int(count) for method, count in re.findall(r"(\w+) (\d+)", counts)})
                         for rows_of, counts in re.findall(r"Best on the (\d+) rows of [^:]*:([^.]*)\.", section)]
     return found
+
 
 def table1():
     """A row a scene of the supplement's Table 1: on how many rows each method is best, iterations."""
@@ -131,6 +149,7 @@ def table1():
     return table(["scene", "vertices", f"best on rows of curvature: {names}", "of distance and silhouette", "of energy",
                   "iterations on the finest level"], rows, "lr")
 
+
 def iterations_of_remedies():
     """Newton iterations of each remedy that is a choice: by small scene, and in the sum of the large ones."""
     small, large = {}, {}
@@ -143,6 +162,7 @@ def iterations_of_remedies():
             large[name] = large.get(name, 0) + r["iterations"]
     return small, large
 
+
 def remedies():
     small, large = iterations_of_remedies()
     scenes_of = list(next(iter(small.values())))
@@ -150,23 +170,28 @@ def remedies():
             for name, of_scene in small.items()]
     return table(["Newton iterations", *scenes_of, "sphere, cube and tablecloth, PCS and direct"], rows, "lrrrr")
 
+
 def of_large_scenes(*names):
     """Iterations on the large scenes by these remedies, over those by the defaults."""
     _, large = iterations_of_remedies()
     return lowest_to_highest([large[name] / large["defaults"] for name in names])
 
+
 def of_small_scenes(name):
     small, _ = iterations_of_remedies()
     return lowest_to_highest([count / small["defaults"][scene] for scene, count in small[name].items()])
+
 
 def named_ablations():
     """The runs by variation and method, and the direct solve's flops by the defaults."""
     return grouped(read("ablations.json"), "variant", "method"), of(runs("ablations", "newton", variant="as_it_is"), "tflop")
 
+
 def over_defaults(value, *variants):
     """What these variations of the sphere's experiment have over its defaults, for each of the two methods that has both."""
     named, _ = named_ablations()
     return lowest_to_highest([value(named[v, m]) / value(named["as_it_is", m]) for v in variants for m in ("pcs", "cascadic") if (v, m) in named])
+
 
 def ablations():
     """A row a method of each variation of the sphere's experiment; its flops are compared with the direct solve by the defaults."""
@@ -179,6 +204,7 @@ def ablations():
                          preview(r, "distance_rms"), preview(r, "silhouette_overlap"), figure(of(r, "energy"), 6)])
     return table(["variation", "method", "iterations by level", "total flops, relative to direct by the defaults", "preview: RMS distance [diagonals]", "overlap",
                   "final energy [J]"], rows, "lllrrrr")
+
 
 def decrements():
     """PCS and the direct solve of the dragon, levels ended at a decrement."""
@@ -193,10 +219,12 @@ def decrements():
                      with_range([x["force_residual"] for x in r], lambda v: figure(v, 2))])
     return table(["method", "Newton iterations by level", "preview [s]", "total [s]", "relative to direct", "final energy [J]", "force residual"], rows, "llrrrrr")
 
+
 def ratios():
     """Without phases that took no time."""
     rows = [[r["what"], r["against"], figure(r["ratio"], 2)] for r in read("ratios.json")["rows"] if r["seconds"] > 0]
     return table(["what", "over", "ratio"], rows, "llr")
+
 
 def linear_solvers():
     """Seconds of one numeric factorisation by each solver, and what CHOLMOD's takes of ours."""
@@ -211,8 +239,10 @@ def linear_solvers():
     return table(["scene", "vertices", "threads", "supernodal [s] (GFlop/s)", "cholmod [s] (GFlop/s)", "cholmod / supernodal",
                   "the same for a solve", "cholmod: same bits as with one thread"], rows, "lrrrrrrl")
 
+
 def sum_of_changes(method, key):
     return sum(r[method][key] for r in read("changes.json")["rows"])
+
 
 def changes():
     rows = []
@@ -225,6 +255,7 @@ def changes():
         str(sum_of_changes(method, "iterations")), figure(sum_of_changes(method, "seconds")))])
     return table(["change", "PCS: Newton iterations", "s", "direct coarse: Newton iterations", "s"], rows, "lrrrr")
 
+
 def python():
     """A run with a callback and a membrane in numpy, beside the command and the C++ membrane."""
     record = read("python.json")
@@ -233,6 +264,7 @@ def python():
     rows += [[f"{what} of a membrane, {membrane['vertices']} vertices", *(figure(membrane[what][k]) for k in ("python", "cpp", "ratio"))]
              for what in ("value", "gradient", "hessian")]
     return table(["what", "Python [s]", "C++ [s]", "ratio"], rows, "lrrr")
+
 
 def codim_ipc():
     """An energy that Codim-IPC has after its first time step may have been reached anywhere within that step."""
@@ -253,6 +285,7 @@ def codim_ipc():
     return table(["scene", "vertices", "iteration [s]: drape", "iteration [s]: Codim-IPC", "iteration: ratio", "to the same energy [s]: drape",
                   "to the same energy [s]: Codim-IPC", "to the same energy: ratio", "RMS distance of the final states [diagonals]"], rows, "lrrrrrrrr")
 
+
 def energy_over_codim_ipc(scene):
     """How far drape's final energy is above Codim-IPC's, in % of the gravitational energy released, a thousandth of which is in
     `same_state`."""
@@ -263,10 +296,12 @@ def energy_over_codim_ipc(scene):
              for r in read("codim_ipc.json")["runs"] if r["scene"] == scene and "same_state" in r]
     return lowest_to_highest(found)
 
+
 def first_iterations(scene):
     """Number of Newton iterations of either program where only the beginning was run."""
     found = [r["codim_ipc"]["iterations"] for r in read("codim_ipc.json")["runs"] if r["scene"] == scene and "same_state" not in r]
     return str(found[0]) if len(set(found)) == 1 else f"{min(found)} to {max(found)}"
+
 
 def beside(program, title):
     """The ends of drape and of another program in the two scenes of two_drapes.py."""
@@ -282,6 +317,7 @@ def beside(program, title):
     return table(["scene", "program", "CPU time [s]", "starts at rest", "force residual at the end", "starts with intersections", "largest stretch"],
                  rows, "llrrrrr")
 
+
 def starks_linear_solvers():
     """How STARK solved its linear systems; records without a name are of conjugate gradients alone."""
     found = [r["stark"] for r in read("stark.json")["runs"]]
@@ -290,10 +326,12 @@ def starks_linear_solvers():
     counts = [f"{name} in {len(runs_of)} of {len(found)} runs" for name, runs_of in grouped(found, "linear_solver").items()]
     return f"the faster of conjugate gradients and factorisations: {', '.join(counts)}"
 
+
 def exponent(records, value):
     """Of the number of vertices, by least squares of logarithms."""
     points = [(math.log(r["vertices"]), math.log(value(r))) for r in records if value(r)]
     return figure(statistics.linear_regression(*zip(*points)).slope) if len(points) > 1 else "–"
+
 
 def scale():
     """Exponents are those of the levels with multigrid, from 20,000 vertices on. Only a factorisation analyses a pattern."""
@@ -310,6 +348,7 @@ def scale():
     rows = [[phase, figure(100 * s / largest["seconds"], 2), exponent(multigrid, lambda r, phase=phase: r["by_phase"].get(phase))]
             for phase, s in phases if s > 0.005 * largest["seconds"]]
     return lines + [""] + table([f"phase, at {largest['vertices']} vertices", "% of an iteration", "exponent"], rows, "lrr")
+
 
 STUDIES = [
     ("[sphere to 98K](previews.md#the-sphere-to-98k-vertices)", "sphere.md"),
@@ -332,16 +371,19 @@ STUDIES = [
     ("[the dragon, by decrements](speed.md#levels-that-end-at-a-decrement)", "dragon_decrements.md"),
 ]
 
+
 def studies():
     minutes = lambda record: seconds_text([stamps()["records"].get(record, {}).get("minutes")])  # noqa: E731
     rows = [[title, f"[{record}](../../benchmarks/results/{record})", minutes(record)]
             for title, record in STUDIES if (RESULTS / record).exists()]
     return table(["study, whose section has its conditions", "record", "minutes"], rows, "llr")
 
+
 def solves(*names):
     """Number of solves with contact of studies, and of intersections at the end of their levels."""
     records = [r for name in names for r in read(f"{name}.json") if r["scene"] not in WITHOUT_CONTACT]
     return len(records), sum(r["intersections"] for r in records)
+
 
 def medians_over(other, study, value):
     """PCS's median over another method's, by scene."""
@@ -349,32 +391,39 @@ def medians_over(other, study, value):
     return {name: median([value(r) for r in finished(study, "pcs", name, "default")])
             / median([value(r) for r in finished(study, other, name)]) for name in names}
 
+
 def scenes_above(study, value, other="cascadic"):
     """Those on which PCS has more than another method, and how many times as much."""
     found = [f"{name} ({figure(ratio)})" for name, ratio in medians_over(other, study, value).items() if ratio > 1]
     return " and ".join([", ".join(found[:-1]), found[-1]] if len(found) > 1 else found) or "no scene"
 
+
 def flops_of_five_scenes():
     """The lowest and the highest of the scenes with a fourth level but for the sphere."""
     return lowest_to_highest([ratio for name, ratio in medians_over("cascadic", "four_levels", TFLOP).items() if name != "sphere"])
 
+
 def drape_coefficient(fabric):
     rows = csv.DictReader((RESULTS / "cusick.csv").read_text().splitlines())
     return with_range([float(r["drape_coefficient"]) for r in rows if r["run"] == fabric], lambda v: f"{v:.1f}")
+
 
 def longer_changes():
     """Of the changes after the start, the number on which PCS takes more iterations than the direct coarse model."""
     after = read("changes.json")["rows"][1:]
     return f"{sum(r['pcs']['iterations'] > r['newton']['iterations'] for r in after)} of {len(after)}"
 
+
 def pins_meet(key):
     """The values of the hard case "pins meet" by all methods."""
     return sorted({r[key] for r in read("hard.json") if r["run"] == "pins meet"})
+
 
 def row_count(name):
     """Rows of a table of runs and how many pass; no state of them may be missing."""
     rows = read(name)
     return f"{sum(r['pass'] for r in rows)} of {len(rows)}"
+
 
 TOP = ["preview, RMS: pcs / cascadic", "overlap", "finest level, iterations: pcs / cascadic / direct",
        "total flops, relative to direct: pcs / cascadic", "final energy, pcs minus cascadic, start by start [J]"]
@@ -403,6 +452,7 @@ BLOCKS = {
 
 def median_seconds(method, key):
     return seconds_text([of(finished("sphere", method), key)])
+
 
 VALUES = {
     "sphere.vertices": lambda: f"{runs('sphere', 'pcs')[0]['vertices'] / 1000:.0f}K",
