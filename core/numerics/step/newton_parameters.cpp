@@ -59,15 +59,10 @@ void NewtonParameters::declare(Declaration<NewtonParameters>& d) {
         {"supernodal", LinearSolver::supernodal},
         {"cholmod", LinearSolver::cholmod}},
        "automatic: multigrid on levels of 20,000 vertices and more below which there are coarser ones, "
-       "mixed on others. multigrid: conjugate "
-       "gradients that are preconditioned by V-cycles over the hierarchy's meshes and end at a relative "
-       "residual of 0.1, or of 0.4 where that takes long; where it fails, mixed. mixed: drape's Cholesky "
-       "factorisation in single "
-       "precision, as preconditioner of conjugate "
-       "gradients in double precision; the static form, ill-conditioned matrices and moved pins have it "
-       "in double precision. supernodal: that in double precision throughout. Both are parallel and give "
-       "the same bits with any number of threads. cholmod: CHOLMOD's, whose speed, threads and bits "
-       "depend on the installed BLAS")
+       "mixed on others. multigrid: conjugate gradients with V-cycles over the hierarchy's meshes; where "
+       "that fails, mixed. mixed: conjugate gradients with drape's Cholesky factor in single precision, or "
+       "in double where the matrix needs it. supernodal: that factor in double precision. cholmod: "
+       "CHOLMOD's, whose speed, threads and bits depend on the installed BLAS")
       .source("docs/results/speed.md; Chen et al. 2008 for cholmod");
   d.add_choice(
        "stability", &NewtonParameters::stability,
