@@ -137,21 +137,29 @@ std::string describe_markdown(const Schema& schema, ReferencePage* page, const s
   if (!page) page = &alone;
   const std::vector<Row> rows = rows_of(schema, page);
   if (rows.empty()) return "No parameters.\n";
-  std::vector<std::string> cells, elsewhere;  // of each row; where the page describes it already, if it does
+  std::vector<std::string> cells, place;  // of each row
   for (const Row& row : rows) {
-    const std::string& name = row.parameter->name;
-    const std::string place = place_of(row.path.substr(0, row.path.size() - name.size()), plugin);
     cells.push_back(cells_of(row));
-    const std::string& known = page->places.try_emplace(name + cells.back(), place).first->second;
-    elsewhere.push_back(known == place || !row.link.empty() ? "" : known);
+    place.push_back(place_of(row.path.substr(0, row.path.size() - row.parameter->name.size()), plugin));
   }
+  // The place where the page has described a row, or nothing.
+  const auto known = [&](std::size_t k) {
+    const auto found = page->places.find(rows[k].parameter->name + cells[k]);
+    return found == page->places.end() || !rows[k].link.empty() ? "" : found->second;
+  };
   std::string text = "| key | value | default | meaning |\n|---|---|---|---|\n";
   for (std::size_t i = 0, end; i < rows.size(); i = end) {
-    for (end = i + 1; end < rows.size() && elsewhere[end] == elsewhere[i];) ++end;
+    const std::string elsewhere = known(i);
+    for (end = i + 1; end < rows.size() && place[end] == place[i] && known(end) == elsewhere;) ++end;
+    const bool refer =
+        !elsewhere.empty() && end - i >= 3;  // fewer keys are read more easily where they stand
+    if (!refer)
+      for (end = i + 1; end < rows.size() && place[end] == place[i] && cells[end] == cells[i];) ++end;
     std::string keys = "`" + rows[i].path + "`";
-    if (elsewhere[i].empty() || end - i < 3) end = i + 1;  // a few keys are read more easily where they stand
     for (std::size_t k = i + 1; k < end; ++k) keys += ", `" + rows[k].parameter->name + "`";
-    text += "|" + cell(keys) + (end - i < 3 ? cells[i] : cell("as of " + elsewhere[i]) + "  |  |") + "\n";
+    text += "|" + cell(keys) + (refer ? cell("as of " + elsewhere) + "  |  |" : cells[i]) + "\n";
+    if (!refer)
+      for (std::size_t k = i; k < end; ++k) page->places[rows[k].parameter->name + cells[k]] = place[k];
   }
   return text;
 }

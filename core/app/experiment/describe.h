@@ -17,13 +17,12 @@ std::string describe(const RegistryEntry& entry);  ///< with the entry's name, s
 struct ReferencePage {
   Schema shared;     ///< a section that several schemas have, which the page describes apart
   std::string link;  ///< Markdown link to that description
-  std::map<std::string, std::string>
-      places;  ///< a row without its path, and the place that described it first
+  std::map<std::string, std::string> places;  ///< where it describes a row, by name and other cells
 };
 
 /// A Markdown table; parameters of sections appear as `section.name`. A section with the name, parameters and
-/// defaults of the shared one is a single row with its link; keys that another section of the page has alike
-/// are a row that names it.
+/// defaults of the shared one is a single row with its link; several keys that a section above has alike are
+/// a row that names it.
 std::string describe_markdown(const Schema& schema, ReferencePage* page = nullptr,
                               const std::string& plugin = "");
 /// The table of a plugin's parameters, below a heading and its summary.
