@@ -221,9 +221,17 @@ def decrements():
 
 
 def ratios():
-    """Without phases that took no time."""
-    rows = [[r["what"], r["against"], figure(r["ratio"], 2)] for r in read("ratios.json")["rows"] if r["seconds"] > 0]
-    return table(["what", "over", "ratio"], rows, "llr")
+    """Without phases that took no time; then a row a scene of steps on level 0 over direct coarse ones."""
+    rows, steps = [], {}
+    for r in read("ratios.json")["rows"]:
+        scene, step, method = r["what"].partition(": level-0 step of ")
+        if step:
+            steps.setdefault(scene, {})[method] = figure(r["ratio"], 2)
+        elif r["seconds"] > 0:
+            rows.append([r["what"], r["against"], figure(r["ratio"], 2)])
+    methods = list(next(iter(steps.values())))
+    return (table(["what", "over", "ratio"], rows, "llr") + [""] +
+            table(["level-0 step over a direct coarse one", *methods], [[scene, *of.values()] for scene, of in steps.items()], "l" + "r" * len(methods)))
 
 
 def linear_solvers():
