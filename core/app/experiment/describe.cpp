@@ -24,7 +24,8 @@ std::string range_text(const Parameter& p) {
     if (std::isfinite(value)) parts.push_back(sign + exact_text(value));
   };
   if (std::isfinite(p.minimum) && std::isfinite(p.maximum) && !p.open_minimum && !p.open_maximum) {
-    parts.push_back(exact_text(p.minimum) + " to " + exact_text(p.maximum));
+    parts.push_back(p.minimum == -p.maximum ? "±" + exact_text(p.maximum)
+                                            : exact_text(p.minimum) + " to " + exact_text(p.maximum));
   } else {
     bound(p.open_minimum ? "> " : ">= ", p.minimum);
     bound(p.open_maximum ? "< " : "<= ", p.maximum);
