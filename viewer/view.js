@@ -311,17 +311,4 @@ export class View {
       scene.zoom(Math.exp(event.deltaY * (event.deltaMode ? .05 : .0015)));
     }, {passive: false});
   }
-
-  /// What is shown, for tests and scripts.
-  state() {
-    const stop = this.stops[this.stop], sum = values => values.reduce((a, b) => a + b, 0);
-    return {
-      level: stop ? stop.level : -1, stop: this.stop, stops: this.stops.length, playing: !!this.plays, field: this.fieldName,
-      camera: this.scene && {...this.scene.view},
-      panels: this.panels.map(({method, end, found, shape, obstacles, flat}) => ({method: method.name, end: !!end, flat: !!flat, level: found ? found.level.level : -1,
-        vertices: shape ? shape.x.length / 3 : 0,
-        sum: shape ? shape.x.reduce((a, b) => a + Math.abs(b), 0) : 0, tints: shape && shape.tints ? sum(shape.tints) : null,
-        obstacles: obstacles.map(({x}) => sum(x))})),
-    };
-  }
 }

@@ -3,7 +3,7 @@ import assert from 'node:assert/strict';
 import fs from 'node:fs';
 import http from 'node:http';
 import path from 'node:path';
-import {contactConfig, drawnShare, jsonIn, listenTo, newPage, openPage, run, scratch, start, test, textOf, until} from './support.mjs';
+import {contactConfig, drawnShare, jsonIn, listenTo, newPage, openPage, run, scratch, start, stateOf, test, textOf, until} from './support.mjs';
 
 const folder = scratch();
 // Small steps for ever: at larger ones a level stalls before long, and a busy machine lets no page ask for
@@ -182,7 +182,7 @@ test('a run has the same bits with a view, looked at, and without', async () => 
   const {page, heard} = await openPage(running.url);
   await until('the end', () => running.text.out.includes('the view stays at'));
   await until('the page says so', async () => /^The run has ended: /.test(await statusOf(page)));
-  assert.equal((await page.evaluate(() => window.drapeViewer.state())).panels.filter(p => p.level === 1).length, 2);
+  assert.equal((await stateOf(page)).panels.filter(p => p.level === 1).length, 2);
   assert.deepEqual(heard.errors, []);
   running.kill('SIGINT');
   assert.equal((await running.ended()).code, 0);

@@ -121,6 +121,19 @@ export function listenTo(page) {
   return heard;
 }
 
+/// What the page's 3D view shows.
+export function stateOf(page) {
+  return page.evaluate(() => {
+    const {stops, stop, plays, scene, panels} = window.drapeViewer, sum = values => values.reduce((a, b) => a + b, 0);
+    return {
+      level: stops[stop]?.level, stop, stops: stops.length, playing: !!plays, camera: scene && {...scene.view},
+      panels: panels.map(({method, end, found, shape, obstacles, flat}) => ({method: method.name, end: !!end, flat: !!flat, level: found ? found.level.level : -1,
+        vertices: shape ? shape.x.length / 3 : 0, sum: shape ? shape.x.reduce((a, b) => a + Math.abs(b), 0) : 0,
+        tints: shape?.tints ? sum(shape.tints) : null, obstacles: obstacles.map(({x}) => sum(x))})),
+    };
+  });
+}
+
 /// A page with a 3D view that shows a state, and what is heard of it.
 export async function openPage(url, options = {}) {
   const page = await newPage({viewport: {width: 1200, height: 900}, ...options}), heard = listenTo(page);
@@ -128,9 +141,9 @@ export async function openPage(url, options = {}) {
   await page.locator('#viewer').scrollIntoViewIfNeeded();
   await until('a state is shown', async () => {
     if (heard.errors.length) throw new Error(heard.errors.join('; '));
-    return page.evaluate(() => window.drapeViewer && window.drapeViewer.state().panels.length > 0);
+    return page.evaluate(() => window.drapeViewer?.panels.length > 0);
   });
-  return {page, heard, state: () => page.evaluate(() => window.drapeViewer.state())};
+  return {page, heard, state: () => stateOf(page)};
 }
 
 export const textOf = (page, selector) => page.locator(selector).textContent();

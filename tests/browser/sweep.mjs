@@ -42,7 +42,7 @@ test('24 runs fit one screen of thumbnails, a cell has all starts, and nothing s
 test('a thumbnail opens the run in 3D', async () => {
   const {page} = await open('sweep/report.html');
   await page.locator('.tile[title*="levels 2"]').first().click();  // one level has no preview
-  await until('its 3D view', () => page.evaluate(() => window.drapeViewer?.state().panels.length === 2));
+  await until('its 3D view', () => page.evaluate(() => window.drapeViewer?.panels.length === 2));
   assert.match(await textOf(page, '#viewer-labels'), /pcs, preview.*pcs, end/s);
 });
 
