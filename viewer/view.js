@@ -69,22 +69,12 @@ export class View {
       const most = Math.max(0, ...levels.filter(l => l.level === level).map(l => l.states.length));
       for (let k = 0; k < most; ++k) this.stops.push({level, share: most > 1 ? k / (most - 1) : 1, last: k === most - 1});
     }
-    if (this.live) this.forget();
+    if (this.live) [this.former, this.blocks] = [this.blocks, new Map()];  // what nothing shows any more goes at the next update
     this.listFields();
     this.listMethods();
     // The preview at first, beside the end; without that the end.
     const begin = this.beside && this.stops.some(s => s.level > this.stops[0].level) ? this.stops.findIndex(s => s.last) : this.stops.length - 1;
     return this.show(this.stop < 0 || following ? begin : this.stop);
-  }
-
-  /// Drops the blocks of states that newer ones have replaced.
-  forget() {
-    const states = this.data.methods.flatMap(m => m.levels).flatMap(l => l.states);
-    const named = new Set(states.flatMap(state => [state.x, ...Object.values(state.fields), ...Object.values(state.obstacles || {})]));
-    for (const key of this.blocks.keys()) {
-      const [kind, name] = key.split(' ');
-      if ((kind === 'x' && name[0] === 'm' || kind === 'scalars') && !named.has(name)) this.blocks.delete(key);
-    }
   }
 
   field() { return this.data.fields.find(field => field.name === this.fieldName); }
@@ -135,7 +125,7 @@ export class View {
   block(kind, name, decode) {
     const key = kind + ' ' + name;
     if (!this.blocks.has(key)) {
-      const promise = this.load(name).then(decode);
+      const promise = this.former?.get(key) ?? this.load(name).then(decode);
       promise.catch(() => this.blocks.delete(key));
       this.blocks.set(key, promise);
     }
