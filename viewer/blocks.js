@@ -1,13 +1,8 @@
 /// The viewer's blocks of bytes (docs/contributing/working.md), and its colours.
-function bytesOfBase64(text) {
-  const binary = atob(text), bytes = new Uint8Array(binary.length);
-  for (let i = 0; i < binary.length; ++i) bytes[i] = binary.charCodeAt(i);
-  return bytes;
-}
 
 /// A block of this page; it is unpacked at its first use.
 export async function embedded(name) {
-  const packed = bytesOfBase64(document.getElementById('viewer-' + name).textContent);
+  const packed = Uint8Array.from(atob(document.getElementById('viewer-' + name).textContent), c => c.charCodeAt(0));
   const stream = new Blob([packed]).stream().pipeThrough(new DecompressionStream('deflate'));
   return new Response(stream).arrayBuffer();
 }

@@ -224,14 +224,11 @@ export class View {
 
   /// Points the camera at the cloth's bounding box.
   aim(panels) {
-    const shapes = panels.filter(panel => panel.shape && !panel.flat).map(({shape}) => shape.x), box = new THREE.Box3(), point = new THREE.Vector3();
-    shapes.forEach(x => box.union(new THREE.Box3().setFromArray(x)));
-    if (box.isEmpty()) return;
-    const centre = box.getCenter(new THREE.Vector3());
-    let radius = 0;
-    for (const x of shapes)
-      for (let i = 0; i < x.length; i += 3) radius = Math.max(radius, centre.distanceTo(point.fromArray(x, i)));
-    this.scene.lookAt(centre.toArray(), radius || 1);
+    const points = panels.filter(panel => panel.shape && !panel.flat).flatMap(({shape}) => [...shape.x]), all = new THREE.BufferGeometry();
+    if (!points.length) return;
+    all.setAttribute('position', new THREE.Float32BufferAttribute(points, 3));
+    all.computeBoundingSphere();
+    this.scene.lookAt(all.boundingSphere.center.toArray(), all.boundingSphere.radius || 1);
     this.aimed = true;
   }
 
