@@ -39,10 +39,7 @@ Camera Camera::around(const std::vector<const Positions*>& states, const Eigen::
       high = high.max(place + p[2]);
       low = low.max(p[2] - place);
     }
-  if (box.isEmpty()) {
-    camera.eye = {0, 0, 1};
-    return camera;
-  }
+  if (box.isEmpty()) return camera;
   const double size = std::max(box.diagonal().norm(), 1e-6);
   camera.eye.head<2>() = (high - low) / 2 * tangent.array();
   camera.eye[2] = std::max(((high + low) / 2).maxCoeff(), box.max()[2] + 1e-3 * size);

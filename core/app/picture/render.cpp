@@ -4,16 +4,39 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <cstdlib>
 #include <thread>
 #include <utility>
 
-#include "core/app/picture/lighting.h"
+#include "core/app/picture/ray_scene.h"
 #include "core/kernel/threads/parallel.h"
 
 namespace drape {
 
 namespace {
+
+using Rgb = Eigen::Array3f;  // linear light
+
+Rgb linear_of_srgb(const Eigen::Vector3f& colour) {
+  return colour.array().unaryExpr(
+      [](float c) { return c <= 0.04045f ? c / 12.92f : std::pow((c + 0.055f) / 1.055f, 2.4f); });
+}
+
+unsigned char srgb_byte(float linear) {
+  const float c = std::clamp(linear, 0.0f, 1.0f);
+  const float s = c <= 0.0031308f ? 12.92f * c : 1.055f * std::pow(c, 1 / 2.4f) - 0.055f;
+  return static_cast<unsigned char>(std::lround(255 * s));
+}
+
+constexpr float key_radius = 0.10f;       // tangent of half the angle under which the key light is seen
+constexpr float bounce = 0.16f;           // sky light that arrives after a reflection where the sky is hidden
+constexpr float floor_key_share = 0.42f;  // of the light on the floor
+const Rgb key_light(0.98f, 0.92f, 0.83f), sky_light(0.40f, 0.44f, 0.50f), fill_light(0.10f, 0.13f, 0.17f);
+const Rgb front_colour = linear_of_srgb({0.86f, 0.79f, 0.69f}),
+          back_colour = linear_of_srgb({0.62f, 0.70f, 0.77f}),
+          obstacle_colour = linear_of_srgb({0.42f, 0.44f, 0.47f}),
+          backdrop = linear_of_srgb({0.985f, 0.985f, 0.985f});
 
 constexpr int split = 2;  // samples along the side of a pixel
 // Weights, along a row or a column, of the samples around a pixel's middle: a tent.
@@ -42,6 +65,76 @@ void for_places(int width, int height, const std::function<bool()>& cancelled, c
   });
 }
 
+/// The shares of the key light and of the sky light that arrive.
+using Arriving = Eigen::Array2f;
+
+/// A point in [0, 1)² for a place in the grid of samples: from M. Roberts' R2 sequence (2018), numbered along
+/// a Morton curve, so that the points of every square of 2^k×2^k places are evenly spread.
+Eigen::Vector2f sample_point(std::uint32_t column, std::uint32_t row) {
+  const auto spread = [](std::uint32_t v) {
+    for (const int shift : {8, 4, 2, 1}) v = (v | v << shift) & 0xffffffffu / ((1u << shift) + 1);
+    return v;
+  };
+  const std::uint32_t number = spread(column) | spread(row) << 1;
+  return {static_cast<float>(number * 0xc13fa9a9u >> 8) * 0x1p-24f,
+          static_cast<float>(number * 0x91e10da5u >> 8) * 0x1p-24f};
+}
+
+/// [0, 1)² to directions about the unit vector n whose parts across n fill a disc of that radius evenly; the
+/// part along n is that of unit vectors if the radius is 1, otherwise about 1.
+Eigen::Vector3f around(const Eigen::Vector3f& n, float radius, const Eigen::Vector2f& sample) {
+  const float across = radius * std::sqrt(sample[0]), turn = 2 * static_cast<float>(M_PI) * sample[1];
+  const Eigen::Vector3f u = n.unitOrthogonal();
+  return across * (std::cos(turn) * u + std::sin(turn) * n.cross(u)) + std::sqrt(1 - across * across) * n;
+}
+
+/// A warm key light of some width from the upper left of the picture, a faint fill light from the right, and
+/// a sky that is brighter above than below.
+class Lighting {
+ public:
+  /// Keeps a reference to the scene.
+  Lighting(const RayScene& scene, const Camera& camera) : scene_(scene) {
+    const Eigen::Matrix3f to_world = camera.frame.transpose().cast<float>();
+    key_ = (to_world * Eigen::Vector3f(-0.75f, 0.25f, 0.25f) + Eigen::Vector3f(0, 0, 0.62f)).normalized();
+    fill_ = (to_world * Eigen::Vector3f(0.8f, 0.1f, 0.45f)).normalized();
+  }
+
+  /// From what a ray from the eye meets back to the eye; nothing and the lit floor are one backdrop.
+  Rgb to_eye(const Seen& seen, const Arriving& arriving) const {
+    if (seen.surface == Seen::Surface::nothing) return backdrop;
+    if (seen.surface == Seen::Surface::floor)
+      return (floor_key_share * arriving[0] + (1 - floor_key_share) * arriving[1]) * backdrop;
+    const Rgb base = seen.surface == Seen::Surface::obstacle ? obstacle_colour
+                     : seen.front                            ? front_colour
+                                                             : back_colour;
+    const float key = std::max(seen.normal.dot(key_), 0.0f), side = std::max(seen.normal.dot(fill_), 0.0f);
+    // A faint sheen where cloth turns away separates a fold from what lies behind it.
+    const float grazing = 1 - seen.facing;
+    const float sheen = 0.1f * grazing * grazing * grazing * grazing;
+    return base * (arriving[0] * key * key_light + arriving[1] * (sky_light + 0.7f * side * fill_light) +
+                   0.3f * side * fill_light) +
+           arriving[1] * sheen;
+  }
+
+  /// By one random ray to each light, for a place in the grid of samples.
+  Arriving arriving(const SurfacePoint& point, int column, int row) const {
+    const Eigen::Vector2f sample = sample_point(column, row);
+    const auto blocked = [&](const Eigen::Vector3f& towards) {
+      return scene_.blocked({point.light_origin, towards});
+    };
+    Arriving all(point.normal.dot(key_) > 0 && !blocked(around(key_, key_radius, sample)), bounce);
+    Eigen::Vector3f towards = around(point.normal, 1, sample);
+    const float out = towards.dot(point.face_normal);
+    if (out < 0) towards -= 2 * out * point.face_normal;  // under the triangle: mirrored
+    if (!blocked(towards)) all[1] = point.surface == Seen::Surface::floor ? 1 : 0.71f + 0.29f * towards[2];
+    return all;
+  }
+
+ private:
+  const RayScene& scene_;
+  Eigen::Vector3f key_, fill_;  // towards the lights
+};
+
 /// What a ray through a place in the picture meets, and the light that arrives there.
 struct Sample : Seen {
   float share = 1;  // of its light that edges and an obstacle behind let through
@@ -55,31 +148,6 @@ float likeness(const Sample& a, const Sample& b, float sample_size) {
   const float off_plane = a.normal.dot(b.position - a.position) / sample_size;
   const float alike = 1 / (1 + 0.125f * off_plane * off_plane + 10 * (b.normal - a.normal).squaredNorm());
   return alike * alike * alike;
-}
-
-/// Takes the noise of few random rays out of the light that arrives, by means over neighbours on the same
-/// smooth surface (H. Dammertz et al., Edge-avoiding À-Trous wavelet transform, HPG 2010). `sample_size`:
-/// distance between samples on a surface that faces the eye, about [m].
-void smooth(Grid<Sample>& samples, float sample_size) {
-  constexpr float spline[] = {0.375f, 0.25f, 0.0625f};
-  const int width = static_cast<int>(samples.cols()), height = static_cast<int>(samples.rows());
-  Grid<Arriving> smoothed(height, width);
-  // Steps of 1 are left to the means over pixels.
-  for (const auto& [right, down] : {std::pair(2, 0), {0, 2}, {4, 0}, {0, 4}, {8, 0}, {0, 8}}) {
-    for_places(width, height, {}, [&](int column, int row) {
-      Arriving sum = Arriving::Zero();
-      float weights = 0;
-      for (int k = -2; k <= 2; ++k) {
-        const int x = column + k * right, y = row + k * down;
-        if (x < 0 || x >= width || y < 0 || y >= height) continue;
-        const float alike = likeness(samples(row, column), samples(y, x), (right + down) * sample_size);
-        sum += spline[std::abs(k)] * alike * samples(y, x).arriving;
-        weights += spline[std::abs(k)] * alike;
-      }
-      smoothed(row, column) = sum / weights;
-    });
-    for (Eigen::Index k = 0; k < samples.size(); ++k) samples.data()[k].arriving = smoothed.data()[k];
-  }
 }
 
 /// One picture: what is seen through a grid of samples, with random rays to the lights; the light that
@@ -103,7 +171,30 @@ class Painting {
       }
   }
 
-  void smooth() { drape::smooth(samples_, sample_size(scene_.through(camera_, 0, 0).origin().norm())); }
+  /// Takes the noise of few random rays out of the light that arrives, by means over neighbours on the same
+  /// smooth surface (H. Dammertz et al., Edge-avoiding À-Trous wavelet transform, HPG 2010).
+  void smooth() {
+    constexpr float spline[] = {0.375f, 0.25f, 0.0625f};
+    const int width = static_cast<int>(samples_.cols()), height = static_cast<int>(samples_.rows());
+    const float distance = sample_size(scene_.through(camera_, 0, 0).origin().norm());  // about
+    Grid<Arriving> smoothed(height, width);
+    // Steps of 1 are left to the means over pixels.
+    for (const auto& [right, down] : {std::pair(2, 0), {0, 2}, {4, 0}, {0, 4}, {8, 0}, {0, 8}}) {
+      for_places(width, height, {}, [&](int column, int row) {
+        Arriving sum = Arriving::Zero();
+        float weights = 0;
+        for (int k = -2; k <= 2; ++k) {
+          const int x = column + k * right, y = row + k * down;
+          if (x < 0 || x >= width || y < 0 || y >= height) continue;
+          const float alike = likeness(samples_(row, column), samples_(y, x), (right + down) * distance);
+          sum += spline[std::abs(k)] * alike * samples_(y, x).arriving;
+          weights += spline[std::abs(k)] * alike;
+        }
+        smoothed(row, column) = sum / weights;
+      });
+      for (Eigen::Index k = 0; k < samples_.size(); ++k) samples_.data()[k].arriving = smoothed.data()[k];
+    }
+  }
 
   Rgb colour(int column, int row) const {
     Rgb sum = Rgb::Zero();
