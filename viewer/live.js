@@ -3,7 +3,7 @@ import {Chart, methodLook} from './charts.js';
 import {h, say, unique} from './text.js';
 import {View} from './view.js';
 
-export function livePage({title}) {
+export function livePage({title, methods}) {
   const status = h('p', {class: 'lead', id: 'live-status', role: 'status'}, 'Waiting for the run.');
   const note = h('p', {class: 'note', id: 'live-note', role: 'status'}, '“Refine now” ends the level in its present state and begins the next finer one. “Stop” ends the run, as Ctrl-C does, ' +
     'and keeps all results so far.');
@@ -33,10 +33,10 @@ export function livePage({title}) {
       lines.get(name).push({x, y});
       if (lines.get(name).length > 2000) lines.set(name, lines.get(name).filter((_, k) => k % 2));  // more are not visible
     }
-    const methods = Object.fromEntries(news.methods.map(method => [method.name, method])), ends = [...lines.values()].map(points => points.at(-1).x);
+    const ends = [...lines.values()].map(points => points.at(-1).x), tolerances = Object.values(methods).map(method => method.tolerance);
     chart.draw({x: {title: 'time [s]', name: 'seconds'}, y: {title: 'force residual', name: 'force_residual', log: true}, series: [
       ...[...lines].map(([label, points]) => ({label, ...methodLook(methods, label), mark: null, points})),
-      ...unique(ends.length ? news.methods.map(method => method.tolerance) : []).map(y =>
+      ...unique(ends.length ? tolerances : []).map(y =>
         ({label: 'tolerance', colour: 'var(--soft)', dash: '5 4', width: 1, points: [0, Math.max(...ends)].map(x => ({x, y}))}))]});
     say(status, news.outcome ? `The run has ended: ${news.outcome}.`
       : news.method ? `Running: ${news.method}, level ${news.level} of ${news.finest}.` : 'Waiting for the run.');

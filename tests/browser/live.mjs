@@ -88,7 +88,7 @@ test('levels appear and move; "refine now" goes on to the next; "stop" ends the 
 
 test('controls do nothing before there is a state', async () => {
   const running = await startViewed(contactConfig, 'begun', ...endless), page = await newPage(), heard = listenTo(page);
-  const methods = [{name: 'pcs', style: 0, tolerance: .01, levels: []}];
+  const methods = [{name: 'pcs', levels: []}];
   await page.route('**/news*', route => route.fulfill({json: {version: 1, outcome: '', method: 'pcs', level: 0, finest: 1,
     first_row: 0, rows: [], levels: [], obstacles: [], fields: [], methods}}));
   await page.goto(running.url);

@@ -29,13 +29,16 @@ LiveView::LiveView(const Experiment& experiment, const Scene& scene, const std::
                 [this](const std::string& name, std::string bytes) {
                   blocks_[name] = std::make_shared<const std::string>(std::move(bytes));
                 }) {
-  for (const auto& [name, solver] : experiment.methods)
-    if (methods.empty() || is_one_of(name, methods))
-      methods_.push_back({name, solver_style(experiment.solver_type(name)),
-                          newton_number(experiment.resolved, name, "force_tolerance")
-                              .value_or(experiment.parameters.newton.force_tolerance)});
+  Json looks = Json::object();
+  for (const auto& [name, solver] : experiment.methods) {
+    if (!methods.empty() && !is_one_of(name, methods)) continue;
+    methods_.push_back(name);
+    looks[name] = {{"style", solver_style(experiment.solver_type(name))},
+                   {"tolerance", newton_number(experiment.resolved, name, "force_tolerance")
+                                     .value_or(experiment.parameters.newton.force_tolerance)}};
+  }
   server_ = std::make_unique<LiveServer>(
-      port, LiveAnswers{page(title_ + ", live", {{"kind", "live"}, {"title", title_}}),
+      port, LiveAnswers{page(title_ + ", live", {{"kind", "live"}, {"title", title_}, {"methods", looks}}),
                         [this](long version, std::size_t rows) { return news(version, rows); },
                         [this](const std::string& name) { return block(name); }, [this] { stop_ = true; },
                         [this] { return refine(); }});
@@ -43,7 +46,7 @@ LiveView::LiveView(const Experiment& experiment, const Scene& scene, const std::
 
 void LiveView::method_started(const std::string& method) {
   const std::lock_guard lock(mutex_);
-  method_ = static_cast<int>(std::ranges::find(methods_, method, &Method::name) - methods_.begin());
+  method_ = static_cast<int>(std::ranges::find(methods_, method) - methods_.begin());
   ++version_;
 }
 
@@ -95,17 +98,14 @@ void LiveView::show(LevelView& view, int level, const Positions& x, const Eigen:
 bool LiveView::listened_to() const { return clock_.seconds() - last_heard_ < looked_lately; }
 
 void LiveView::encode_stale() {
-  for (auto& [key, view] : levels_)
-    if (view.stale) encode(view);
-}
-
-void LiveView::encode(LevelView& view) {
-  view.stale = false;
-  if (view.name != view.sent) forget_blocks(view.name);
-  view.name = "m" + std::to_string(++encoded_);
-  view.state = document_.state(view.name, view.x, view.fields, view.obstacles.get());
-  view.state["iteration"] = view.iteration;
-  view.state["seconds"] = view.seconds;
+  for (auto& [key, view] : levels_) {
+    if (!std::exchange(view.stale, false)) continue;
+    if (view.name != view.sent) forget_blocks(view.name);
+    view.name = "m" + std::to_string(++encoded_);
+    view.state = document_.state(view.name, view.x, view.fields, view.obstacles.get());
+    view.state["iteration"] = view.iteration;
+    view.state["seconds"] = view.seconds;
+  }
 }
 
 void LiveView::level_finished(const LevelResult& result) {
@@ -141,10 +141,7 @@ std::shared_ptr<const std::string> LiveView::block(const std::string& name) {
 
 /// A state's blocks have names that begin with its own and a dash.
 void LiveView::forget_blocks(const std::string& state) {
-  if (state.empty()) return;
-  blocks_.erase(state);
-  for (auto at = blocks_.lower_bound(state + "-"); at != blocks_.end() && at->first.starts_with(state + "-");)
-    at = blocks_.erase(at);
+  std::erase_if(blocks_, [&](const auto& block) { return (block.first + "-").starts_with(state + "-"); });
 }
 
 std::string LiveView::news(long version, std::size_t rows) {
@@ -168,13 +165,12 @@ std::string LiveView::news(long version, std::size_t rows) {
       if (view.sent == view.name) continue;
       forget_blocks(std::exchange(view.sent_before, std::exchange(view.sent, view.name)));
     }
-    const auto& [name, style, tolerance] = methods_[m];
-    methods.push_back({{"name", name}, {"style", style}, {"tolerance", tolerance}, {"levels", levels}});
+    methods.push_back({{"name", methods_[m]}, {"levels", levels}});
   }
   Json news = document_.document(title_, methods);
   news["version"] = version_;
   news["outcome"] = outcome_;
-  news["method"] = method_ < 0 ? "" : methods_[method_].name;
+  news["method"] = method_ < 0 ? "" : methods_[method_];
   news["level"] = level_;
   news["finest"] = finest_;
   news["first_row"] = std::min(rows, rows_.size());

@@ -35,11 +35,6 @@ class LiveView : public Observer {
   bool refine_requested() override { return refine_.exchange(false); }
 
  private:
-  struct Method {
-    std::string name;
-    int style;
-    double tolerance;  // of the force residual
-  };
   /// What the page has of a method and level.
   struct LevelView {
     std::string status = "running";
@@ -57,7 +52,6 @@ class LiveView : public Observer {
   void show(LevelView& view, int level, const Positions& x, const Eigen::VectorXd& pressure = {});
   bool listened_to() const;
   void encode_stale();
-  void encode(LevelView& view);
   std::string news(long version, std::size_t rows);
   std::string refine();
   std::shared_ptr<const std::string> block(const std::string& name);
@@ -65,7 +59,7 @@ class LiveView : public Observer {
 
   const Scene& scene_;
   const std::string title_;
-  std::vector<Method> methods_;
+  std::vector<std::string> methods_;
   int finest_ = 0;
 
   std::atomic<bool> stop_ = false, refine_ = false;
