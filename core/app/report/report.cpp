@@ -12,7 +12,6 @@
 #include "core/app/report/run_table.h"
 #include "core/app/view/page.h"
 #include "core/kernel/files/file.h"
-#include "core/kernel/files/string_utils.h"
 #include "core/numerics/mesh_files/base64.h"
 
 namespace drape {
@@ -146,8 +145,7 @@ std::vector<std::string> write_report(const fs::path& folder, const std::functio
                         folder.string() + " does both.");
   else
     set = draw_pictures(run, cancelled, picture_width);
-  const ReportView view = report_view(run);
-  for (const std::string& note : view.notes) add_new(set.notes, note);
+  const ReportView view = report_view(run, set.notes);
   const Json data = {{"kind", "run"},
                      {"results", run.results},
                      {"table", table_json(collection)},

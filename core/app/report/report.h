@@ -29,14 +29,13 @@ bool is_current(const std::filesystem::path& page, const std::filesystem::path& 
 
 /// The 3D view of a run.
 struct ReportView {
-  Json document;                   ///< as ViewDocument makes it; null if there is nothing to show
-  std::string blocks;              ///< those of embedded_in
-  std::vector<std::string> notes;  ///< what cannot be shown, with reasons, one line each
+  Json document;       ///< as ViewDocument makes it; null if there is nothing to show
+  std::string blocks;  ///< those of embedded_in
 };
 
 /// The meshes in the run's folder: every level's last state and, up to a few megabytes, evenly chosen
-/// snapshots.
-ReportView report_view(const RunData& run);
+/// snapshots. Adds to the notes what cannot be shown, with reasons, one line each.
+ReportView report_view(const RunData& run, std::vector<std::string>& notes);
 
 /// A page with nothing but the 3D view of a run's states. Throws std::runtime_error with the reason if the
 /// run has nothing to show.

@@ -6,6 +6,7 @@
 #include "core/app/view/page.h"
 #include "core/app/view/view_document.h"
 #include "core/kernel/files/message_text.h"
+#include "core/kernel/files/string_utils.h"
 #include "core/numerics/mesh_files/io.h"
 
 namespace drape {
@@ -71,7 +72,7 @@ States read_states(const RunData& run, const std::vector<Level>& levels, const V
         try {
           add_declared(run, method, level.level, state);
         } catch (const std::exception& damaged) {
-          notes.push_back("3D viewer: " + reason_of(damaged));
+          add_new(notes, "3D viewer: " + reason_of(damaged));
         }
         states.emplace(&level, std::move(state));
       } catch (const std::exception&) {
@@ -89,7 +90,7 @@ Json states_json(const RunData& run, const LevelRecord& level, const State& last
   try {
     snapshots = run.snapshots(level, last.x.rows());
   } catch (const std::exception& error) {
-    notes.push_back("3D viewer: " + reason_of(error));
+    add_new(notes, "3D viewer: " + reason_of(error));
   }
   const std::size_t bytes_of_state = last.x.rows() * (6 + last.fields.size());
   const std::size_t count = snapshots.count() > 0 ? snapshots.count() - 1 : 0,
@@ -108,15 +109,15 @@ Json states_json(const RunData& run, const LevelRecord& level, const State& last
   return states;
 }
 
-ReportView view_of(const RunData& run) {
+ReportView view_of(const RunData& run, std::vector<std::string>& notes) {
   ReportView view;
   std::vector<Level> levels;
   for (int l = 0; l <= run.finest_level(); ++l) levels.push_back(Level::of(l, run.mesh(rest_file(l))));
   std::vector<TriangleMesh> obstacles;
   for (const ObstacleRecord& obstacle : run.obstacles) obstacles.push_back(run.mesh(obstacle.mesh));
   ViewDocument document(levels, obstacles, run.has_contact(), embedded_in(view.blocks), declared_fields(run));
-  const States states = read_states(run, levels, document, view.notes);
-  if (states.empty()) return {nullptr, "", view.notes};
+  const States states = read_states(run, levels, document, notes);
+  if (states.empty()) return {};
   std::vector<const SurfaceFields*> fields;
   for (const auto& [level, state] : states) fields.push_back(&state.fields);
   document.set_ranges(fields);
@@ -130,7 +131,7 @@ ReportView view_of(const RunData& run) {
       entries.push_back({{"level", level.level},
                          {"status", level.status},
                          {"states", states_json(run, level, state->second, name,
-                                                most_snapshot_bytes / states.size(), document, view.notes)}});
+                                                most_snapshot_bytes / states.size(), document, notes)}});
     }
     methods.push_back({{"name", run.methods[m].name}, {"levels", entries}});
   }
@@ -140,20 +141,21 @@ ReportView view_of(const RunData& run) {
 
 }  // namespace
 
-ReportView report_view(const RunData& run) {
-  if (run.finest_level() < 0) return {};
+ReportView report_view(const RunData& run, std::vector<std::string>& notes) {
   try {
-    return view_of(run);
+    if (run.finest_level() >= 0) return view_of(run, notes);
   } catch (const std::exception& error) {
-    return {nullptr, "", {"3D viewer: " + reason_of(error)}};
+    add_new(notes, "3D viewer: " + reason_of(error));
   }
+  return {};
 }
 
 std::string viewer_page(const RunData& run) {
-  const ReportView view = report_view(run);
+  std::vector<std::string> notes;
+  const ReportView view = report_view(run, notes);
   if (view.document.is_null())
-    throw std::runtime_error(view.notes.empty() ? run.folder.string() + ": the run has no state to show"
-                                                : view.notes.front());
+    throw std::runtime_error(notes.empty() ? run.folder.string() + ": the run has no state to show"
+                                           : notes.front());
   return page(run.experiment, {{"kind", "states"}, {"view", view.document}}, view.blocks);
 }
 
