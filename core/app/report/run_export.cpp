@@ -50,18 +50,15 @@ std::vector<const LevelRecord*> chosen_levels(const MethodRecord& method, std::o
 /// shape, its own plane's, which are the same on every level. Throws std::runtime_error if the rest shape has
 /// other triangles.
 TriangleMesh cloth_mesh(const RunData& run, const LevelRecord& level) {
-  TriangleMesh mesh = run.mesh(level.mesh);
-  const TriangleMesh rest = run.mesh(rest_file(level.level));
-  if (rest.triangles.rows() != mesh.triangles.rows())
+  TriangleMesh mesh = run.mesh(rest_file(level.level)), state = run.mesh(level.mesh);
+  if (mesh.triangles.rows() != state.triangles.rows())
     throw std::runtime_error((run.folder / "rest").string() + ": level " + std::to_string(level.level) +
                              " has other triangles than its state; run the experiment again");
-  mesh.uv = rest.uv;
-  mesh.piece = rest.piece;
-  mesh.piece_names = rest.piece_names;
-  mesh.sewing = rest.sewing;
-  if (mesh.uv.rows() > 0) return mesh;
-  const std::optional<PlanarUv> planar = PlanarUv::of(level.level == 0 ? rest : run.mesh(rest_file(0)));
-  if (planar) mesh.uv = planar->at(rest);
+  if (mesh.uv.rows() == 0)
+    if (const auto planar = PlanarUv::of(level.level == 0 ? mesh : run.mesh(rest_file(0))))
+      mesh.uv = planar->at(mesh);
+  mesh.vertices = std::move(state.vertices);
+  mesh.warp.resize(0, 3);  // in the rest shape's corners
   return mesh;
 }
 
