@@ -9,7 +9,6 @@
 #include "core/app/report/run_data.h"
 #include "core/app/run/recorder_files.h"
 #include "core/app/scene/garment_place.h"
-#include "core/app/view/surface_fields.h"
 #include "core/kernel/files/file.h"
 #include "core/kernel/files/number_text.h"
 #include "core/kernel/threads/parallel.h"

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <optional>
 
 #include "core/numerics/collision_detection/closest.h"
 #include "core/numerics/collision_detection/surface_search.h"
@@ -16,7 +15,6 @@ namespace {
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 constexpr double quantile = 0.98;    // of the values inside the colours' range
 constexpr double ease_range = 0.06;  // [m]
-constexpr double pascals_in_mmhg = 133.322;
 
 /// Lowers known[i], NaN at first, to the distance of each point i to every triangle of a surface within
 /// `range` that `counts(i, t)`.
@@ -36,6 +34,15 @@ void lower_to_distance(Eigen::VectorXd& known, const Positions& x, const Triangl
   }
 }
 
+/// n distances to the nearest triangle of the obstacles [m]; NaN beyond `range`.
+Eigen::VectorXd obstacle_distance(const Positions& x, const std::vector<TriangleMesh>& obstacles,
+                                  double range) {
+  Eigen::VectorXd distance = Eigen::VectorXd::Constant(x.rows(), nan);
+  for (const TriangleMesh& obstacle : obstacles)
+    lower_to_distance(distance, x, obstacle, range, [](Eigen::Index, int) { return true; });
+  return distance;
+}
+
 /// The quantile of all finite |values|; 0 without any.
 double magnitude_quantile(const std::vector<const Eigen::VectorXd*>& fields, double quantile) {
   std::vector<double> all;
@@ -47,20 +54,6 @@ double magnitude_quantile(const std::vector<const Eigen::VectorXd*>& fields, dou
   std::nth_element(all.begin(), place, all.end());
   return *place;
 }
-
-/// Weighted mean and largest of the finite values.
-struct Mean {
-  double sum = 0, weight = 0;
-  std::optional<double> largest;
-
-  void add(double value, double own) {
-    if (!std::isfinite(value)) return;
-    sum += own * value, weight += own;
-    largest = std::max(largest.value_or(value), value);
-  }
-  Json mean() const { return weight > 0 ? Json(sum / weight) : Json(); }
-  Json most() const { return largest ? Json(*largest) : Json(); }
-};
 
 }  // namespace
 
@@ -80,14 +73,6 @@ std::vector<FieldKind> field_kinds(bool worn) {
       {"ease", "ease", "mm", "force", "distance to the body; beyond 60 mm in cloth colour"}};
   if (!worn) kinds.resize(kinds.size() - 3);  // without those of garments
   return kinds;
-}
-
-Eigen::VectorXd obstacle_distance(const Positions& x, const std::vector<TriangleMesh>& obstacles,
-                                  double range) {
-  Eigen::VectorXd distance = Eigen::VectorXd::Constant(x.rows(), nan);
-  for (const TriangleMesh& obstacle : obstacles)
-    lower_to_distance(distance, x, obstacle, range, [](Eigen::Index, int) { return true; });
-  return distance;
 }
 
 Eigen::VectorXd contact_gap(const Level& level, const Positions& x,
@@ -134,35 +119,6 @@ VertexFields garment_fields_at(const Level& level, const Positions& x,
   return {{"stretch_warp", percent(warp)},
           {"stretch_weft", percent(weft)},
           {"ease", 1000 * obstacle_distance(x, obstacles, ease_range)}};
-}
-
-Json garment_pieces(const Level& level, const VertexFields& fields, const Eigen::VectorXd& pressure) {
-  const TriangleMesh& cloth = level.rest;
-  Json pieces = Json::array();
-  for (std::size_t p = 0; p < cloth.piece_names.size(); ++p) {
-    Eigen::VectorXd weight = Eigen::VectorXd::Zero(level.vertex_count());
-    for (int t = 0; t < level.triangle_count(); ++t)
-      for (int k = 0; k < 3; ++k)
-        if (cloth.piece[t] == static_cast<int>(p)) weight[cloth.triangles(t, k)] += 1;
-    const auto over_piece = [&](const Eigen::VectorXd& values) {
-      Mean mean;
-      for (Eigen::Index i = 0; i < values.size(); ++i)
-        if (weight[i] > 0) mean.add(values[i], weight[i]);
-      return mean;
-    };
-    Json& entry = pieces.emplace_back(Json{{"piece", cloth.piece_names[p]}});
-    for (const VertexField& field : fields) {
-      const Mean mean = over_piece(field.values);
-      entry[field.name] = mean.mean();
-      if (field.name != "ease") entry["largest_" + field.name] = mean.most();
-    }
-    if (pressure.size() == 0) continue;
-    const Mean mean = over_piece(pressure);
-    entry["pressure"] = mean.sum / mean.weight / 1000;
-    entry["pressure_mmhg"] = mean.sum / mean.weight / pascals_in_mmhg;
-    entry["largest_pressure"] = mean.largest.value_or(0) / 1000;
-  }
-  return pieces;
 }
 
 }  // namespace drape

@@ -6,7 +6,6 @@
 #include <utility>
 #include <vector>
 
-#include "core/app/files/json_file.h"
 #include "core/kernel/interfaces/level.h"
 
 namespace drape {
@@ -31,10 +30,6 @@ using SurfaceFields = std::map<std::string, Eigen::VectorXd>;
 Eigen::VectorXd contact_gap(const Level& level, const Positions& x,
                             const std::vector<TriangleMesh>& obstacles, double range);
 
-/// n distances to the nearest triangle of the obstacles [m]; NaN beyond `range`.
-Eigen::VectorXd obstacle_distance(const Positions& x, const std::vector<TriangleMesh>& obstacles,
-                                  double range);
-
 /// The colour range of a kind: nearly all values lie inside.
 std::pair<double, double> field_range(const FieldKind& kind,
                                       const std::vector<const Eigen::VectorXd*>& values, double gap_range);
@@ -43,9 +38,5 @@ std::pair<double, double> field_range(const FieldKind& kind,
 /// and `ease` [mm], the distance to the body, NaN beyond 60 mm.
 VertexFields garment_fields_at(const Level& level, const Positions& x,
                                const std::vector<TriangleMesh>& obstacles);
-
-/// Means over each piece of the cloth, and the largest stretches: an entry for each, with its name.
-/// `pressure` is LevelModel::contact_pressure, or empty.
-Json garment_pieces(const Level& level, const VertexFields& fields, const Eigen::VectorXd& pressure);
 
 }  // namespace drape
