@@ -22,15 +22,6 @@ std::string experiment_with(const std::string& mesh) {
                   "{shape: file, file: " + mesh + "}");
 }
 
-/// Standard error of a run, and of a check, of the experiment with this mesh beside it.
-std::string said_of_mesh(const std::string& mesh, const std::string& options = "") {
-  const Scratch folder(experiment_with("cloth.obj"));
-  folder.write("cloth.obj", mesh);
-  return refused_alike(folder, options);
-}
-
-const std::string place = "e.yaml:2:8: cloth.obj: ";
-
 }  // namespace
 
 TEST_CASE("a valid mesh file runs, and its results can be run again from their own config") {
@@ -52,24 +43,13 @@ TEST_CASE("a valid mesh file runs, and its results can be run again from their o
   }
 }
 
-TEST_CASE("a malformed mesh file is named with its line, a shape without what it needs with its key") {
-  const Scratch folder;  // a file is found beside its config
+TEST_CASE("a malformed mesh file is found beside its config, and named with its line") {
+  const Scratch folder;
   fs::create_directory(folder / "in");
   folder.write("in/e.yaml", experiment_with("cloth.obj"));
   folder.write("in/cloth.obj", replaced(sheet, "v 1 1 0\n", "v 1 one 0\n"));
   CHECK(refused(folder, "check in/e.yaml") ==
         "error: in/e.yaml:2:8: in/cloth.obj:5: 'one' is not a number\n");
-  check_error(said_of_mesh(sheet, "--set 'cloth={shape: file}'"), "--set cloth: \"shape: file\" needs ");
-  check_error(said_of_mesh(sheet, "--set 'cloth={shape: polygon}'"), "--set cloth: \"shape: polygon\" needs");
-  CHECK(said_of_mesh("") == "error: " + place + "is empty\n");
-}
-
-TEST_CASE("all faults of a mesh are listed at once") {
-  const std::string said =
-      said_of_mesh(sheet + "v 5 5 5\nf 1 2 5\nf 1 1 2\nv 0 0 1\nf 1 11 5\nv 0 0 2\nv 1 0 2\nf 9 12 13\n");
-  CHECK_THAT(said, Contains(place + "1 vertex belongs to no triangle: 9") &&
-                       Contains(place + "1 vertex joins separate fans of triangles: 8 of 2 fans"));
-  CHECK(std::count(said.begin(), said.end(), '\n') == 5);
 }
 
 TEST_CASE("panels that nothing joins are named: seams that stand twice, and the lines that sew elsewhere") {
@@ -96,16 +76,6 @@ TEST_CASE("panels that nothing joins are named: seams that stand twice, and the 
              Contains("warning: e.yaml:2:8: 2 lines between vertices (`l` in an OBJ file, `edge` in a PLY) "
                       "are ignored: drape sews "
                       "nothing; to join panels, have them share the vertices of the seam\n"));
-}
-
-TEST_CASE("an obstacle whose coordinates are too large, or that is missing from data/, is refused") {
-  const Scratch folder(
-      replaced(small_experiment(), "levels: 2\n", "levels: 2\ncontact: ipc\nobstacles: [{mesh: far.obj}]\n"));
-  folder.write("far.obj", "v 0 0 0\nv 1 0 0\nv 0 1e30 0\nf 1 2 3\n");
-  CHECK_THAT(refused_alike(folder),
-             Contains("far.obj: 1 vertex has too large a coordinate: 2 with 1e+30 m "));
-  CHECK_THAT(refused_alike(folder, "--set obstacles.0.mesh=data/bunny.ply"),
-             Contains("bunny.ply: No such file or directory") && EndsWith("; `make data` makes it\n"));
 }
 
 TEST_CASE("texture coordinates of the cloth's file reach every export, seams included") {

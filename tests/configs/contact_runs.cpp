@@ -1,4 +1,4 @@
-// What runs with contact refuse, and what they write down.
+// What runs with contact write down.
 
 #include "core/app/files/csv.h"
 #include "core/kernel/interfaces/level.h"
@@ -7,14 +7,6 @@
 #include "tests/configs/runs.h"
 
 namespace {
-
-/// Standard error of a run of the experiment that is refused, as a check is.
-std::string said_of_contact(const std::string& options) {
-  return refused_alike(Scratch(experiment_of_tests("contact")), options);
-}
-
-const std::string touches = "e.yaml:4:8: the start of level 0 touches";
-const std::string remedy = "; change the start or the obstacle, or let --allow-start-repair move the start\n";
 
 const std::string caged = R"({name: caged, cloth: {shape: square, side: 0.4, columns: 9, rows: 9}, levels: 3,
  start: {translate: [-0.2, -0.2, 0.15], perturbation: 1e-3}, check_intersections: every_step,
@@ -25,46 +17,6 @@ const std::string caged = R"({name: caged, cloth: {shape: square, side: 0.4, col
  newton: {force_tolerance: 1e-2, step_size: 0.05}, methods: {pcs: {}, cascadic: {}}})";
 
 }  // namespace
-
-TEST_CASE("a start that touches an obstacle is refused, with the pairs and the location") {
-  const std::string place = "error: " + touches + ": ";
-  CHECK(said_of_contact("--set start.translate=[-0.2,-0.2,0.099] --set start.perturbation=0") ==
-        place + "cloth triangle 54 and ball: sphere at (-0.01667, -0.03333, 0.099)\n" + place +
-            "cloth triangle 55 and ball: sphere at (-0.03333, -0.01667, 0.099)\n" + place +
-            "cloth triangle 57 and ball: sphere at (0.01667, -0.01667, 0.099)\n"
-            "error: e.yaml:4:8: … and 3 more pairs" +
-            remedy);
-  CHECK_THAT(said_of_contact("--set start.perturbation=0 --set 'obstacles=[{name: table, meshed_shape: box, "
-                             "size: [0.01, 0.01, 0.2], translate: [0.135, 0.12, 0.02]}]'"),
-             StartsWith(place + "cloth triangle 108 and table triangle 4 at (0.135, 0.115, 0.11)\n"));
-  CHECK_THAT(said_of_contact("--set 'pins=[{point: [0.2, 0.2, 0], translate: [-0.2, -0.2, 0]}]'"),
-             StartsWith("error: " + touches + " (pinned vertices begin at their targets): cloth triangle ") &&
-                 EndsWith("; change the start, the pins or the obstacle\n"));
-  // Noise whose valleys only the finer level is fine enough for.
-  CHECK_THAT(
-      said_of_contact("--set 'energies=[neo_hookean, hinge, gravity]' --set contact=shapes "
-                      "--set 'obstacles=[{name: floor, shape: half_space}]' --set start.perturbation=5e-3 "
-                      "--set start.perturbation_wavelength=0.06 --set start.translate=[0,0,0.0075]"),
-      StartsWith("error: e.yaml:4:8: the start of level 1 touches: ") && Contains(" and floor: half_space"));
-  CHECK_THAT(
-      refused_alike(Scratch(replaced(caged, "0.15], perturbation", "0.11], perturbation"))),
-      Contains("the start of level 0 touches: cloth triangle ") && Contains(" and ball (cage 0) triangle "));
-}
-
-TEST_CASE("a cloth that crosses itself is refused") {
-  const Scratch folder(
-      "name: crossed\ncloth: {shape: file, file: cloth.obj}\nlevels: 1\nenergies: [neo_hookean, gravity]\n"
-      "contact: ipc\nmethods: {newton: {}}\n");
-  folder.write(
-      "cloth.obj",
-      "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0.2 0.2 -0.5\nv 0.3 0.2 -0.5\nv 0.25 0.25 0.5\nf 1 2 3\nf 4 5 6\n");
-  const std::string pair = "cloth triangle 0 and cloth triangle 1 at (0.2";
-  CHECK_THAT(refused_alike(folder),
-             StartsWith("error: e.yaml:1:1: the start of level 0 touches: " + pair) && EndsWith(remedy));
-  CHECK_THAT(refused_alike(folder, "--allow-start-repair"),
-             StartsWith("error: e.yaml:1:1: moving the whole start by up to ") &&
-                 Contains(" does not part " + pair));
-}
 
 TEST_CASE("a run with contact has contacts, gaps and intersections in its results") {
   const Scratch folder(experiment_of_tests("contact"));

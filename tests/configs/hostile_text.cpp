@@ -1,4 +1,4 @@
-// Names and values that a terminal or a spreadsheet would act on, and arguments that are empty.
+// Names and values that a terminal or a spreadsheet would act on.
 
 #include "core/app/report/run_table.h"
 #include "tests/configs/runs.h"
@@ -51,52 +51,6 @@ TEST_CASE("no command prints the control characters of a name or a file") {
       CHECK((ended.out + ended.err).find(act) == std::string::npos);
   }
   CHECK(fs::exists(folder / ("out" + clear) / "report.html"));
-}
-
-TEST_CASE("an empty argument is refused, wherever it stands") {
-  const Scratch folder(small_experiment());
-  for (const std::string command : {"run e.yaml --out ''",
-                                    "run e.yaml --out=",
-                                    "run e.yaml -o ''",
-                                    "run ''",
-                                    "run --resume ''",
-                                    "check ''",
-                                    "run e.yaml --method ''",
-                                    "run e.yaml --set ''",
-                                    "view ''",
-                                    "export '' --to a.ply",
-                                    "export e.yaml --to ''",
-                                    "report ''",
-                                    "report --out= e.yaml",
-                                    "compare '' ''",
-                                    "table ''",
-                                    "sweep '' -o a",
-                                    "sweep e.yaml -o ''",
-                                    "figures '' -o ''",
-                                    "fabric ''",
-                                    "fabric --file ''",
-                                    "new ''",
-                                    "list ''",
-                                    "describe ''",
-                                    "check-energy ''",
-                                    "fit e.yaml --to 1 --by '' -o ''",
-                                    "''",
-                                    "check e.yaml --plugin ''"}) {
-    INFO(command);
-    CHECK_THAT(refused_by(command, folder.path),
-               StartsWith("error: ") && Contains(" is empty, as where a variable"));
-  }
-  CHECK(std::distance(fs::directory_iterator(folder.path), {}) == 1);
-}
-
-TEST_CASE("a table of fabrics without a row is said to be empty") {
-  const Scratch folder;
-  for (const auto& [text, fault] : {std::pair("", "e.csv is empty; a table of fabrics names its columns"),
-                                    {" \n\n", "e.csv is empty"},
-                                    {"name,mass\n", "e.csv has no row below its header"}}) {
-    folder.write("e.csv", text);
-    CHECK_THAT(refused_by("fabric --file e.csv", folder.path), Contains(fault));
-  }
 }
 
 TEST_CASE("a table of fabrics has the line ends of any system, and a refused cell has no wake") {

@@ -180,10 +180,3 @@ TEST_CASE("a pattern is meshed to a length of edges, or to about a number of ver
   check_error(refused(folder, "check e.yaml --set cloth.edge_length=1e-6"),
               "e.yaml:3:8: \"edge_length\" would give about 9.2e+10 vertices; a coarsest level has at most");
 }
-
-TEST_CASE("a pattern is no cloth of other keys, and other cloth has no seams") {
-  check_error(said_of("name: a\ncloth: {shape: pattern}\nenergies: [stvk]\nmethods: {newton: {}}\n"),
-              "e.yaml:2:8: \"shape: pattern\" needs \"file\", the pattern to read");
-  check_error(said_of("name: a\ncloth: {seams: {stiffness: 3}}\nenergies: [stvk]\nmethods: {newton: {}}\n"),
-              "e.yaml:2:16: \"seams\" in cloth is not read by this cloth; only flat pieces have them");
-}

@@ -250,14 +250,6 @@ TEST_CASE("midedge_bending: sharp folds' derivatives are those of their energy")
   });
 }
 
-TEST_CASE("midedge_bending: friction of a cloth without a bending rigidity is refused") {
-  Material limp = material;
-  limp.bending_modulus = 0;
-  limp.bending_hysteresis = 0.8;
-  CHECK_THROWS_WITH(bind(grid({1, 1}, 3, 3, Diagonals::one_way), limp),
-                    Catch::Contains("\"bending_hysteresis\" needs a bending rigidity"));
-}
-
 TEST_CASE("midedge_bending: stencils are narrow on lattices, and right where neighbours are one vertex") {
   CHECK(bind(grid({1, 0.7}, 9, 9, Diagonals::one_way))->stencils().cols() == 6);
   CHECK(bind(random_triangulation({1, 1}, 100, 3))->stencils().cols() == 12);

@@ -120,14 +120,3 @@ TEST_CASE("woven: derivatives follow the tension curve, which may be straight") 
   energy_states::check_derivatives(*own, x, 1e-7, 1e-6, 1e-5);
   CHECK(bound(curved, mesh, fabric, 1e-5)->value(x) <= own->value(x) * (1 + 1e-12));
 }
-
-TEST_CASE("woven: a tension curve out of order is refused at its point") {
-  const auto refused = [](const std::string& list, const std::string& message) {
-    CHECK_THROWS_WITH(make_plugin_from<Energy>("{type: woven, warp_tension: " + list + "}"),
-                      Catch::Contains(message));
-  };
-  refused("[0.01, 5, 0.03]", "\"warp_tension\" has an odd number of values");
-  refused("[0.01, 5, 0.01, 7]", "\"warp_tension\": point 2: strain does not rise from the point before");
-  refused("[0.01, 5, 0.03, 4]", "point 2: force over stretch does not rise from the point before");
-  refused("[0, 5]", "point 1: strain does not rise");
-}

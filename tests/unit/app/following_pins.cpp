@@ -5,22 +5,21 @@
 
 #include "core/numerics/mesh_files/io.h"
 #include "core/numerics/patterns/generate.h"
-#include "tests/unit/app/scene_refusal.h"
+#include "tests/support/solve.h"
 
 using namespace drape;
-using Catch::Contains;
 
 namespace {
 
 /// A sheet above an obstacle, the middle of which follows it, with these keys of a schedule.
 std::string sheet_on(const std::string& obstacle, const std::string& keys, const std::string& follow,
-                     const std::string& contact = "ipc", const std::string& more_pins = "") {
+                     const std::string& contact = "ipc") {
   return R"(name: follower
 cloth: {shape: square, side: 0.2, columns: 9, rows: 9}
 levels: 2
 start: {translate: [-0.1, -0.1, 0.104]}
 pins: [{region: ball, point: [0.1, 0.1, 0], radius: 0.03, follow: )" +
-         follow + "}" + more_pins + "]\nenergies: [neo_hookean, hinge, gravity]\ncontact: {type: " + contact +
+         follow + "}]\nenergies: [neo_hookean, hinge, gravity]\ncontact: {type: " + contact +
          ", dhat: 2e-3}\nobstacles: [" + obstacle +
          "]\nnewton: {force_tolerance: 1e-2}\nmethods: {newton: {}}\nschedule: {steps: 5, keys: [" + keys +
          "]}\n";
@@ -156,34 +155,6 @@ TEST_CASE(
   }
   for (const std::string& source :
        {"mesh: " + loose_file, "animation: [" + loose_file + ", " + loose_file + "]"})
-    CHECK_THAT(scene_refusal(on_body(source)),
-               Contains("loses vertices of its file that are in no triangle"));
-}
-
-TEST_CASE("a pin that cannot follow is refused with the reason") {
-  const std::string other = ball + ", {name: floor, meshed_shape: box, translate: [0, 0, -2]}";
-  const auto check_refused = [](const std::string& experiment, const std::string& why) {
-    CHECK_THAT(scene_refusal(experiment), Contains(why));
-  };
-  check_refused(sheet_on(other, turn, "bdy"),
-                ":5:67: pin 0 follows obstacle \"bdy\", which does not exist; did you mean \"body\"?");
-  check_refused(sheet_on(other, turn, "floor"),
-                "pin 0 follows obstacle \"floor\", which is 1.6 m away from vertex ");
-  check_refused(sheet_on(other, turn, "{obstacle: body, vertices: [3, 642]}"),
-                "pin 0 follows obstacle \"body\", which has no vertex 642; they go from 0 to 641");
-  check_refused(
-      sheet_on(ball, turn + ", " + replaced(shift, "obstacles.body", "pins.0"), "body"),
-      "key \"pins.0.translate\" changes pin 0, which follows obstacle \"body\"; move the obstacle, or remove "
-      "\"follow\"");
-  const std::string second = ", {region: nearest, point: [0.1, 0.1, 0]";
-  check_refused(sheet_on(other, turn, "body", "ipc", second + "}"),
-                "pin 0 follows obstacle \"body\", which pin 1 does not follow, but both select vertex 40 "
-                "of level 0; let their regions share no vertex");
-  check_refused(
-      sheet_on(ball, turn, "body", "ipc", second + ", follow: {obstacle: body, vertices: [5, 17]}}"),
-      "which pin 1 follows by other vertices, but both select vertex 40");
-  check_refused(
-      "name: alone\npins: [{region: nearest, follow: body}]\nenergies: [neo_hookean]\nmethods: {newton: "
-      "{}}\n",
-      "which does not exist; give an obstacle a \"name\", or follow it by its index from 0");
+    CHECK_THROWS_WITH(scene_from(on_body(source)),
+                      Catch::Contains("loses vertices of its file that are in no triangle"));
 }

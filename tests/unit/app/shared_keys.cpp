@@ -5,11 +5,9 @@
 #include "core/app/experiment/read_experiment.h"
 #include "core/app/scene/load_schedule.h"
 #include "core/numerics/patterns/generate.h"
-#include "tests/support/refusal.h"
 #include "tests/support/solve.h"
 
 using namespace drape;
-using Catch::Contains;
 
 namespace {
 
@@ -72,14 +70,6 @@ TEST_CASE("Every method has the experiment's newton, but for what it sets itself
   CHECK(value(e, "own", "psd_blend") == "full");
 }
 
-TEST_CASE("A fault of the experiment's newton is told once, not by every method") {
-  const std::string said =
-      refusal_of([] { experiment_from(methods + "newton: {step_size: 0, max_step: 7}\n"); });
-  CHECK_THAT(said, Catch::Contains(":7:21: \"step_size\" must be at least 1.0e-08 s, not 0\n"));
-  CHECK_THAT(said, Catch::EndsWith(":7:24: unknown key \"max_step\" in newton; did you mean \"max_steps\"?"));
-  CHECK(std::count(said.begin(), said.end(), '\n') == 1);
-}
-
 TEST_CASE("Each contact model gets the obstacles that have its keys, in the list's order, and the friction") {
   Experiment e = experiment_from(mixed);
   REQUIRE(e.obstacles_of.size() == 2);
@@ -101,17 +91,7 @@ TEST_CASE("Each contact model gets the obstacles that have its keys, in the list
   CHECK((e.obstacle_names() == std::vector<std::string>{"ball", "", "plate", "shell"}));
 }
 
-TEST_CASE("Two obstacles of one name, or a contact model listed twice, are refused") {
-  const std::pair<std::string, std::string> names[] = {
-      {"name: ball", ":11:12: \"ball\" is also the name of obstacles[1]; give each obstacle its own"},
-      {"name: 1", ":11:12: \"1\" cannot be an obstacle's name"}};
-  for (const auto& [name, refusal] : names)
-    CHECK_THROWS_WITH(experiment_from(replaced(mixed, "name: shell", name)), Contains(refusal));
-  CHECK_THROWS_WITH(experiment_from(replaced(mixed, "[shapes,", "[shapes, shapes,")),
-                    Contains("\"contact\" lists shapes twice; list each model once"));
-}
-
-TEST_CASE("Without the key, or with an empty list, there is no contact, and no friction even of a schedule") {
+TEST_CASE("Without the key, or with an empty list, there is no contact") {
   const std::string free = "name: free\nenergies: [neo_hookean, gravity]\nmethods: {newton: {}}\n";
   for (const std::string none : {"", "contact: []\n", "contact: ~\n", "friction: 0\n"}) {
     const Experiment e = experiment_from(free + none);
@@ -119,11 +99,6 @@ TEST_CASE("Without the key, or with an empty list, there is no contact, and no f
     CHECK(e.resolved.find("contact")->one_line() == "[]");
     CHECK(experiment_from(to_yaml(e.resolved)).resolved.one_line() == e.resolved.one_line());
   }
-  for (const std::string friction :
-       {"friction: 0.1\n", "schedule: {keys: [{parameter: friction, times: [0, 1], values: [0, 0.1]}]}\n"})
-    CHECK_THROWS_WITH(
-        experiment_from(free + friction),
-        Contains("no contact model of this experiment has friction; set \"friction\" to 0, or add"));
 }
 
 TEST_CASE("A saved experiment has obstacles and friction once, and reads back the same") {

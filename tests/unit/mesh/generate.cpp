@@ -186,34 +186,16 @@ TEST_CASE("random numbers do not depend on the standard library") {
   CHECK(random.unit() == static_cast<double>(9981545732273789042ull >> 11) * 0x1.0p-53);
 }
 
-TEST_CASE("patterns refuse what cannot be meshed, naming the loop") {
+TEST_CASE("patterns refuse what no experiment can ask for") {
   CHECK_THROWS_WITH(grid({1, 0}, 3, 3, Diagonals::one_way), "grid: the size must be positive");
-  CHECK_THROWS_WITH(grid({1, 1}, 1, 3, Diagonals::one_way), "grid: at least 2 × 2 vertices are needed");
   CHECK_THROWS_WITH(equilateral({1, 0}, 3, 3), "equilateral: the size must be positive");
-  CHECK_THROWS_WITH(equilateral({1, 1}, 1, 3), "equilateral: at least 2 × 2 vertices are needed");
   CHECK_THROWS_WITH(disc(-1, 100), "disc: the radius must be positive");
-  CHECK_THROWS_WITH(
-      random_triangulation({1, 1}, 4, 0),
-      "random triangulation: 4 vertices leave none for the inside of this rectangle; ask for more");
-
   const auto refused = [](const std::vector<Polygon>& loops, const std::string& fault, int count = 100) {
     CHECK_THROWS_WITH(delaunay_polygon(loops, count, 0), Catch::StartsWith("polygon: " + fault));
   };
-  const std::string border = "loop 0 (the outer border) ";
   refused({}, "there is no loop");
   refused({unit_square}, "at least three vertices are needed", 2);
-  refused({{{0, 0}, {1, 0}}}, border + "has fewer than three points");
-  refused({{{0, 0}, {1, 1}, {1, 0}, {0, 1}}}, border + "crosses or touches itself");
-  refused({{{0, 0}, {1, 0}, {2, 0}}}, border + "crosses or touches itself");
-  refused({{{0, 0}, {1, 0}, {1, 1}, {0, 0}}}, border + "ends with its first point again; leave the last one");
-  refused({{{0, 0}, {1, NAN}, {2, 0}}}, border + "has a coordinate that is not finite");
-  refused({unit_square, {{2, 2}, {3, 2}, {3, 3}}}, "loop 1 (a hole) lies outside loop 0");
-  refused({unit_square, hole, {{.9, .5}, {1.2, .5}, {.9, .6}}}, "loop 2 (a hole) crosses or touches loop 0");
-  refused({unit_square, hole, {{.4, .4}, {.45, .4}, {.4, .5}}},
-          "loop 2 (a hole) and loop 1 lie one inside the other");
-  // A needle asks for ever smaller triangles: given up, not meshed to the end of memory.
-  refused({{{0, 0}, {1, 0}, {0, 1e-9}}}, "about 10 vertices are not possible; the nearest number is above ",
-          10);
+  refused({{{0, 0}, {1, NAN}, {2, 0}}}, "loop 0 (the outer border) has a coordinate that is not finite");
   Polygon comb;  // 43 corners
   for (int i = 0; i < 20; ++i) comb.insert(comb.end(), {{i / 20., 0}, {(i + 0.5) / 20, 0.1}});
   comb.insert(comb.end(), {{1, 0}, {1, 1}, {0, 1}});
