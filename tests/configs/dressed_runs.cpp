@@ -51,9 +51,9 @@ std::string of_pattern(const Scratch& folder) {
   return "{shape: pattern, file: " + (folder / "tube.yaml").string() + ", edge_length: 0.03}";
 }
 
-std::string refused(const TubeDress& tube, const std::string& more = cloth) {
+std::string refused(const TubeDress& tube) {
   const Scratch folder;
-  tube.write(folder, more);
+  tube.write(folder, cloth);
   return refusal_of([&] { scene_of(experiment_in(folder / "e.yaml")); });
 }
 
@@ -337,16 +337,4 @@ TEST_CASE("What cannot be dressed is refused in a sentence") {
              Catch::Matches(".*no start is free of intersections: of all that were tried, the best "
                             "still has [0-9]+ pairs, most of piece front: .*place the pieces around "
                             "the body, not through it"));
-  CHECK_THAT(
-      refused(small_tube(), std::string(cloth) +
-                                "schedule: {keys: [{parameter: friction, times: [0, 1], values: [0, 1]}]}\n"),
-      Catch::Contains("\"dress\" makes the schedule itself"));
-  for (const std::string key : {"placed", "loads"}) {  // which only that schedule sets
-    const Scratch folder;
-    small_tube().write(folder, cloth);
-    folder.write("e.yaml", replaced(text_of(folder / "e.yaml"), "dress: body.obj",
-                                    "dress: {body: body.obj, " + key + ": 0.5}"));
-    CHECK_THAT(refusal_of([&] { experiment_in(folder / "e.yaml"); }),
-               Catch::Contains("unknown key \"" + key + "\" in dress"));
-  }
 }

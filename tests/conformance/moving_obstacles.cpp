@@ -87,16 +87,15 @@ ConfigNode blended(const ConfigNode& from, ConfigNode to, double part) {
   return to;
 }
 
-/// Upright, with this gap to the flat sheet above.
-Vector3d place_below(const MovingObstacle& moving, const ConfigNode& upright, const Level& sheet,
-                     double gap) {
-  double low = -2, high = 2;
-  while (high - low > 1e-12) {
-    const double middle = (low + high) / 2;
-    const auto contact = moving.bound(with(upright, "translate", {0.01, 0.02, middle}), sheet);
+/// The place where the obstacle just touches the flat sheet from below.
+Vector3d touching_place(const MovingObstacle& moving, const ConfigNode& own, const Level& sheet) {
+  Vector3d low(0.01, 0.02, -2), high(0.01, 0.02, 2);
+  while (high.z() - low.z() > 1e-12) {
+    const Vector3d middle = (low + high) / 2;
+    const auto contact = moving.bound(with(own, "translate", middle), sheet);
     (contact->intersections(sheet.rest.vertices).empty() ? low : high) = middle;
   }
-  return {0.01, 0.02, low - gap};
+  return low;
 }
 
 }  // namespace
@@ -110,7 +109,7 @@ TEST_CASE(
     const auto at = [&](const Vector3d& place) {
       return moving.bound(with(upright, "translate", place), level);
     };
-    const Vector3d touching = place_below(moving, upright, level, 0);
+    const Vector3d touching = touching_place(moving, upright, level);
     for (const double gap : {0.01, 2e-5}) {
       const Vector3d place = touching - gap * Vector3d::UnitZ();
       const auto before = at(place);
