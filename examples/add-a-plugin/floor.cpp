@@ -34,7 +34,7 @@ struct FloorCandidates : drape::CollisionCandidates {
     for (int i = 0; i < x.rows(); ++i)
       if (const double gap = floor.gap(x, i); gap < floor.p.dhat)
         contacts.push_back({i, 0, floor.area[i], floor.p.friction, {gap}});
-    return make_vertex_contacts(std::move(contacts), floor.barrier);
+    return make_collisions(floor.barrier, std::move(contacts));
   }
 
   const Floor& floor;

@@ -24,12 +24,17 @@ struct NearSurface {
     parameters.stiffness = 1 / dhat;
     for (int t = 0; t < mesh.triangles.rows(); ++t) candidates.push_back({0, t});
   }
-  drape::SurfaceContacts contacts(const Vector& p) const {
+  std::vector<drape::SurfaceContact> contacts(const Vector& p) const {
     return drape::find_surface_contacts(p.transpose(), obstacles, coefficients, candidates, area, 0, dhat);
   }
-  std::vector<drape::NearestFeature> features(const Vector& p) const { return contacts(p).items; }
+  /// Its only contact, without features if it has none.
+  drape::SurfaceContact contact(const Vector& p) const {
+    const std::vector<drape::SurfaceContact> all = contacts(p);
+    return all.empty() ? drape::SurfaceContact{} : all.front();
+  }
+  std::vector<drape::NearestFeature> features(const Vector& p) const { return contact(p).features; }
   std::unique_ptr<drape::Collisions> set(const Vector& p) const {
-    return make_surface_contacts(contacts(p), parameters);
+    return make_collisions(parameters, contacts(p));
   }
   double value(const Vector& p) const { return set(p)->value(p.transpose()); }
 };

@@ -1,11 +1,11 @@
+#include "core/numerics/contact/additive_ccd.h"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include "core/kernel/threads/parallel.h"
 #include "core/numerics/contact/moving_pairs.h"
-#include "core/numerics/contact/pair_contacts.h"
-#include "core/numerics/contact/pair_geometry.h"
 
 namespace drape {
 namespace {

@@ -6,7 +6,6 @@
 
 #include "core/kernel/threads/parallel.h"
 #include "core/numerics/contact/moving_pairs.h"
-#include "core/numerics/contact/pair_geometry.h"
 
 namespace drape {
 namespace {

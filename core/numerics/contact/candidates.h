@@ -7,7 +7,7 @@
 #include "core/numerics/collision_detection/broad_phase.h"
 #include "core/numerics/collision_detection/obstacle_surface.h"
 #include "core/numerics/collision_detection/surface.h"
-#include "core/numerics/contact/pair_contacts.h"
+#include "core/numerics/contact/pair_geometry.h"
 #include "core/numerics/contact/surface_contacts.h"
 #include "core/numerics/contact_forces/barrier.h"
 

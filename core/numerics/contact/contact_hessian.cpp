@@ -1,7 +1,7 @@
 #include <Eigen/Geometry>
 #include <vector>
 
-#include "core/numerics/contact/contact_kernel.h"
+#include "core/numerics/contact/pair_contacts.h"
 #include "core/numerics/elements/project_hessian.h"
 #include "core/numerics/linear_algebra/pack.h"
 
@@ -20,7 +20,7 @@ struct Frame {
   Eigen::Matrix<double, 4, 2> p = Eigen::Matrix<double, 4, 2>::Zero();
   int free;
 
-  Frame(const Contact& contact, int cloth_count) : c(contact.closest.c), free(contact.closest.free) {
+  explicit Frame(const PairContact& contact) : c(contact.closest.c), free(contact.closest.free) {
     const Vector3d& n = contact.normal;
     const auto tangent = [&](int m) {
       return contact.difference * contact.closest.direction.col(m).tail<3>();
@@ -35,7 +35,7 @@ struct Frame {
       p.col(1) = (contact.closest.direction.col(1) - t[0].dot(second) * p.col(0)) / t[1].dot(second);
     }
     for (int k = 0; k < 4; ++k)
-      if (contact.pair.vertices[k] >= cloth_count) {
+      if (!contact.is_cloth(k)) {
         c[k] = 0;
         p.row(k).setZero();
       }
@@ -50,8 +50,8 @@ struct Unmollified {
   Vector3d n, t[2];
   SymmetricMatrix<5, double> m{};
 
-  Unmollified(const Contact& contact, double stiffness, int cloth_count) : n(contact.normal) {
-    const Frame frame(contact, cloth_count);
+  Unmollified(const PairContact& contact, double stiffness) : n(contact.normal) {
+    const Frame frame(contact);
     const double d = contact.distance, slope = contact.barrier.first / d, length = frame.c.norm();
     t[0] = frame.t[0], t[1] = frame.t[1];
     q.col(0) = frame.c / length;
@@ -79,7 +79,7 @@ struct Unmollified {
     }
   }
 
-  void expand(PairBlocks& blocks) const {
+  void expand(ContactBlocks<4>& blocks) const {
     Eigen::Matrix3d nn;
     Eigen::Matrix<double, 3, 2> cross;
     for (int j = 0; j < 3; ++j) {
@@ -111,11 +111,11 @@ struct Mollified {
   Coordinates q = Coordinates::Zero();
   SymmetricMatrix<9, double> m{};
 
-  Mollified(const Contact& contact, double stiffness, int cloth_count) {
-    const Frame frame(contact, cloth_count);
+  Mollified(const PairContact& contact, double stiffness) {
+    const Frame frame(contact);
     int moving = 0;
     for (int k = 0; k < 4; ++k)
-      if (contact.pair.vertices[k] < cloth_count) q(k, std::min(moving++, 2)) = 1;
+      if (contact.is_cloth(k)) q(k, std::min(moving++, 2)) = 1;
     if (moving == 4) {
       const double half = 0.5, root = std::sqrt(0.5);
       q << root, 0, half, -root, 0, half, 0, root, -half, 0, -root, -half;
@@ -155,7 +155,7 @@ struct Mollified {
       }
   }
 
-  void expand(PairBlocks& blocks) const {
+  void expand(ContactBlocks<4>& blocks) const {
     Eigen::Matrix<double, 9, 9> full;
     for (int b = 0; b < 9; ++b)
       for (int a = 0; a < 9; ++a) full(a, b) = m(a, b);
@@ -189,13 +189,13 @@ void project_all(std::vector<Kind>& kinds, Projection projection) {
 }
 
 template <class Kind>
-void hessians_of_kind(const Contact* contacts, int count, bool mollified, double stiffness, int cloth_count,
-                      Projection projection, PairBlocks* blocks) {
+void hessians_of_kind(std::span<const PairContact> contacts, bool mollified, double stiffness,
+                      Projection projection, ContactBlocks<4>* blocks) {
   std::vector<Kind> kinds;
-  std::vector<int> indices;
-  for (int i = 0; i < count; ++i) {
+  std::vector<std::size_t> indices;
+  for (std::size_t i = 0; i < contacts.size(); ++i) {
     if (contacts[i].mollified() != mollified) continue;
-    kinds.emplace_back(contacts[i], stiffness, cloth_count);
+    kinds.emplace_back(contacts[i], stiffness);
     indices.push_back(i);
   }
   project_all(kinds, projection);
@@ -204,10 +204,10 @@ void hessians_of_kind(const Contact* contacts, int count, bool mollified, double
 
 }  // namespace
 
-void contact_hessians(const Contact* contacts, int count, double stiffness, int cloth_count,
-                      Projection projection, PairBlocks* blocks) {
-  hessians_of_kind<Unmollified>(contacts, count, false, stiffness, cloth_count, projection, blocks);
-  hessians_of_kind<Mollified>(contacts, count, true, stiffness, cloth_count, projection, blocks);
+void PairContact::hessians(std::span<const PairContact> contacts, const BarrierParameters& p,
+                           Projection projection, ContactBlocks<4>* blocks) {
+  hessians_of_kind<Unmollified>(contacts, false, p.stiffness, projection, blocks);
+  hessians_of_kind<Mollified>(contacts, true, p.stiffness, projection, blocks);
 }
 
 }  // namespace drape

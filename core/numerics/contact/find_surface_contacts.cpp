@@ -29,10 +29,10 @@ class FeatureSearch {
         friction_(friction),
         dhat_(dhat) {}
 
-  /// Appends the features within d̂ of a cloth vertex at p that have a non-zero coefficient. `candidates` are
-  /// all triangles that may be within d̂ of it.
-  void append(const Vector3d& p, std::span<const VertexTriangleCandidate> candidates,
-              std::vector<NearestFeature>& features) {
+  /// The features within d̂ of a cloth vertex at p that have a non-zero coefficient. `candidates` are all
+  /// triangles that may be within d̂ of it.
+  std::vector<NearestFeature> find(const Vector3d& p, std::span<const VertexTriangleCandidate> candidates) {
+    std::vector<NearestFeature> features;
     terms_.clear();
     near_.clear();
     for (const VertexTriangleCandidate& candidate : candidates) add_triangle(p, candidate.triangle);
@@ -49,8 +49,9 @@ class FeatureSearch {
       for (++i; i < terms_.size() && terms_[i].kind == sum.kind && terms_[i].index == sum.index; ++i)
         sum.coefficient += terms_[i].coefficient;
       if (std::abs(sum.coefficient) > zero_coefficient)
-        features.push_back(feature(p, sum, candidates.front().vertex));
+        features.push_back(feature(p, sum, vertex_area_[candidates.front().vertex]));
     }
+    return features;
   }
 
  private:
@@ -98,15 +99,14 @@ class FeatureSearch {
       terms_.push_back({Kind::vertex, v, coefficients_.vertex[v]});
   }
 
-  NearestFeature feature(const Vector3d& p, const Term& term, int cloth_vertex) const {
+  NearestFeature feature(const Vector3d& p, const Term& term, double area) const {
     const Surface& surface = obstacles_.surface;
     NearestFeature f;
-    f.cloth_vertex = cloth_vertex;
     f.vertices = {-1, -1, -1};
     f.weights = Vector3d::UnitX();
     f.along.setZero();
     f.coefficient = term.coefficient;
-    f.area = vertex_area_[cloth_vertex];
+    f.area = area;
     if (term.kind == Kind::face) {
       for (int k = 0; k < 3; ++k) f.vertices[k] = surface.triangles(term.index, k);
       const Vector3d a = position(f.vertices[0]), b = position(f.vertices[1]), c = position(f.vertices[2]);
@@ -151,35 +151,27 @@ class FeatureSearch {
   std::vector<int> near_;  // triangles within d̂
 };
 
-/// The indices at which the runs of one cloth vertex begin in a list, then its size.
-template <class Item>
-std::vector<int> starts_of_runs(const std::vector<Item>& list, int Item::*vertex) {
-  const int size = static_cast<int>(list.size());
-  std::vector<int> starts;
-  for (int i = 0; i < size; ++i)
-    if (i == 0 || list[i].*vertex != list[i - 1].*vertex) starts.push_back(i);
-  starts.push_back(size);
-  return starts;
-}
-
 }  // namespace
 
-SurfaceContacts find_surface_contacts(const Positions& x, const ObstacleSurface& obstacles,
-                                      const OperatorCoefficients& coefficients,
-                                      const std::vector<VertexTriangleCandidate>& candidates,
-                                      const Eigen::VectorXd& vertex_area, double friction, double dhat) {
-  const std::vector<int> start = starts_of_runs(candidates, &VertexTriangleCandidate::vertex);
-  const auto find = [&](int begin, int end, std::vector<NearestFeature>& found) {
+std::vector<SurfaceContact> find_surface_contacts(const Positions& x, const ObstacleSurface& obstacles,
+                                                  const OperatorCoefficients& coefficients,
+                                                  const std::vector<VertexTriangleCandidate>& candidates,
+                                                  const Eigen::VectorXd& vertex_area, double friction,
+                                                  double dhat) {
+  std::vector<std::span<const VertexTriangleCandidate>> of_vertices;
+  for (auto begin = candidates.begin(), end = begin; begin != candidates.end(); begin = end) {
+    end = std::find_if(begin, candidates.end(), [&](const auto& c) { return c.vertex != begin->vertex; });
+    of_vertices.emplace_back(begin, end);
+  }
+  const auto find = [&](int begin, int end, std::vector<SurfaceContact>& found) {
     FeatureSearch search(obstacles, coefficients, vertex_area, friction, dhat);
     for (int k = begin; k < end; ++k) {
-      const std::span own(candidates.data() + start[k], candidates.data() + start[k + 1]);
-      search.append(x.row(own.front().vertex), own, found);
+      const int vertex = of_vertices[k].front().vertex;
+      std::vector<NearestFeature> features = search.find(x.row(vertex), of_vertices[k]);
+      if (!features.empty()) found.push_back({vertex, std::move(features)});
     }
   };
-  SurfaceContacts all;
-  all.items = parallel_collect<NearestFeature>(static_cast<int>(start.size()) - 1, vertices_per_task, find);
-  all.start = starts_of_runs(all.items, &NearestFeature::cloth_vertex);
-  return all;
+  return parallel_collect<SurfaceContact>(static_cast<int>(of_vertices.size()), vertices_per_task, find);
 }
 
 }  // namespace drape

@@ -6,7 +6,7 @@
 #include <cstring>
 #include <limits>
 
-#include "core/numerics/contact/pair_contacts.h"
+#include "core/numerics/contact/pair_geometry.h"
 #include "core/numerics/linear_algebra/pack.h"
 
 namespace drape {

@@ -1,120 +1,92 @@
 #include "core/numerics/contact/pair_contacts.h"
 
-#include <algorithm>
-#include <limits>
-
-#include "core/kernel/threads/parallel.h"
-#include "core/numerics/contact/contact_kernel.h"
-#include "core/numerics/contact_forces/friction.h"
+#include <Eigen/Geometry>
 
 namespace drape {
+
 namespace {
 
-constexpr int contacts_per_task = 128;
-constexpr int run = 1024;  // contacts whose blocks are computed before they are added
-
-class PairCollisions final : public Collisions {
- public:
-  PairCollisions(std::unique_ptr<Contact[]> contacts, int count, int cloth_count,
-                 const BarrierParameters& parameters)
-      : contacts_(std::move(contacts)), count_(count), cloth_count_(cloth_count), parameters_(parameters) {
-    double sum = 0;
-    for (int i = 0; i < count_; ++i) {
-      sum += contacts_[i].value();
-      smallest_gap_ = std::min(smallest_gap_, contacts_[i].gap());
-      frictional_count_ += contacts_[i].pair.friction != 0;
-    }
-    value_ = parameters_.stiffness * sum;
+/// The obstacle's nearest point. Its primitive is the second one of an edge-edge pair, and either of others.
+ObstaclePoint touched_by(const PairContact& contact) {
+  ObstaclePoint point{contact.pair.obstacle};
+  if (point.obstacle < 0) return point;
+  for (int k = 0, count = 0; k < 4; ++k) {
+    if (contact.is_cloth(k)) continue;
+    point.vertices[count] = contact.pair.vertices[k] - contact.cloth_count;
+    point.weights[count++] = std::abs(contact.closest.c[k]);
   }
-
-  int contact_count() const override { return count_; }
-  double smallest_gap() const override { return smallest_gap_; }
-  void append_gaps(std::vector<double>& gaps) const override {
-    for (int i = 0; i < count_; ++i) gaps.push_back(contacts_[i].gap());
-  }
-  NormalForces normal_forces() const override {
-    NormalForces forces;
-    for (int i = 0; i < count_; ++i)
-      forces.add(parameters_.stiffness * contacts_[i].pressure(), contacts_[i].barrier.first);
-    return forces;
-  }
-  double value(const Positions&) const override { return value_; }
-
-  double add_gradient(const Positions&, Positions& g) const override {
-    for (int i = 0; i < count_; ++i) {
-      const Contact& contact = contacts_[i];
-      const PairPositions by_vertex = parameters_.stiffness * contact_gradient(contact);
-      for (int k = 0; k < 4; ++k)
-        if (const int v = contact.pair.vertices[k]; v < cloth_count_) g.row(v) += by_vertex.col(k);
-    }
-    return value_;
-  }
-
-  Stencils stencils() const override {
-    Stencils result(contact_count(), 4);
-    for (int i = 0; i < contact_count(); ++i)
-      for (int k = 0; k < 4; ++k) result(i, k) = cloth_vertex(contacts_[i], k);
-    return result;
-  }
-
-  // All threads compute blocks; one adds them in order, which makes results independent of the thread count.
-  void add_hessian(const Positions&, Projection projection, BlockSink& sink) const override {
-    const auto blocks = std::make_unique_for_overwrite<PairBlocks[]>(std::min(run, count_));
-    for (int first = 0; first < count_; first += run) {
-      const int size = std::min(run, count_ - first);
-      parallel_for(size, contacts_per_task, [&](int begin, int end) {
-        contact_hessians(&contacts_[first + begin], end - begin, parameters_.stiffness, cloth_count_,
-                         projection, blocks.get() + begin);
-      });
-      for (int i = 0; i < size; ++i)
-        for (int b = 0, index = 0; b < 4; ++b)
-          for (int a = 0; a <= b; ++a, ++index) sink.add(first + i, a, b, blocks[i].block[index]);
-    }
-  }
-
-  void append_friction_contacts(FrictionContacts& groups) const override {
-    if (frictional_count_ == 0) return;
-    std::vector<FrictionContact>& result = groups.emplace_back();
-    result.reserve(frictional_count_);
-    for (int i = 0; i < count_; ++i) {
-      const Contact& contact = contacts_[i];
-      if (contact.pair.friction == 0) continue;
-      result.push_back(friction_contact(contact, contact.pressure(), parameters_.stiffness, cloth_count_));
-    }
-  }
-  double friction_smoothing_distance() const override { return parameters_.friction_smoothing_distance; }
-
- private:
-  int cloth_vertex(const Contact& contact, int k) const {
-    const int v = contact.pair.vertices[k];
-    return v < cloth_count_ ? v : -1;
-  }
-
-  std::unique_ptr<Contact[]> contacts_;
-  int count_, cloth_count_, frictional_count_ = 0;
-  BarrierParameters parameters_;
-  double value_ = 0, smallest_gap_ = std::numeric_limits<double>::infinity();
-};
+  // The normal points from the second primitive to the first.
+  point.offset = (contact.is_cloth(0) ? 1 : -1) * contact.pair.offset * contact.normal;
+  return point;
+}
 
 }  // namespace
 
-std::unique_ptr<Collisions> make_pair_contacts(const Positions& x, const Positions& obstacle_vertices,
-                                               const std::vector<ContactPair>& pairs,
-                                               const BarrierParameters& parameters) {
+PairContact::PairContact(const ContactPair& own, const Positions& positions,
+                         const Positions& obstacle_vertices)
+    : pair(own), cloth_count(static_cast<int>(positions.rows())) {
+  const PairPositions x = positions_of(pair, positions, obstacle_vertices);
+  closest = drape::closest(pair.kind, x);
+  const Eigen::Vector3d r = connection(x, closest);
+  distance = r.norm();
+  normal = r / distance;
+  for (int k = 0; k < 3; ++k) difference.col(k) = x.col(k + 1) - x.col(0);
+  barrier = drape::barrier(gap() / pair.dhat);
+  mollifier = {1, 0, 0};
+  if (has_two_edges(pair.kind))
+    mollifier = drape::mollifier(first_edge().cross(second_edge()).squaredNorm(), pair.mollifier);
+}
+
+std::array<int, 4> PairContact::vertices() const {
+  std::array<int, 4> own = pair.vertices;
+  for (int& v : own)
+    if (v >= cloth_count) v = -1;
+  return own;
+}
+
+void PairContact::add_gradient(const BarrierParameters& p, Positions& g) const {
+  const PairPositions by_vertex = p.stiffness * gradient();
+  for (int k = 0; k < 4; ++k)
+    if (is_cloth(k)) g.row(pair.vertices[k]) += by_vertex.col(k);
+}
+
+PairPositions PairContact::gradient() const {
+  PairPositions g = -pressure() * normal * closest.c.transpose();
+  if (mollified()) {
+    const Eigen::Vector3d u = first_edge(), v = second_edge(), n = u.cross(v);
+    const double by_z = pair.weight * pair.dhat * mollifier.first * barrier.value;
+    const Eigen::Vector3d by_u = 2 * by_z * v.cross(n), by_v = 2 * by_z * n.cross(u);
+    g.col(0) -= by_u;
+    g.col(1) += by_u;
+    g.col(2) -= by_v;
+    g.col(3) += by_v;
+  }
+  return g;
+}
+
+FrictionContact PairContact::friction_contact(const BarrierParameters& p, double force) const {
+  const auto& v = pair.vertices;
+  return {{v[0], v[1], v[2], v[3], static_cast<int>(pair.kind)},
+          vertices(),
+          closest.c,
+          normal,
+          pair.friction * p.stiffness * force,
+          touched_by(*this)};
+}
+
+std::vector<PairContact> find_pair_contacts(const Positions& x, const Positions& obstacle_vertices,
+                                            const std::vector<ContactPair>& pairs) {
   // Collect indices first, then construct the contacts in place: they are large, and copying dominates.
-  constexpr int pairs_per_task = 2048;
   const auto find = [&](int begin, int end, std::vector<int>& near) {
     for (int i = begin; i < end; ++i)
       if (is_within_dhat(pairs[i], positions_of(pairs[i], x, obstacle_vertices))) near.push_back(i);
   };
-  const std::vector<int> near = parallel_collect<int>(static_cast<int>(pairs.size()), pairs_per_task, find);
-  const int count = static_cast<int>(near.size());
-  auto contacts = std::make_unique_for_overwrite<Contact[]>(count);
-  parallel_for(count, contacts_per_task, [&](int begin, int end) {
-    for (int k = begin; k < end; ++k)
-      contacts[k] = contact_at(pairs[near[k]], positions_of(pairs[near[k]], x, obstacle_vertices));
+  const std::vector<int> near = parallel_collect<int>(static_cast<int>(pairs.size()), 2048, find);
+  std::vector<PairContact> contacts(near.size());
+  parallel_for(static_cast<int>(near.size()), 128, [&](int begin, int end) {
+    for (int k = begin; k < end; ++k) contacts[k] = PairContact(pairs[near[k]], x, obstacle_vertices);
   });
-  return std::make_unique<PairCollisions>(std::move(contacts), count, static_cast<int>(x.rows()), parameters);
+  return contacts;
 }
 
 }  // namespace drape

@@ -1,9 +1,38 @@
 #pragma once
 
+#include <array>
+#include <vector>
+
+#include "core/kernel/interfaces/level.h"
 #include "core/numerics/collision_detection/closest.h"
-#include "core/numerics/contact/pair_contacts.h"
 
 namespace drape {
+
+/// Point 0 against triangle 1 … 3, or edge (0, 1) against edge (2, 3). edge_end is point 0, the end of edge
+/// (0, 1), against edge (2, 3).
+enum class PairKind : char { point_triangle, edge_edge, edge_end };
+
+/// A pair of primitives. Indices count the cloth's n vertices, then the obstacles'.
+struct ContactPair {
+  std::array<int, 4> vertices;
+  PairKind kind = PairKind::point_triangle;
+  int obstacle = -1;          ///< index in the contact model; -1 for two primitives of the cloth
+  double weight = 0;          ///< area weight of the pair's energy [m²]
+  double dhat = 0;            ///< d̂ of the pair, below which its barrier acts [m]
+  double offset = 0;          ///< a rounded obstacle's radius: gap = distance - offset [m]
+  double mollifier = 0;       ///< edge_edge, edge_end: ε of the mollifier, |u × v|² [m⁴]
+  double friction = 0;        ///< μ
+  bool at_rim = false;        ///< a cloth edge at a sharp edge of an obstacle (RimContact)
+  int surface_triangle = -1;  ///< of a cloth vertex and an obstacle triangle: this triangle; else -1
+};
+
+/// The linear motion of the cloth from x0 to x1 and of the obstacles' vertices, searched for pairs within d̂.
+struct LinearMotion {
+  const Positions& x0;
+  const Positions& x1;
+  double dhat;  ///< d̂ [m]
+  const Positions &obstacles0, &obstacles1;
+};
 
 /// The positions of a pair's vertices, as columns [m].
 using PairPositions = Eigen::Matrix<double, 3, 4>;
@@ -49,6 +78,13 @@ inline Eigen::Vector3d connection(const PairPositions& x, const Closest& closest
   Eigen::Vector3d r = Eigen::Vector3d::Zero();
   for (int k = 1; k < 4; ++k) r += closest.c[k] * (x.col(k) - x.col(0));
   return r;
+}
+
+/// Whether the pair's gap at x is below its d̂.
+inline bool is_within_dhat(const ContactPair& pair, const PairPositions& x) {
+  const double reach = pair.offset + pair.dhat;
+  return box_distance(pair.kind, x) < reach &&
+         connection(x, closest(pair.kind, x)).squaredNorm() < reach * reach;
 }
 
 /// r / |r|, orthogonalised against the free directions: r itself has few significant digits if the gap is

@@ -5,8 +5,8 @@
 
 #include "core/numerics/collision_detection/intersections.h"
 #include "core/numerics/collision_detection/surface_search.h"
-#include "core/numerics/contact/contact_kernel.h"
-#include "core/numerics/contact/contact_stack.h"
+#include "core/numerics/contact/additive_ccd.h"
+#include "core/numerics/contact/rim_contacts.h"
 #include "core/numerics/contact/surface_contacts.h"
 #include "plugins/contact/ipc/obstacle_trajectory.h"
 
@@ -64,17 +64,12 @@ class BoundIpc::Candidates final : public CollisionCandidates {
 
   std::unique_ptr<Collisions> build_collisions(const Positions& x) const override {
     const BarrierParameters& barrier = contact_.barrier_;
-    auto pairs = make_pair_contacts(x, obstacles(), barrier_, barrier);
-    if (vertex_triangles_.empty() && rims_.empty()) return pairs;
-    std::vector<std::unique_ptr<Collisions>> sets;
-    sets.push_back(make_surface_contacts(
+    return make_collisions(
+        barrier,
         find_surface_contacts(x, contact_.obstacles_, contact_.obstacle_tree_->coefficients,
                               vertex_triangles_, contact_.cloth_.vertex_area, contact_.p_.friction,
                               barrier.dhat),
-        barrier));
-    if (!rims_.empty()) sets.push_back(make_rim_contacts(x, obstacles(), rims_, barrier));
-    sets.push_back(std::move(pairs));
-    return std::make_unique<CollisionStack>(std::move(sets));
+        find_rim_contacts(x, obstacles(), rims_), find_pair_contacts(x, obstacles(), barrier_));
   }
 
   /// At x0, over all pairs but neighbours, whose d̂ is 0: on vertices of CCD-only pairs with an obstacle the
@@ -84,9 +79,8 @@ class BoundIpc::Candidates final : public CollisionCandidates {
     const ContactPair* nearest = nullptr;
     for (const std::vector<ContactPair>* pairs : {&barrier_, &rims_, &ccd_only_})
       for (const ContactPair& pair : *pairs) {
-        const PairPositions at = positions_of(pair, x0_, obstacles());
-        if (!is_within_dhat(pair, at)) continue;
-        const double gap = contact_at(pair, at).gap();
+        if (!is_within_dhat(pair, positions_of(pair, x0_, obstacles()))) continue;
+        const double gap = PairContact(pair, x0_, obstacles()).gap();
         if (gap >= smallest.gap) continue;
         smallest.gap = gap;
         nearest = &pair;
@@ -102,7 +96,7 @@ class BoundIpc::Candidates final : public CollisionCandidates {
   const BoundIpc& contact_;
   Positions x0_, x1_;  // the part of the motion that was searched
   double fraction_;    // of the requested motion
-  // Pairs with a barrier, pairs at rims with theirs (make_rim_contacts), and pairs for CCD only.
+  // Pairs with a barrier, pairs at rims with theirs (RimContact), and pairs for CCD only.
   std::vector<ContactPair> barrier_, rims_, ccd_only_;
   // Cloth vertices with the obstacle triangles that may contribute to their barrier.
   std::vector<VertexTriangleCandidate> vertex_triangles_;

@@ -7,7 +7,7 @@
 #include "core/kernel/interfaces/contact_model.h"
 #include "core/numerics/collision_detection/broad_phase.h"
 #include "core/numerics/contact/candidates.h"
-#include "core/numerics/contact/pair_contacts.h"
+#include "core/numerics/contact/pair_geometry.h"
 #include "plugins/contact/ipc/ipc.h"
 #include "plugins/contact/ipc/rest_layers.h"
 

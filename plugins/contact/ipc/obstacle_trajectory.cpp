@@ -11,7 +11,6 @@
 #include "core/kernel/threads/parallel.h"
 #include "core/numerics/collision_detection/nonlinear_ccd.h"
 #include "core/numerics/contact/candidates.h"
-#include "core/numerics/contact/pair_geometry.h"
 #include "core/numerics/linear_algebra/interpolate.h"
 #include "core/numerics/mesh/rotation.h"
 #include "core/numerics/mesh/same_entries.h"

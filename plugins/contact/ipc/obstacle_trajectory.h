@@ -3,7 +3,7 @@
 #include <string>
 
 #include "core/numerics/collision_detection/broad_phase.h"
-#include "core/numerics/contact/pair_contacts.h"
+#include "core/numerics/contact/pair_geometry.h"
 #include "plugins/contact/ipc/obstacle.h"
 
 namespace drape::ipc {

@@ -10,7 +10,6 @@
 #include "core/kernel/files/message_text.h"
 #include "core/kernel/threads/parallel.h"
 #include "core/numerics/contact/candidates.h"
-#include "core/numerics/contact/pair_geometry.h"
 #include "core/numerics/mesh/disjoint_sets.h"
 
 namespace drape::ipc {

@@ -7,7 +7,7 @@
 
 #include "core/kernel/interfaces/level.h"
 #include "core/numerics/collision_detection/surface.h"
-#include "core/numerics/contact/pair_contacts.h"
+#include "core/numerics/contact/pair_geometry.h"
 
 namespace drape::ipc {
 

@@ -2,9 +2,7 @@
 #include <random>
 #include <set>
 
-#include "core/numerics/contact/contact_stack.h"
-#include "core/numerics/contact/pair_contacts.h"
-#include "core/numerics/contact/pair_geometry.h"
+#include "core/numerics/contact/rim_contacts.h"
 #include "core/numerics/contact_forces/contact_stiffness.h"
 #include "core/numerics/contact_forces/friction.h"
 #include "core/numerics/model/required.h"
@@ -106,10 +104,8 @@ std::unique_ptr<Collisions> brute_force(const Level& level, const Obstacles& obs
     }
   }
   REQUIRE(!at_rims.empty());
-  std::vector<std::unique_ptr<Collisions>> sets;
-  sets.push_back(make_rim_contacts(x, obstacles.vertices, at_rims, barrier));
-  sets.push_back(make_pair_contacts(x, obstacles.vertices, others, barrier));
-  return std::make_unique<CollisionStack>(std::move(sets));
+  return make_collisions(barrier, find_rim_contacts(x, obstacles.vertices, at_rims),
+                         find_pair_contacts(x, obstacles.vertices, others));
 }
 
 }  // namespace

@@ -189,7 +189,7 @@ TEST_CASE("surface: the nearest feature's coefficient is at least 1, and frictio
       CHECK(nearest.coefficient >= 1 - 1e-9);
       least = std::min(least, scene.value(p) / barrier(distance / dhat).value);
       double sum = 0, net = 0;
-      for (const double pressure : pressures_of(features, dhat)) {
+      for (const double pressure : scene.contact(p).pressures(dhat)) {
         CHECK(pressure >= 0);
         sum += pressure;
       }

@@ -5,7 +5,7 @@
 #include "core/kernel/interfaces/contact_model.h"
 #include "core/kernel/threads/parallel.h"
 #include "core/numerics/collision_detection/nonlinear_ccd.h"
-#include "core/numerics/contact/contact_stack.h"
+#include "core/numerics/contact/rim_contacts.h"
 #include "core/numerics/contact/vertex_contacts.h"
 #include "plugins/contact/shapes/separation.h"
 #include "plugins/contact/shapes/shape_scene.h"
@@ -38,16 +38,9 @@ class ShapesCandidates final : public CollisionCandidates {
   StepLimit max_step() const override { return limit_; }
 
   std::unique_ptr<Collisions> build_collisions(const Positions& x) const override {
-    std::vector<std::unique_ptr<Collisions>> parts;
-    if (!candidates_.vertices.empty())
-      parts.push_back(make_vertex_contacts(vertex_contacts(x), scene_->barrier));
-    if (!candidates_.pairs.empty())
-      parts.push_back(make_pair_contacts(x, scene_->obstacle_points, candidates_.pairs, scene_->barrier));
-    if (!candidates_.curved_sides.empty())
-      parts.push_back(
-          make_rim_contacts(x, scene_->obstacle_points, candidates_.curved_sides, scene_->barrier));
-    if (parts.size() == 1) return std::move(parts.front());
-    return std::make_unique<CollisionStack>(std::move(parts));
+    return make_collisions(scene_->barrier, vertex_contacts(x),
+                           find_pair_contacts(x, scene_->obstacle_points, candidates_.pairs),
+                           find_rim_contacts(x, scene_->obstacle_points, candidates_.curved_sides));
   }
 
  private:

@@ -6,7 +6,7 @@
 #include "core/kernel/interfaces/contact_model.h"
 #include "core/numerics/collision_detection/box_tree.h"
 #include "core/numerics/collision_detection/surface.h"
-#include "core/numerics/contact/pair_contacts.h"
+#include "core/numerics/contact/pair_geometry.h"
 #include "plugins/contact/shapes/features.h"
 #include "plugins/contact/shapes/separation.h"
 
@@ -53,7 +53,7 @@ std::vector<SolidPair> find_triangles(const ShapeScene& scene, const Positions& 
 struct CandidatePairs {
   std::vector<SolidPair> vertices;
   std::vector<ContactPair> pairs;
-  std::vector<ContactPair> curved_sides;  ///< a cylinder's axis and an edge of the cloth (make_rim_contacts)
+  std::vector<ContactPair> curved_sides;  ///< a cylinder's axis and an edge of the cloth (RimContact)
 };
 
 /// The candidate pairs of these triangles during the linear motion from x0 to x1.

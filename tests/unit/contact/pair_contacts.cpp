@@ -50,7 +50,7 @@ struct OnePair {
     return least;
   }
   std::unique_ptr<Collisions> set(const Positions& y) const {
-    return make_pair_contacts(y, obstacle, {pair}, parameters);
+    return make_collisions(parameters, find_pair_contacts(y, obstacle, {pair}));
   }
   std::unique_ptr<Collisions> set() const { return set(x); }
   double value() const { return set()->value(x); }

@@ -4,7 +4,8 @@
 #include <catch2/catch.hpp>
 #include <random>
 
-#include "core/numerics/contact/pair_geometry.h"
+#include "core/numerics/contact/additive_ccd.h"
+#include "core/numerics/contact/pair_contacts.h"
 #include "tests/support/decompositions.h"
 #include "tests/support/evaluate.h"
 

@@ -1,3 +1,5 @@
+#include "core/numerics/contact/rim_contacts.h"
+
 #include "tests/support/random.h"
 #include "tests/unit/contact/pairs.h"
 
@@ -17,7 +19,7 @@ std::unique_ptr<Collisions> with_rim(const Positions& x, double mollifier = 0) {
   pair.friction = 0.25;
   pair.obstacle = 0;
   pair.at_rim = true;
-  return make_rim_contacts(x, rim, {pair}, {reach, 3, 1e-4});
+  return make_collisions(BarrierParameters{reach, 3, 1e-4}, find_rim_contacts(x, rim, {pair}));
 }
 
 /// A cloth edge of 5 cm at a height over the rim, which it passes by `past`.
