@@ -98,7 +98,7 @@ class ObstacleTrajectory {
       std::vector<double> fractions(found_.size());
       parallel_for(static_cast<int>(fractions.size()), 64, [&](int begin, int stop) {
         for (int i = begin; i < stop; ++i)
-          fractions[i] = PairOnSegment(found_[i], x_, segment, after_).advance(min_gap, max_iterations);
+          fractions[i] = advance_pair(found_[i], x_, segment, after_, min_gap, max_iterations);
       });
       const auto smallest = std::min_element(fractions.begin(), fractions.end());
       if (smallest != fractions.end() && *smallest < 1)

@@ -57,76 +57,53 @@ struct TrajectorySegment {
   }
 };
 
-/// A pair of the cloth at rest and an obstacle on a segment of its trajectory.
-class PairOnSegment {
- public:
-  PairOnSegment(const ContactPair& pair, const Positions& x, const TrajectorySegment& segment,
-                const Obstacles& obstacles)
-      : pair_(pair), segment_(segment), cloth_count_(static_cast<int>(x.rows())) {
-    for (int k = 0; k < 4; ++k) {
-      const int v = pair.vertices[k] - cloth_count_;
-      if (v < 0) {
-        start_.col(k) = x.row(pair.vertices[k]);
-      } else {
-        body_ = obstacles.body_of(v);
-        start_.col(k) = segment.begin.row(v);
-        acceleration_bound_ = std::max(acceleration_bound_, segment.acceleration_bound(body_, v));
-        chord_ = std::max(chord_, (segment.end.row(v) - segment.begin.row(v)).norm());
-      }
+/// The part of a segment of the obstacles' trajectory on which a pair of the cloth at rest at x and an
+/// obstacle keeps a gap of at least `min_gap` [m].
+inline double advance_pair(const ContactPair& pair, const Positions& x, const TrajectorySegment& segment,
+                           const Obstacles& obstacles, double min_gap, int max_iterations) {
+  const int n = static_cast<int>(x.rows()), first_end = first_primitive_size(pair.kind);
+  const PairPositions start = positions_of(pair, x, segment.begin);
+  int body = 0;                                // the obstacle's
+  double acceleration_bound = 0, longest = 0;  // of the obstacle's vertices and of their chords [m]
+  for (const int vertex : pair.vertices)
+    if (const int v = vertex - n; v >= 0) {
+      body = obstacles.body_of(v);
+      acceleration_bound = std::max(acceleration_bound, segment.acceleration_bound(body, v));
+      longest = std::max(longest, (segment.end.row(v) - segment.begin.row(v)).norm());
     }
-    rounding_ = 32 * std::numeric_limits<double>::epsilon() *
-                (start_.cwiseAbs().maxCoeff() + chord_ + acceleration_bound_);
-  }
+  // A bound on the round-off of a distance, with a wide margin [m].
+  const double rounding = 32 * std::numeric_limits<double>::epsilon() *
+                          (start.cwiseAbs().maxCoeff() + longest + acceleration_bound);
+  if (box_distance(pair.kind, start) - rounding >= min_gap + longest + acceleration_bound / 8) return 1;
 
-  /// The part of the segment that keeps a gap of at least `min_gap`.
-  double advance(double min_gap, int max_iterations) const {
-    if (box_distance(pair_.kind, start_) - rounding_ >= min_gap + chord_ + acceleration_bound_ / 8) return 1;
-    const auto widest = [&](double t) {
-      const PairPositions now = at(t);
-      const Eigen::Vector3d n = separating_direction(now, closest(pair_.kind, now));
-      return SeparatingPlane{n, separation(now, n)};
-    };
-    return nonlinear_ccd(
-        widest, [&](const Eigen::Vector3d& n, double t) { return separation(at(t), n); }, min_gap,
-        acceleration_bound_, max_iterations);
-  }
-
- private:
-  PairPositions at(double t) const {
-    PairPositions now = start_;
-    if (t == 0) return now;
-    if (t == 1) {
-      for (int k = 0; k < 4; ++k)
-        if (const int v = pair_.vertices[k] - cloth_count_; v >= 0) now.col(k) = segment_.end.row(v);
-      return now;
-    }
-    const Eigen::Matrix3d linear = segment_.linear(body_, t);
-    const Eigen::Vector3d translate = segment_.translate(body_, t);
+  const auto at = [&](double t) -> PairPositions {
+    if (t == 0) return start;
+    if (t == 1) return positions_of(pair, x, segment.end);
+    PairPositions now = start;
+    const Eigen::Matrix3d linear = segment.linear(body, t);
+    const Eigen::Vector3d translate = segment.translate(body, t);
     for (int k = 0; k < 4; ++k)
-      if (const int v = pair_.vertices[k] - cloth_count_; v >= 0)
+      if (const int v = pair.vertices[k] - n; v >= 0)
         now.col(k) =
-            linear * interpolate<Eigen::Vector3d>(segment_.local_begin.row(v), segment_.local_end.row(v), t) +
+            linear * interpolate<Eigen::Vector3d>(segment.local_begin.row(v), segment.local_end.row(v), t) +
             translate;
     return now;
-  }
-
-  /// The separation along n, which points from the second primitive to the first.
-  double separation(const PairPositions& now, const Eigen::Vector3d& n) const {
+  };
+  // Along a normal that points from the second primitive to the first.
+  const auto separation = [&](const PairPositions& now, const Eigen::Vector3d& normal) {
     double smallest = std::numeric_limits<double>::infinity();
-    for (int a = 0; a < first_primitive_size(pair_.kind); ++a)
-      for (int b = first_primitive_size(pair_.kind); b < 4; ++b)
-        smallest = std::min(smallest, n.dot(now.col(a) - now.col(b)));
-    return smallest - rounding_;
-  }
-
-  const ContactPair& pair_;
-  const TrajectorySegment& segment_;
-  int cloth_count_;
-  int body_ = 0;                   // the obstacle's
-  PairPositions start_;            // at t = 0 [m]
-  double acceleration_bound_ = 0;  // of the obstacle's vertices [m]
-  double chord_ = 0;               // the longest of their chords [m]
-  double rounding_;                // bound on the round-off of a distance, with a wide margin [m]
-};
+    for (int a = 0; a < first_end; ++a)
+      for (int b = first_end; b < 4; ++b) smallest = std::min(smallest, normal.dot(now.col(a) - now.col(b)));
+    return smallest - rounding;
+  };
+  const auto widest = [&](double t) {
+    const PairPositions now = at(t);
+    const Eigen::Vector3d normal = separating_direction(now, closest(pair.kind, now));
+    return SeparatingPlane{normal, separation(now, normal)};
+  };
+  return nonlinear_ccd(
+      widest, [&](const Eigen::Vector3d& normal, double t) { return separation(at(t), normal); }, min_gap,
+      acceleration_bound, max_iterations);
+}
 
 }  // namespace drape::ipc
