@@ -25,15 +25,14 @@ struct ContactBlocks {
 /// All collisions of a contact model at one state: its contacts of each kind, in order. Sums, threads, and
 /// where blocks and friction go live here for all kinds. A Kind is one contact with its barrier,
 ///
-///     static constexpr int columns;                           // the most cloth vertices that it has
-///     std::array<int, 4> vertices() const;                    // its cloth vertices, -1 for others
-///     double gap() const;                                     // [m]
-///     void add_energy(const BarrierParameters& p, double& sum) const;   // over unit(p)
-///     static double unit(const BarrierParameters& p);         // κ, or κ d̂
-///     void add_gradient(const BarrierParameters& p, Positions& g) const;                      // [N]
-///     static void hessians(std::span<const Kind> contacts, const BarrierParameters& p, Projection
-///     projection,
-///                          ContactBlocks<columns>* blocks);   // of each contact, projected [N/m]
+///     static constexpr int columns;                                    // the most cloth vertices of one
+///     std::array<int, 4> vertices() const;                             // of the cloth, -1 for others
+///     double gap() const;                                              // [m]
+///     void add_energy(const BarrierParameters& p, double& sum) const;  // over unit(p)
+///     static double unit(const BarrierParameters& p);                  // κ, or κ d̂
+///     void add_gradient(const BarrierParameters& p, Positions& g) const;
+///     static void hessians(std::span<const Kind> contacts, const BarrierParameters& p,
+///                          Projection projection, ContactBlocks<columns>* blocks);  // of each, projected
 ///     void add_normal_forces(const BarrierParameters& p, NormalForces& forces) const;
 ///     void append_friction(const BarrierParameters& p, std::vector<FrictionContact>& all) const;
 ///

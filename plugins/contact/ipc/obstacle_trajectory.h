@@ -2,6 +2,7 @@
 
 #include <string>
 
+#include "core/kernel/interfaces/energy.h"
 #include "core/numerics/collision_detection/broad_phase.h"
 #include "core/numerics/contact/pair_geometry.h"
 #include "plugins/contact/ipc/obstacle.h"

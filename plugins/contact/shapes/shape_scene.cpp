@@ -6,7 +6,6 @@
 #include <numeric>
 
 #include "core/kernel/threads/parallel.h"
-#include "core/numerics/contact_forces/barrier.h"
 
 namespace drape::shapes {
 

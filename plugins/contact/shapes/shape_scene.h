@@ -7,6 +7,7 @@
 #include "core/numerics/collision_detection/box_tree.h"
 #include "core/numerics/collision_detection/surface.h"
 #include "core/numerics/contact/pair_geometry.h"
+#include "core/numerics/contact_forces/barrier.h"
 #include "plugins/contact/shapes/features.h"
 #include "plugins/contact/shapes/separation.h"
 
