@@ -74,6 +74,24 @@ int border_loops(const TriangleMesh& mesh) {
   return loops;
 }
 
+/// Writes a garment of this tree on a made body, with its arms, into a folder.
+void write_dressed(const Scratch& folder, const std::string& body, const std::string& pattern,
+                   double edge_length, int levels) {
+  const std::filesystem::path garments = folders::source() / "configs/garments";
+  const Ended made =
+      Command((garments / "make_body").string() + " --form " + body + " --cell 0.03 body.obj", folder.path)
+          .wait();
+  INFO(made.err);
+  REQUIRE(made.exit_code == 0);
+  folder.write(
+      "e.yaml",
+      "name: garment\nlevels: " + std::to_string(levels) + "\ncloth: {shape: pattern, file: " +
+          (garments / (pattern + ".yaml")).string() + ", edge_length: " + std::to_string(edge_length) +
+          "}\nmaterial: {density: 300, thickness: 4e-4, membrane_modulus: 8e5, "
+          "bending_modulus: 2e5}\nenergies: [neo_hookean, hinge, gravity]\ncontact: {type: ipc, dhat: "
+          "0.002}\nfriction: 0.4\ndress: {body: body.obj, up: y}\nmethods: {pcs: {}}\nmetrics: []\n");
+}
+
 }  // namespace
 
 TEST_CASE("An open body has the same energies from every kind of file, in any unit and with any axis up") {
@@ -122,18 +140,8 @@ TEST_CASE("An open body has the same energies from every kind of file, in any un
 
 TEST_CASE("A shirt is dressed on a made body that is cut at neck, wrists and thighs, beyond its ends") {
   const Scratch folder;
-  const std::string script = (folders::source() / "configs/garments/make_body").string();
-  const Ended made = Command(script + " --form --cut --cell 0.03 body.obj", folder.path).wait();
-  INFO(made.err);
-  REQUIRE(made.exit_code == 0);
+  write_dressed(folder, "--cut", "shirt", 0.05, 2);
   CHECK(border_loops(read_mesh((folder / "body.obj").string())) == 5);
-  folder.write(
-      "e.yaml",
-      "name: shirt\nlevels: 2\ncloth: {shape: pattern, file: " +
-          (folders::source() / "configs/garments/shirt.yaml").string() +
-          ", edge_length: 0.05}\nmaterial: {density: 300, thickness: 4e-4, membrane_modulus: 8e5, "
-          "bending_modulus: 2e5}\nenergies: [neo_hookean, hinge, gravity]\ncontact: {type: ipc, dhat: "
-          "0.002}\nfriction: 0.4\ndress: {body: body.obj, up: y}\nmethods: {pcs: {}}\nmetrics: []\n");
   const Solved s = solved(experiment_in(folder / "e.yaml"));
   REQUIRE(s.levels.size() == 2);
   for (const LevelResult& level : s.levels) {
@@ -149,4 +157,10 @@ TEST_CASE("A shirt is dressed on a made body that is cut at neck, wrists and thi
     for (const double side : {-1, 1}) CHECK(farthest({side * 0.548, 0.01, 0.947}, {side, 0, -1}) > 0.02);
     CHECK(farthest({0, 0, 1.44}, {0, 0, 1}) > 0.01);
   }
+}
+
+TEST_CASE("A pattern that is meshed finely starts smoothed over as long a way as a coarse one") {
+  const Scratch folder;
+  write_dressed(folder, "", "tshirt", 0.007, 1);
+  CHECK(scene_of(experiment_in(folder / "e.yaml"))->dressing->smoothing > 4);  // as far as coarse meshes need
 }

@@ -1,6 +1,7 @@
 #include "core/app/scene/dressing.h"
 
 #include <algorithm>
+#include <array>
 #include <limits>
 #include <map>
 #include <set>
@@ -16,13 +17,19 @@ namespace drape {
 
 namespace {
 
-/// Times of the smoothing and of the contraction that are tried.
-constexpr double smoothings[] = {1, 0.3, 2, 4};
+/// Shapes of a garment that are tried: one after the other, until one does not cross itself however it is
+/// smoothed.
+struct Shaping {
+  /// Way along the normals [median edges]. A lining and its outer cloth have their wrong sides against each
+  /// other, so that each moves off the other; their seams lie at the mean of the panels' places, which is the
+  /// same line for both.
+  double inflation = 0;
+  /// Times of the smoothing, which reaches as many edges as their root: finer meshes need longer ones.
+  std::array<double, 4> smoothings;
+};
+constexpr Shaping shapings[] = {{0, {1, 0.3, 2, 4}}, {0.2, {1, 0.3, 2, 4}}, {0, {8, 16, 32, 64}}};
+/// Times of the contraction that are tried.
 constexpr double contractions[] = {0.009, 0.018, 0.028, 0.05};
-/// Ways along the normals [median edges], tried if the cloth crosses itself however it is smoothed. A lining
-/// and its outer cloth have their wrong sides against each other, so that each moves off the other; their
-/// seams lie at the mean of the panels' places, which is the same line for both.
-constexpr double inflations[] = {0, 0.2};
 
 /// A body that fits stretches the placed pieces, which are much longer than they are sewn, by less than a
 /// hundredth while it grows.
@@ -111,10 +118,10 @@ void find_dressing_start(const Experiment& e, Scene& scene, ConfigErrors& errors
   if (body.sizes().norm() < smallest_body * own.sizes().norm()) return refuse("far too large for");
   std::vector<Intersection> least;
   bool inside = false;  // of the starts without intersections, which smoothing has drawn into the body
-  for (const double inflation : inflations) {
-    const double way = inflation * median_edge(level);
+  for (const Shaping& shaping : shapings) {
+    const double way = shaping.inflation * median_edge(level);
     std::vector<DressingStart> shapes;
-    for (const double t : smoothings) {
+    for (const double t : shaping.smoothings) {
       const Positions smooth = smoothed(level.rest.triangles, scene.starts[0], t);
       shapes.push_back({0, t, way, {inflated({smooth, level.rest.triangles}, way)}});
     }
