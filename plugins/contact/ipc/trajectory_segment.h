@@ -76,10 +76,10 @@ inline double advance_pair(const ContactPair& pair, const Positions& x, const Tr
                           (start.cwiseAbs().maxCoeff() + longest + acceleration_bound);
   if (box_distance(pair.kind, start) - rounding >= min_gap + longest + acceleration_bound / 8) return 1;
 
-  const auto at = [&](double t) -> PairPositions {
-    if (t == 0) return start;
-    if (t == 1) return positions_of(pair, x, segment.end);
+  const auto at = [&](double t) {
     PairPositions now = start;
+    if (t == 0) return now;
+    if (t == 1) return positions_of(pair, x, segment.end);
     const Eigen::Matrix3d linear = segment.linear(body, t);
     const Eigen::Vector3d translate = segment.translate(body, t);
     for (int k = 0; k < 4; ++k)
