@@ -55,7 +55,6 @@ struct BoundFloor : drape::BoundContact {
         found.push_back({"cloth vertex " + std::to_string(i), "the floor", x.row(i).transpose()});
     return found;
   }
-  std::vector<drape::TriangleMesh> obstacles() const override { return {}; }
 
   const Floor floor;
 };

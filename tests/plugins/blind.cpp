@@ -37,7 +37,6 @@ struct BoundBlind final : drape::BoundContact {
     if (x.col(2).minCoeff(&lowest) > height) return {};
     return {{"cloth vertex " + std::to_string(lowest), "floor: plane", x.row(lowest).transpose()}};
   }
-  std::vector<drape::TriangleMesh> obstacles() const override { return {}; }
 };
 
 struct Blind final : drape::ContactModel {

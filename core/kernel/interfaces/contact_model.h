@@ -117,7 +117,8 @@ class BoundContact {
   /// Pairs of primitives that intersect or touch at x. Meshes are tested with exact predicates.
   virtual std::vector<Intersection> intersections(const Positions& x) const = 0;
   /// The obstacles as meshes, in the order of the model's parameters: for drawing, and for pins to follow.
-  virtual std::vector<TriangleMesh> obstacles() const = 0;
+  /// None by default.
+  virtual std::vector<TriangleMesh> obstacles() const { return {}; }
 
   /// d̂, below which the barrier acts [m]; 0 for a model without a barrier.
   virtual double dhat() const { return 0; }
