@@ -4,9 +4,8 @@ namespace drape {
 
 namespace {
 
-/// Solves for which another solver stays in use after cycles have failed, which often suit the next but one
-/// matrix again, or after single precision has.
-constexpr int solves_after_multigrid = 2, solves_after_mixed = 10;
+/// Solves for which another solver stays in use after the preferred one has failed.
+constexpr int fallback_solves = 10;
 /// Vertices from which on multigrid takes less time than a factorisation.
 constexpr int multigrid_from = 20'000;
 
@@ -61,9 +60,8 @@ bool FactorCache::solve(double mass_shift, double step_length, const Positions& 
       const bool has_whole_projection = modification_.blend() == HessianModification::blend_count - 1;
       const bool may_be_definite = has_whole_projection || too_slow_;
       if (solver_ == direct_ || !may_be_definite) return false;
-      const bool was_multigrid = solver_ == LinearSolver::multigrid;
-      fallback_ = was_multigrid ? LinearSolver::mixed : direct_;
-      fallback_solves_ = was_multigrid ? solves_after_multigrid : solves_after_mixed;
+      fallback_ = solver_ == LinearSolver::multigrid ? LinearSolver::mixed : direct_;
+      fallback_solves_ = fallback_solves;
       use(fallback_);
     }
     return true;
