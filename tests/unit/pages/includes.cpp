@@ -104,7 +104,7 @@ TEST_CASE("the tables of core/README.md name every folder of the core") {
     }
 }
 
-TEST_CASE("no include of the core leads to a folder above its own") {
+TEST_CASE("no include of the core leads to a later folder of the tables") {
   const std::vector<std::string> order = folders_of_core();
   int counted = 0;
   for (const fs::path& file : sources_in("core"))
