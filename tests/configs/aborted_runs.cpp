@@ -208,6 +208,18 @@ TEST_CASE("A full disk aborts the run with its own code; once there is room it c
              StartsWith("error: cannot write rows/iterations.csv: "));
 }
 
+TEST_CASE("A complete run that cannot store what it measures is not said to be aborted") {
+  const Scratch folder(small_experiment());
+  drape_ends("run e.yaml --method pcs --quiet --no-report --out out", folder);
+  const Ended full =
+      Command("ulimit -f 4 && exec " + drape_command + " table out --columns preview_rms", folder.path)
+          .wait();
+  CAPTURE(full.err);
+  CHECK_THAT(full.err, Contains("File too large") && Contains("the next report measures") &&
+                           !Contains("aborted") && !Contains("--resume"));
+  CHECK_FALSE(results_in(folder / "out").contains("aborted"));
+}
+
 TEST_CASE("Standard output that is lost is an error, but for a run or a sweep, whose results are elsewhere") {
   if (!fs::exists("/dev/full")) return;
   const Scratch folder(small_experiment());

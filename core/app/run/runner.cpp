@@ -6,6 +6,7 @@
 
 #include "core/app/files/yaml_file.h"
 #include "core/app/report/report.h"
+#include "core/app/report/run_data.h"
 #include "core/app/run/recorder_files.h"
 #include "core/app/run/run_observer.h"
 #include "core/app/scene/scene.h"
@@ -68,6 +69,8 @@ bool with_folder(const RunFolder& folder, const RunOptions& options, const Actio
   } catch (...) {
     cause = message_in_flight();
   }
+  if (!complete_results(folder.path()).is_null())
+    throw RunAborted(cause + "; the results are complete, and the next report measures what is missing");
   record_abort(folder, cause);
   if (options.view) options.view->run_finished("the run was aborted: " + cause);
   throw RunAborted(cause + "; the run is aborted. Once the cause is removed, " + way_on(folder));
