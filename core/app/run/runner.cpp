@@ -69,10 +69,11 @@ bool with_folder(const RunFolder& folder, const RunOptions& options, const Actio
   } catch (...) {
     cause = message_in_flight();
   }
-  if (!complete_results(folder.path()).is_null())
-    throw RunAborted(cause + "; the results are complete, and the next report measures what is missing");
-  record_abort(folder, cause);
+  const bool complete = !complete_results(folder.path()).is_null();
+  if (!complete) record_abort(folder, cause);
   if (options.view) options.view->run_finished("the run was aborted: " + cause);
+  if (complete)
+    throw RunAborted(cause + "; the results are complete, and the next report measures what is missing");
   throw RunAborted(cause + "; the run is aborted. Once the cause is removed, " + way_on(folder));
 }
 
