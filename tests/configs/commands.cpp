@@ -170,11 +170,11 @@ TEST_CASE("reference is docs/reference/configuration.md, which is up to date") {
   CHECK_THAT(page, StartsWith("# Configuration reference\n"));
   for (const auto& entry : test_registry().entries()) CHECK_THAT(page, Contains(entry->name));
   // Newton's parameters once, under their own heading; experiments and methods refer to it.
-  const std::string row = "\n| `step_growth` |";
+  const std::string row = "\n|`step_growth`|";
   REQUIRE(page.find(row) != page.npos);
   CHECK(page.find(row) == page.rfind(row));
   CHECK_THAT(page, !Contains("`newton.step_growth`") && Contains("see [Newton](#newton)"));
-  CHECK_THAT(page, Contains("\n| `handles[].region`, `point`, ") && Contains("| as of `pins[]` |"));
+  CHECK_THAT(page, Contains("\n|`handles[].region`, `point`, ") && Contains("|as of `pins[]`|"));
   INFO("after a change, run: build/bin/drape reference > docs/reference/configuration.md");
   CHECK((text_of(folders::source() / "docs/reference/configuration.md") == page));
 }

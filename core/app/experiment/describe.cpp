@@ -80,13 +80,14 @@ std::string description_of(const Parameter& p) {
 std::string cell(const std::string& text) {
   std::string escaped;
   for (const char c : text) escaped += c == '|' ? "\\|" : c == '\n' ? " " : std::string(1, c);
-  return " " + escaped + " |";
+  return escaped + "|";
 }
 
-/// What a parameter may be: "number [m], > 0".
+/// What a parameter may be: "number [m], > 0". That null is allowed is told by a default of null.
 std::string value_of(const Row& row) {
   const std::string unit = unit_of(*row.parameter);
-  return row.type + (unit.empty() ? "" : " [" + unit + "]") +
+  const std::string type = row.initial == "null" ? row.type.substr(0, row.type.find(" or null")) : row.type;
+  return type + (unit.empty() ? "" : " [" + unit + "]") +
          (row.range.empty() ? "" : (row.parameter->choices.empty() ? ", " : ": ") + row.range);
 }
 
@@ -148,7 +149,7 @@ std::string describe_markdown(const Schema& schema, ReferencePage* page, const s
     const auto found = page->places.find(rows[k].parameter->name + cells[k]);
     return found == page->places.end() || !rows[k].link.empty() ? "" : found->second;
   };
-  std::string text = "| key | value | default | meaning |\n|---|---|---|---|\n";
+  std::string text = "|key|value|default|meaning|\n|---|---|---|---|\n";
   for (std::size_t i = 0, end; i < rows.size(); i = end) {
     const std::string elsewhere = known(i);
     for (end = i + 1; end < rows.size() && place[end] == place[i] && known(end) == elsewhere;) ++end;
@@ -158,7 +159,7 @@ std::string describe_markdown(const Schema& schema, ReferencePage* page, const s
       for (end = i + 1; end < rows.size() && place[end] == place[i] && cells[end] == cells[i];) ++end;
     std::string keys = "`" + rows[i].path + "`";
     for (std::size_t k = i + 1; k < end; ++k) keys += ", `" + rows[k].parameter->name + "`";
-    text += "|" + cell(keys) + (refer ? cell("as of " + elsewhere) + "  |  |" : cells[i]) + "\n";
+    text += "|" + cell(keys) + (refer ? cell("as of " + elsewhere) + "||" : cells[i]) + "\n";
     if (!refer)
       for (std::size_t k = i; k < end; ++k) page->places[rows[k].parameter->name + cells[k]] = place[k];
   }

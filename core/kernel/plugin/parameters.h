@@ -42,7 +42,7 @@ struct Parameter {
   ParameterType type;
   std::string description;  ///< one phrase: what it sets
   std::string unit;         ///< SI; empty or "1" if dimensionless
-  std::string source;       ///< paper and equation, or design note
+  std::string source;       ///< paper and equation, or a page; empty if the parameter is this project's
   double minimum = -std::numeric_limits<double>::infinity();
   double maximum = std::numeric_limits<double>::infinity();
   bool open_minimum = false;  ///< the minimum itself is excluded

@@ -57,16 +57,14 @@ void ShapeParameters::declare(Declaration<ShapeParameters>& d) {
        "centred at the origin; capsule: all points within radius of a segment; half_space: all points "
        "behind a plane")
       .required()
-      .identifies_item()
-      .source("this project");
+      .identifies_item();
   d.declared("rotate").only_with("shape", {"sphere", "box", "capsule", "cylinder"});
   const auto add_length = [&](const char* name, auto member, std::vector<std::string> shapes,
                               const char* description) {
     d.add(name, member, description)
         .unit("m")
         .between(bounds::smallest_length, bounds::largest_length)
-        .only_with("shape", std::move(shapes))
-        .source("this project");
+        .only_with("shape", std::move(shapes));
   };
   add_length("radius", &ShapeParameters::radius, {"sphere", "capsule", "cylinder"},
              "radius of a sphere, capsule or cylinder");
@@ -76,12 +74,11 @@ void ShapeParameters::declare(Declaration<ShapeParameters>& d) {
   d.add("normal", &ShapeParameters::normal,
         "outward normal of a half_space, of any length, in place of `rotate`")
       .between(-1e6, 1e6)
-      .only_with("shape", {"half_space"})
-      .source("this project");
+      .only_with("shape", {"half_space"});
 }
 
 void Shapes::Parameters::declare(Declaration<Parameters>& d) {
-  declare_obstacles(d).description("analytic shapes that the cloth collides with").source("this project");
+  declare_obstacles(d).description("analytic shapes that the cloth collides with");
   declare_contact_parameters(d);
 }
 

@@ -19,13 +19,11 @@ class ConstantLoad final : public Energy {
       d.add("point", &PointForce::point, "point in the rest shape; the nearest vertex receives the force")
           .unit("m")
           .between(-bounds::largest_coordinate, bounds::largest_coordinate)
-          .required()
-          .source("this project");
+          .required();
       d.add("force", &PointForce::force, "total force")
           .unit("N")
           .between(-bounds::largest_load, bounds::largest_load)
-          .required()
-          .source("this project");
+          .required();
     }
   };
 
@@ -35,9 +33,8 @@ class ConstantLoad final : public Energy {
   static void declare(Declaration<ConstantLoad>& d) {
     d.add("force_density", &ConstantLoad::force_density, "force per rest area on the whole cloth")
         .unit("N/m²")
-        .between(-bounds::largest_load, bounds::largest_load)
-        .source("this project");
-    d.add_sections("points", &ConstantLoad::points, "forces on single vertices").source("this project");
+        .between(-bounds::largest_load, bounds::largest_load);
+    d.add_sections("points", &ConstantLoad::points, "forces on single vertices");
   }
 
   EnergyRole role() const override { return EnergyRole::external; }

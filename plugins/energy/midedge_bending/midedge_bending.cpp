@@ -16,14 +16,12 @@ class MidedgeBending final : public Energy {
     d.add("correction_tolerance", &MidedgeBending::correction_tolerance,
           "smallest weight with which a neighbouring dihedral angle corrects an edge's normal, where "
           "the triangles about the edge differ; with 1 normals are plain averages of the triangles'")
-        .between(0, 1)
-        .source("this project");
+        .between(0, 1);
     d.add("sliding_curvature", &MidedgeBending::sliding_curvature,
           "κ0, curvature at which friction between yarns has 71 % of its moment; of cloth with "
           "`bending_hysteresis`")
         .unit("1/m")
-        .between(1e-3, 1e3)
-        .source("this project");
+        .between(1e-3, 1e3);
   }
 
   EnergyRole role() const override { return EnergyRole::bending; }

@@ -136,14 +136,12 @@ class Pressure final : public Energy {
           "pressure along the normal of every triangle; negative for suction")
         .unit("Pa")
         .between(-bounds::largest_load, bounds::largest_load)
-        .required()
-        .source("this project");
+        .required();
     d.add("centre", &Pressure::centre,
           "apex of the cone that closes an open cloth; it has no effect on a pinned border or a closed "
           "mesh")
         .unit("m")
-        .between(-bounds::largest_coordinate, bounds::largest_coordinate)
-        .source("this project");
+        .between(-bounds::largest_coordinate, bounds::largest_coordinate);
   }
 
   EnergyRole role() const override { return EnergyRole::external; }

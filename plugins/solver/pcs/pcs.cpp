@@ -12,7 +12,7 @@ void ProxyInterpolation::declare(Declaration<ProxyInterpolation>& d) {
                        const char* description) {
     d.add_choice(name, value, {{"midpoint", Interpolation::midpoint}, {"refiner", Interpolation::refiner}},
                  description)
-        .source("PCS section " + section + " for refiner; midpoint is a departure (docs/theory/locking.md)");
+        .source("PCS section " + section + "; midpoint: docs/theory/locking.md");
   };
   add("membrane", &ProxyInterpolation::membrane, "4",
       "surface on which stretching is measured: the coarse one, or the refiner's, which locks");
@@ -41,11 +41,11 @@ struct PcsSolver : Progression, ProxyOptions {
                  "how membranes of coarse levels act, unless they are seen by the refiner or, until a level "
                  "relaxes, have no midpoint factor: by their own laws, or as the finest level's do, which "
                  "buckle below the coarse mesh and give way at lone pins")
-        .source("PCS section 4 for plain; effective is a departure (docs/theory/locking.md)");
+        .source("PCS section 4; effective: docs/theory/locking.md");
     d.add_choice("relaxation", &PcsSolver::relaxes, {{"plain", true}, {"none", false}},
                  "what a coarse level minimises after its proxy: its own energy, which makes folds as "
                  "sharp as the level allows, or nothing")
-        .source("PCS section 4 for none; plain is a departure (docs/theory/locking.md)");
+        .source("PCS section 4 has none; plain: docs/theory/locking.md");
     declare_newton(d);
   }
 

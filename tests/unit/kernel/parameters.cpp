@@ -243,10 +243,11 @@ TEST_CASE("a schema describes sections and lists of them") {
         "  limit     number or null    null\n"
         "  density   number            required   kg/m³\n");
   const std::string page = describe_markdown(schema);
-  CHECK(page.find("| `ball.radius` | number [m], > 0 | `0.3` |  |\n") != std::string::npos);
-  CHECK(page.find("| `balls[].radius` | number [m], > 0 |") != std::string::npos);
-  CHECK(page.find("| `word` | text: left, right | `left` | one \\| other [Loop 1987] |\n") != page.npos);
-  CHECK(page.find("| `density` | number [kg/m³] | required |  |\n") != page.npos);
+  CHECK(page.find("|`ball.radius`|number [m], > 0|`0.3`||\n") != std::string::npos);
+  CHECK(page.find("|`balls[].radius`|number [m], > 0|") != std::string::npos);
+  CHECK(page.find("|`word`|text: left, right|`left`|one \\| other [Loop 1987]|\n") != page.npos);
+  CHECK(page.find("|`limit`|number|`null`||\n") != page.npos);
+  CHECK(page.find("|`density`|number [kg/m³]|required||\n") != page.npos);
 
   const std::string ball_json = R"("type": "object", "properties": {"radius": {"type": "number",
     "exclusiveMinimum": 0.0, "description": "[m]", "default": 0.3}}, "additionalProperties": false)";
