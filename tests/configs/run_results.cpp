@@ -33,13 +33,13 @@ std::set<std::string> keys(const nlohmann::json& object) {
   return names;
 }
 
-/// Those of the names that docs/reference/outputs.md does not have in the first column of a table.
+/// Those of the names that docs/reference/outputs.md does not have before the colon of an item of a list.
 std::vector<std::string> undocumented(std::vector<std::string> names) {
   std::istringstream page(text_of(folders::source() / "docs/reference/outputs.md"));
   for (std::string line; std::getline(page, line);)
-    if (line.starts_with("| "))
+    if (line.starts_with("- "))
       std::erase_if(names, [&](const std::string& name) {
-        return line.substr(0, line.find('|', 1)).find('`' + name + '`') != std::string::npos;
+        return line.substr(0, line.find(": ")).find('`' + name + '`') != std::string::npos;
       });
   return names;
 }

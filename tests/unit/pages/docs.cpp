@@ -201,7 +201,7 @@ TEST_CASE("docs/reference/command.md lists every command") {
   for (const auto& command : commands) {
     if (command[1] == "sweep-job") continue;  // hidden: a cluster's jobs run it
     INFO(command[1]);
-    CHECK(page.find("| `drape " + command[1]) != std::string::npos);
+    CHECK(page.find("\n- `drape " + command[1]) != std::string::npos);
   }
   CHECK(commands.size() > 10);
 }
