@@ -470,6 +470,8 @@ VALUES = {
     "sphere.distance": lambda: figure(100 * distance_of_previews(finished("sphere", "pcs")), 2),
     "sphere.distance_ratio": lambda: figure(
         distance_of_previews(finished("sphere", "cascadic")) / distance_of_previews(finished("sphere", "pcs")), 2),
+    "previews, distance_ratio": lambda: lowest_to_highest([1 / ratio for ratio in medians_over(
+        "cascadic", "previews", lambda r: r["preview"]["distance_rms"]).values()]),
     "sphere, previews": lambda: lowest_to_highest(start_by_start("sphere", lambda r: r["preview"]["distance_rms"])),
     "sphere, level 1": lambda: lowest_to_highest(start_by_start("sphere", lambda r: r["level_1"]["distance_rms"])),
     "sphere, time to the preview": lambda: lowest_to_highest(start_by_start("sphere", lambda r: r["seconds_of_preview"])),
