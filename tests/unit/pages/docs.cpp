@@ -64,6 +64,13 @@ std::vector<ShellLine> shell_lines() {
   return found;
 }
 
+/// The documents, and the pages beside the sources.
+std::vector<fs::path> pages_and_readmes() {
+  std::vector<fs::path> found = pages::below({"core", "plugins", "third_party", "benchmarks"}, {".md"});
+  for (const fs::path& page : pages::documents()) found.push_back(page);
+  return found;
+}
+
 /// The sources of the `drape` command.
 std::string cli_sources() { return texts_of_files(pages::below({"core/app/cli"}, {".cpp", ".h"})); }
 
@@ -86,10 +93,8 @@ TEST_CASE("the pages have every exit code, and speak of messages that there are"
 }
 
 TEST_CASE("every link between the pages leads somewhere") {
-  std::vector<fs::path> linked = pages::below({"core", "plugins", "third_party", "benchmarks"}, {".md"});
-  for (const fs::path& page : pages::documents()) linked.push_back(page);
   int links = 0, fragments = 0;
-  for (const fs::path& page : linked)
+  for (const fs::path& page : pages_and_readmes())
     for (const auto& link : matches_in(pages::text_of(page), "\\]\\(([^)#]*)(#([^)]*))?\\)")) {
       const std::string &target = link[1], &fragment = link[3];
       if (target.starts_with("http")) continue;
@@ -192,6 +197,26 @@ TEST_CASE("commands in the pages name commands, options and files that there are
   CHECK(drape_commands > 40);
   CHECK(make_targets > 15);
   CHECK(files > 10);
+}
+
+TEST_CASE("sources that the pages name are there, with their folders or without") {
+  const fs::path root = folders::source();
+  std::set<std::string> sources;
+  for (const char* folder : {"core", "plugins", "tests", "benchmarks", "examples", "viewer", "configs"})
+    for (const auto& entry : fs::recursive_directory_iterator(root / folder))
+      sources.insert(entry.path().filename().string());
+  const std::string path =
+      "(?:core|plugins|tests|benchmarks|examples|viewer|configs|third_party)/[a-z0-9_./-]*";
+  int named = 0;
+  for (const fs::path& page : pages_and_readmes())
+    for (const auto& name :
+         matches_in(pages::text_of(page), "`(" + path + "|[a-z0-9_]+\\.(?:cpp|h|py|mjs))`")) {
+      INFO(page.string() << " names " << name[0]);
+      const bool has_folder = name[1].find('/') != std::string::npos;
+      CHECK((has_folder ? fs::exists(root / name[1]) : sources.contains(name[1])));
+      ++named;
+    }
+  CHECK(named > 100);
 }
 
 TEST_CASE("docs/reference/command.md lists every command") {
