@@ -24,9 +24,8 @@ ParameterHandle natural(ParameterHandle p, double most = bounds::largest_int) { 
 template <class Condition>
 void declare_selection(Declaration<Condition>& d) {
   d.add("region", &VertexSelection::region,
-        "selects vertices by their rest positions: the coarsest level's vertex nearest to `point`, all "
-        "within `radius` of `point`, all in a box, the boundary, indices, those of a piece, the seams of a "
-        "cloth of flat pieces, or the edges of a pattern that have a label")
+        "selects vertices by their rest positions: the coarsest level's nearest to `point`, a ball, a box, "
+        "the boundary, indices, a piece, the seams of flat pieces, or a pattern's edges by their label")
       .choices({"nearest", "ball", "box", "border", "vertices", "piece", "seam", "label"});
   coordinate(
       d.add("point", &VertexSelection::point, "point of `nearest`, centre of `ball`, in the rest shape"))
@@ -50,8 +49,8 @@ void declare_selection(Declaration<Condition>& d) {
   d.add("label", &VertexSelection::label, "label of edges of the cloth's sewing pattern")
       .only_with("region", {"label"});
   natural(d.add("label_edges", &VertexSelection::label_edges,
-                "the ends of the label's edges on the coarsest level, two by two, which drape writes to the "
-                "config of a run, whose cloth is no pattern"))
+                "written by drape to a run's config, whose cloth is no pattern: the ends of the label's "
+                "edges on the coarsest level, two by two"))
       .only_with("region", {"label"});
   coordinate(d.add("translate", &VertexSelection::translate,
                    "translation from the rest position to the target, applied after `rotate`; without both, "
@@ -76,8 +75,8 @@ void MaterialParameters::declare(Declaration<MaterialParameters>& d) {
         "a fabric whose figures stand for the keys that are not written here: a name (`drape fabric` lists "
         "them), or {file: fabrics.csv, row: NAME}");
   d.add("from_fabric", &MaterialParameters::from_fabric,
-        "the `fabric` that gave numbers of this material, which drape writes to the config of a run, where "
-        "all of them stand; a record, from which nothing is taken");
+        "written by drape to a run's config: the `fabric` that gave numbers of this material, which all "
+        "stand there");
 }
 
 void GrainRegionParameters::declare(Declaration<GrainRegionParameters>& d) {
@@ -102,8 +101,7 @@ void SeamParameters::declare(Declaration<SeamParameters>& d) {
         "dihedral angle of the fold along a seam at rest, positive where the cloth's front is outside")
       .unit("degree")
       .between(-180, 180);
-  d.add("stiffness", &SeamParameters::stiffness,
-        "factor on the stiffness of the fold along a seam: a pressed seam is stiffer than the cloth")
+  d.add("stiffness", &SeamParameters::stiffness, "factor on the stiffness of the fold along a seam")
       .between(0, bounds::largest_scale);
 }
 
@@ -146,16 +144,14 @@ void ClothParameters::declare(Declaration<ClothParameters>& d) {
         "in space")
       .choices({"mm", "cm", "m", "inch", "normalised"})
       .only_with("rest", {"uv"});
-  d.add("join", &ClothParameters::join,
-        "vertices nearer to each other than this become one, as those which an exporter wrote twice along a "
-        "seam; 0 joins none")
+  d.add("join", &ClothParameters::join, "vertices nearer to each other than this become one; 0 joins none")
       .unit("m")
       .between(0, 0.1)
       .only_with("shape", {"file"});
   d.add_section("seams", &ClothParameters::seams, "the folds along the seams of flat pieces");
-  d.add_section("as_read", &ClothParameters::as_read,
-                "how the cloth's file was read, which drape writes to the config of a run for `drape export "
-                "--as-read`; a record, from which nothing else is taken");
+  d.add_section(
+      "as_read", &ClothParameters::as_read,
+      "written by drape to a run's config, for `drape export --as-read`: how the cloth's file was read");
   d.add("triangulation", &ClothParameters::triangulation,
         "triangulation of a square or rectangle; discs and polygons are Delaunay meshes")
       .choices({"one_way", "criss_cross", "equilateral", "random"})
@@ -288,10 +284,8 @@ void ExperimentParameters::declare(Declaration<ExperimentParameters>& d) {
                  "Dirichlet boundary conditions: vertices at prescribed positions (hard positions)");
   d.add_sections("handles", &ExperimentParameters::handles,
                  "penalty boundary conditions: vertices on springs to their targets (soft positions)");
-  d.add_section(
-       "dress", &ExperimentParameters::dress,
-       "a garment of flat pieces is put on a body: the body grows inside it, the pieces are sewn, and "
-       "weight and friction come last; the name of the body's file is a shorthand")
+  d.add_section("dress", &ExperimentParameters::dress,
+                "puts a garment of flat pieces on a body; the name of the body's file is a shorthand")
       .shorthand("body");
   d.add_section(
       "schedule", &ExperimentParameters::schedule,

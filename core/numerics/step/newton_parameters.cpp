@@ -35,8 +35,8 @@ void NewtonParameters::declare(Declaration<NewtonParameters>& d) {
       .at_most(1e12)
       .source("docs/theory/method.md section 2");
   d.add("decrement_tolerance", &NewtonParameters::decrement_tolerance,
-        "also required of the largest of the last three decrements; 0 disables it. The decrement is "
-        "‖p‖ / (h √n), p the Newton direction, h the first step's: a velocity, not √(gᵀH⁻¹g)")
+        "also required of the largest of the last three decrements, ‖p‖ / (h √n) with the Newton direction p "
+        "and the first step's h; 0 disables it")
       .unit("m/s")
       .between(0, 1e9)
       .source("Li et al. 2021 (C-IPC)");
@@ -44,12 +44,10 @@ void NewtonParameters::declare(Declaration<NewtonParameters>& d) {
                {{"clamp", Projection::clamp}, {"absolute", Projection::absolute}, {"none", Projection::none}},
                "treatment of negative eigenvalues of an element's Hessian")
       .source("Teran et al. 2005; Chen et al. 2024 for absolute");
-  d.add_choice(
-       "psd_blend", &NewtonParameters::psd_blend,
-       {{"full", PsdBlend::full}, {"adaptive", PsdBlend::adaptive}},
-       "fraction of the projection in the matrix: full (projected Newton), or adaptive, which lowers it "
-       "after full steps and raises it until the matrix is positive definite, and so approaches the exact "
-       "Hessian near an equilibrium")
+  d.add_choice("psd_blend", &NewtonParameters::psd_blend,
+               {{"full", PsdBlend::full}, {"adaptive", PsdBlend::adaptive}},
+               "fraction of the projection in the matrix: full (projected Newton), or adaptive, which lowers "
+               "it after full steps and raises it until the matrix is positive definite")
       .source("departure from the paper");
   d.add_choice(
        "linear_solver", &NewtonParameters::linear_solver,
@@ -58,19 +56,17 @@ void NewtonParameters::declare(Declaration<NewtonParameters>& d) {
         {"mixed", LinearSolver::mixed},
         {"supernodal", LinearSolver::supernodal},
         {"cholmod", LinearSolver::cholmod}},
-       "automatic: multigrid on levels of 20,000 vertices and more below which there are coarser ones, "
-       "mixed on others. multigrid: conjugate gradients with V-cycles over the hierarchy's meshes; where "
-       "that fails, mixed. mixed: conjugate gradients with drape's Cholesky factor in single precision, or "
-       "in double where the matrix needs it. supernodal: that factor in double precision. cholmod: "
-       "CHOLMOD's, whose speed, threads and bits depend on the installed BLAS")
+       "automatic: multigrid on levels of 20,000 vertices and more below which there are coarser ones, mixed "
+       "on others. multigrid: conjugate gradients with V-cycles over the hierarchy's meshes; where that "
+       "fails, mixed. mixed: conjugate gradients with drape's Cholesky factor in single precision. "
+       "supernodal: that factor in double precision. cholmod: CHOLMOD's, by the installed BLAS")
       .source("docs/results/speed.md; Chen et al. 2008 for cholmod");
   d.add_choice(
        "stability", &NewtonParameters::stability,
        {{"leave", StabilityMode::leave}, {"report", StabilityMode::report}, {"off", StabilityMode::off}},
-       "what becomes of an equilibrium, of a level or of an increment with `equilibrate`, that is a "
-       "saddle. leave: the cloth moves along its least stable motion while the energy falls, and is "
-       "solved again; after ten exits a level ends as `saddle`. report: it does so at its first saddle. off: "
-       "no equilibrium is tested")
+       "what becomes of an equilibrium that is a saddle. leave: the cloth moves along its least stable "
+       "motion and is solved again; after ten exits a level ends as `saddle`. report: it does so at its "
+       "first saddle. off: no equilibrium is tested")
       .source("docs/theory/method.md section 2");
 }
 

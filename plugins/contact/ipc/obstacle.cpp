@@ -125,7 +125,7 @@ void ObstacleParameters::declare(Declaration<ObstacleParameters>& d) {
       .between(0, 1e6);
   d.add("contraction", &P::contraction,
         "how far a mesh shrinks before it is grown, as the time of one implicit step of mean curvature flow "
-        "over its area: limbs become thin, a torso keeps half of its width. `dress` finds it")
+        "over its area; `dress` finds it")
       .unit("1")
       .between(0, 1)
       .source("Desbrun et al. 1999");
