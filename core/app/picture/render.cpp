@@ -88,53 +88,6 @@ Eigen::Vector3f around(const Eigen::Vector3f& n, float radius, const Eigen::Vect
   return across * (std::cos(turn) * u + std::sin(turn) * n.cross(u)) + std::sqrt(1 - across * across) * n;
 }
 
-/// A warm key light of some width from the upper left of the picture, a faint fill light from the right, and
-/// a sky that is brighter above than below.
-class Lighting {
- public:
-  /// Keeps a reference to the scene.
-  Lighting(const RayScene& scene, const Camera& camera) : scene_(scene) {
-    const Eigen::Matrix3f to_world = camera.frame.transpose().cast<float>();
-    key_ = (to_world * Eigen::Vector3f(-0.75f, 0.25f, 0.25f) + Eigen::Vector3f(0, 0, 0.62f)).normalized();
-    fill_ = (to_world * Eigen::Vector3f(0.8f, 0.1f, 0.45f)).normalized();
-  }
-
-  /// From what a ray from the eye meets back to the eye; nothing and the lit floor are one backdrop.
-  Rgb to_eye(const Seen& seen, const Arriving& arriving) const {
-    if (seen.surface == Seen::Surface::nothing) return backdrop;
-    if (seen.surface == Seen::Surface::floor)
-      return (floor_key_share * arriving[0] + (1 - floor_key_share) * arriving[1]) * backdrop;
-    const Rgb base = seen.surface == Seen::Surface::obstacle ? obstacle_colour
-                     : seen.front                            ? front_colour
-                                                             : back_colour;
-    const float key = std::max(seen.normal.dot(key_), 0.0f), side = std::max(seen.normal.dot(fill_), 0.0f);
-    // A faint sheen where cloth turns away separates a fold from what lies behind it.
-    const float grazing = 1 - seen.facing;
-    const float sheen = 0.1f * grazing * grazing * grazing * grazing;
-    return base * (arriving[0] * key * key_light + arriving[1] * (sky_light + 0.7f * side * fill_light) +
-                   0.3f * side * fill_light) +
-           arriving[1] * sheen;
-  }
-
-  /// By one random ray to each light, for a place in the grid of samples.
-  Arriving arriving(const SurfacePoint& point, int column, int row) const {
-    const Eigen::Vector2f sample = sample_point(column, row);
-    const auto blocked = [&](const Eigen::Vector3f& towards) {
-      return scene_.blocked({point.light_origin, towards});
-    };
-    Arriving all(point.normal.dot(key_) > 0 && !blocked(around(key_, key_radius, sample)), bounce);
-    Eigen::Vector3f towards = around(point.normal, 1, sample);
-    const float out = towards.dot(point.face_normal);
-    if (out < 0) towards -= 2 * out * point.face_normal;  // under the triangle: mirrored
-    if (!blocked(towards)) all[1] = point.surface == Seen::Surface::floor ? 1 : 0.71f + 0.29f * towards[2];
-    return all;
-  }
-
- private:
-  const RayScene& scene_;
-  Eigen::Vector3f key_, fill_;  // towards the lights
-};
-
 /// What a ray through a place in the picture meets, and the light that arrives there.
 struct Sample : Seen {
   float share = 1;  // of its light that edges and an obstacle behind let through
@@ -155,11 +108,11 @@ float likeness(const Sample& a, const Sample& b, float sample_size) {
 class Painting {
  public:
   Painting(const Drawing& drawing, const Camera& camera, int width, int height)
-      : drawing_(drawing),
-        camera_(camera),
-        scene_(drawing),
-        lighting_(scene_, camera),
-        samples_(split * height, split * width) {}
+      : drawing_(drawing), camera_(camera), scene_(drawing), samples_(split * height, split * width) {
+    const Eigen::Matrix3f to_world = camera.frame.transpose().cast<float>();
+    key_ = (to_world * Eigen::Vector3f(-0.75f, 0.25f, 0.25f) + Eigen::Vector3f(0, 0, 0.62f)).normalized();
+    fill_ = (to_world * Eigen::Vector3f(0.8f, 0.1f, 0.45f)).normalized();
+  }
 
   void see(int column, int row) {
     for (int y = split * row; y < split * (row + 1); ++y)
@@ -167,7 +120,7 @@ class Painting {
         const Ray ray =
             scene_.through(camera_, (2 * x + 1.0) / samples_.cols() - 1, 1 - (2 * y + 1.0) / samples_.rows());
         const std::optional<SurfacePoint> point = scene_.nearest(ray);
-        if (point) samples_(y, x) = {*point, share(*point, ray), lighting_.arriving(*point, x, y)};
+        if (point) samples_(y, x) = {*point, share(*point, ray), arriving(*point, x, y)};
       }
   }
 
@@ -200,9 +153,10 @@ class Painting {
     Rgb sum = Rgb::Zero();
     for (int k = 0; k < 4 * split * split; ++k) {
       const int x = k % (2 * split), y = k / (2 * split);
-      sum += tent[x] * tent[y] *
-             light(std::clamp<Eigen::Index>(split * column + x - split / 2, 0, samples_.cols() - 1),
-                   std::clamp<Eigen::Index>(split * row + y - split / 2, 0, samples_.rows() - 1));
+      const Sample& sample =
+          samples_(std::clamp<Eigen::Index>(split * row + y - split / 2, 0, samples_.rows() - 1),
+                   std::clamp<Eigen::Index>(split * column + x - split / 2, 0, samples_.cols() - 1));
+      sum += tent[x] * tent[y] * (sample.share * to_eye(sample));
     }
     return sum;
   }
@@ -213,9 +167,36 @@ class Painting {
     return static_cast<float>(2 * camera_.tangent[1] / samples_.rows() * distance);
   }
 
-  Rgb light(Eigen::Index x, Eigen::Index y) const {
-    const Sample& sample = samples_(y, x);
-    return sample.share * lighting_.to_eye(sample, sample.arriving);
+  /// From what a ray from the eye meets back to the eye; nothing and the lit floor are one backdrop.
+  Rgb to_eye(const Sample& seen) const {
+    const Arriving& arriving = seen.arriving;
+    if (seen.surface == Seen::Surface::nothing) return backdrop;
+    if (seen.surface == Seen::Surface::floor)
+      return (floor_key_share * arriving[0] + (1 - floor_key_share) * arriving[1]) * backdrop;
+    const Rgb base = seen.surface == Seen::Surface::obstacle ? obstacle_colour
+                     : seen.front                            ? front_colour
+                                                             : back_colour;
+    const float key = std::max(seen.normal.dot(key_), 0.0f), side = std::max(seen.normal.dot(fill_), 0.0f);
+    // A faint sheen where cloth turns away separates a fold from what lies behind it.
+    const float grazing = 1 - seen.facing;
+    const float sheen = 0.1f * grazing * grazing * grazing * grazing;
+    return base * (arriving[0] * key * key_light + arriving[1] * (sky_light + 0.7f * side * fill_light) +
+                   0.3f * side * fill_light) +
+           arriving[1] * sheen;
+  }
+
+  /// By one random ray to each light, for a place in the grid of samples.
+  Arriving arriving(const SurfacePoint& point, int column, int row) const {
+    const Eigen::Vector2f sample = sample_point(column, row);
+    const auto blocked = [&](const Eigen::Vector3f& towards) {
+      return scene_.blocked({point.light_origin, towards});
+    };
+    Arriving all(point.normal.dot(key_) > 0 && !blocked(around(key_, key_radius, sample)), bounce);
+    Eigen::Vector3f towards = around(point.normal, 1, sample);
+    const float out = towards.dot(point.face_normal);
+    if (out < 0) towards -= 2 * out * point.face_normal;  // under the triangle: mirrored
+    if (!blocked(towards)) all[1] = point.surface == Seen::Surface::floor ? 1 : 0.71f + 0.29f * towards[2];
+    return all;
   }
 
   /// What cloth's edges and, under X-rays, obstacles behind it leave of its light.
@@ -239,7 +220,9 @@ class Painting {
   const Drawing& drawing_;
   const Camera& camera_;
   const RayScene scene_;
-  const Lighting lighting_;
+  // Towards a warm key light of some width from the upper left of the picture, and a faint fill light from
+  // the right. The sky is brighter above than below.
+  Eigen::Vector3f key_, fill_;
   Grid<Sample> samples_;
 };
 
