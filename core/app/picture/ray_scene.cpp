@@ -18,20 +18,17 @@ namespace drape {
 
 namespace {
 
-#if RTC_VERSION_MAJOR < 4
-void intersect(RTCScene scene, RTCRayHit* hit) {
+#if RTC_VERSION_MAJOR < 4  // the calls of Embree 4
+void rtcIntersect1(RTCScene scene, RTCRayHit* hit) {
   RTCIntersectContext context;
   rtcInitIntersectContext(&context);
-  rtcIntersect1(scene, &context, hit);
+  ::rtcIntersect1(scene, &context, hit);
 }
-void occlude(RTCScene scene, RTCRay* ray) {
+void rtcOccluded1(RTCScene scene, RTCRay* ray) {
   RTCIntersectContext context;
   rtcInitIntersectContext(&context);
-  rtcOccluded1(scene, &context, ray);
+  ::rtcOccluded1(scene, &context, ray);
 }
-#else
-void intersect(RTCScene scene, RTCRayHit* hit) { rtcIntersect1(scene, hit); }
-void occlude(RTCScene scene, RTCRay* ray) { rtcOccluded1(scene, ray); }
 #endif
 
 // Shares of the scene's radius.
@@ -138,7 +135,7 @@ SurfacePoint RayScene::Surface::point(int triangle, float u, float v, const Ray&
 
 std::optional<SurfacePoint> RayScene::hit(RTCSceneTy* scene, const Ray& ray) const {
   RTCRayHit query = embree_ray(ray);
-  intersect(scene, &query);
+  rtcIntersect1(scene, &query);
   if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return {};
   SurfacePoint point =
       surfaces_[query.hit.geomID].point(static_cast<int>(query.hit.primID), query.hit.u, query.hit.v, ray);
@@ -187,7 +184,7 @@ std::optional<SurfacePoint> RayScene::nearest_obstacle(const Ray& ray) const {
 
 bool RayScene::blocked(const Ray& ray, float length) const {
   RTCRayHit query = embree_ray(ray, length);
-  occlude(all_.get(), &query.ray);
+  rtcOccluded1(all_.get(), &query.ray);
   return query.ray.tfar < 0;
 }
 
