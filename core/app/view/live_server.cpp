@@ -6,17 +6,16 @@
 
 #include <algorithm>
 #include <atomic>
+#include <boost/algorithm/string/erase.hpp>
+#include <boost/uuid/uuid_generators.hpp>
+#include <boost/uuid/uuid_io.hpp>
 #include <cerrno>
 #include <chrono>
 #include <condition_variable>
-#include <cstdio>
 #include <cstdlib>
 #include <cstring>
-#include <iterator>
 #include <map>
 #include <mutex>
-#include <random>
-#include <set>
 #include <stdexcept>
 #include <thread>
 #include <vector>
@@ -26,14 +25,6 @@ namespace drape {
 namespace {
 
 using httplib::Request, httplib::Response;
-
-std::string random_token() {
-  std::random_device bits;
-  std::string token;
-  char digits[9];
-  for (int k = 0; k < 4; ++k) std::snprintf(digits, sizeof digits, "%08x", bits()), token += digits;
-  return token;
-}
 
 /// Through a content provider: the library would compress a plain body slowly.
 void send(Response& response, const std::shared_ptr<const std::string>& body, const char* type) {
@@ -77,18 +68,13 @@ class ConnectionQueue final : public httplib::ThreadPool {
   /// Called by the thread that accepts connections, once for each.
   void enqueue(std::function<void()> serve) override {
     std::unique_lock lock(mutex_);
-    const std::map<int, int> sockets = connections_to(port_);
-    const auto is_closed = [&](int peer) { return !sockets.contains(peer); };
-    std::erase_if(peers_, is_closed);
-    std::erase_if(served_, is_closed);
+    std::map<int, int> sockets = connections_to(port_);
+    std::erase_if(idle_, [&](int peer) { return !sockets.contains(peer); });
     for (const auto& [peer, socket] : sockets)
-      if (std::ranges::find(peers_, peer) == peers_.end()) peers_.push_back(peer);
-    if (peers_.size() > most_connections) {
-      const auto newest = std::prev(peers_.end()),
-                 idle =
-                     std::find_if(peers_.begin(), newest, [&](int peer) { return !served_.contains(peer); });
-      if (idle != newest) ::shutdown(sockets.at(*idle), SHUT_RDWR);
-    }
+      if (!sockets_.contains(peer)) idle_.push_back(peer);
+    sockets_ = std::move(sockets);
+    const bool several_idle = idle_.size() > 1;  // the newest has had no time to ask
+    if (sockets_.size() > most_connections && several_idle) ::shutdown(sockets_.at(idle_.front()), SHUT_RDWR);
     has_room_.wait(lock, [&] { return open_ < most_connections; });
     ++open_;
     ThreadPool::enqueue([this, serve = std::move(serve)] {
@@ -104,16 +90,16 @@ class ConnectionQueue final : public httplib::ThreadPool {
   /// The connection of this peer has asked for something of the live view.
   void keep(int peer) {
     const std::lock_guard lock(mutex_);
-    served_.insert(peer);
+    std::erase(idle_, peer);
   }
 
  private:
   const int& port_;
   std::mutex mutex_;
   std::condition_variable has_room_;
-  std::size_t open_ = 0;    // connections that have a thread
-  std::vector<int> peers_;  // ports of the peers, the oldest first
-  std::set<int> served_;    // of these, those that are kept
+  std::size_t open_ = 0;        // connections that have a thread
+  std::map<int, int> sockets_;  // of the connections when the last one came, by the ports of their peers
+  std::vector<int> idle_;       // ports of those that have not asked for anything, the oldest first
 };
 
 }  // namespace
@@ -124,7 +110,8 @@ struct LiveServer::Impl {
   std::atomic<bool> ended = false;
   int port = 0;
   ConnectionQueue* queue = nullptr;  // the server's, while it listens
-  const std::string base = "/" + random_token() + "/";
+  const std::string base =
+      "/" + boost::erase_all_copy(to_string(boost::uuids::random_generator()()), "-") + "/";
 
   /// Whether the request is for the printed address. This stops DNS rebinding and cross-site requests.
   bool is_ours(const Request& request) const {
