@@ -25,7 +25,7 @@ export function livePage({title, methods}) {
 
   async function take(news) {
     version = news.version;
-    rows = news.first_row + news.rows.length;
+    rows += news.rows.length;
     last = news;
     for (const [method, , x, y] of news.rows) {
       const {name} = news.methods[method];

@@ -90,7 +90,7 @@ test('controls do nothing before there is a state', async () => {
   const running = await startViewed(contactConfig, 'begun', ...endless), page = await newPage(), heard = listenTo(page);
   const methods = [{name: 'pcs', levels: []}];
   await page.route('**/news*', route => route.fulfill({json: {version: 1, outcome: '', method: 'pcs', level: 0, finest: 1,
-    first_row: 0, rows: [], levels: [], obstacles: [], fields: [], methods}}));
+    rows: [], levels: [], obstacles: [], fields: [], methods}}));
   await page.goto(running.url);
   await until('the view', () => page.evaluate(() => !!window.drapeViewer));
   await page.locator('#viewer-obstacles').uncheck();

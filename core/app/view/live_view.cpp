@@ -173,7 +173,6 @@ std::string LiveView::news(long version, std::size_t rows) {
   news["method"] = method_ < 0 ? "" : methods_[method_];
   news["level"] = level_;
   news["finest"] = finest_;
-  news["first_row"] = std::min(rows, rows_.size());
   news["rows"] = Json::array();
   for (std::size_t k = rows; k < rows_.size(); ++k) news["rows"].push_back(rows_[k]);
   return ascii_json_text(news);
