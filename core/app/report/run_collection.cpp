@@ -2,14 +2,14 @@
 
 #include <algorithm>
 #include <map>
-#include <set>
 #include <stdexcept>
 
 #include "core/app/experiment/exit_codes.h"
+#include "core/app/experiment/experiment_path.h"
 #include "core/app/files/yaml_file.h"
 #include "core/kernel/files/file.h"
 #include "core/kernel/files/message_text.h"
-#include "core/kernel/files/number_text.h"
+#include "core/kernel/files/string_utils.h"
 #include "core/kernel/plugin/config_node.h"
 
 namespace drape {
@@ -44,10 +44,9 @@ std::string read_sweep(const fs::path& folder, RunCollection& collection) {
   collection.complete = collection.complete && member_of(json, "complete") == true;
   std::string name = text_member(json, "sweep");
   collection.description += text_member(json, "description");
-  collection.name += (collection.name.empty() ? "" : ", ") + name;
   for (const Json& entry : json["runs"]) {
     if (!entry.is_object()) continue;
-    RunRecord run;
+    RunRecord& run = collection.runs.emplace_back();
     run.sweep = name;
     run.name = run.variation = text_member(entry, "name");
     run.status = text_member(entry, "status");
@@ -63,7 +62,6 @@ std::string read_sweep(const fs::path& folder, RunCollection& collection) {
     // Running and failed runs may have written files; only complete ones have results.
     const bool has_results = run.status == "converged" || run.status == "not_converged";
     if (has_results && fs::is_regular_file(run.folder / "results.json")) read_data(run, collection);
-    collection.runs.push_back(std::move(run));
   }
   return name;
 }
@@ -71,12 +69,9 @@ std::string read_sweep(const fs::path& folder, RunCollection& collection) {
 /// The configuration without its seed, which is returned in `seed`.
 std::string config_but_seed(const RunData& run, OptionalNumber& seed) {
   ConfigNode config = run.config;
+  if (const ConfigNode* node = value_at(config, "start.seed"); node && node->is_number()) seed = node->number;
   for (auto& [key, value] : config.entries)
-    for (auto& [own, node] : value.entries)
-      if (key == "start" && own == "seed") {
-        if (node.is_number()) seed = node.number;
-        node = ConfigNode();
-      }
+    if (key == "start") value.remove("seed");
   return config.entries.empty() ? run.folder.string() : to_yaml(config);
 }
 
@@ -85,14 +80,13 @@ void read_single_runs(const std::vector<fs::path>& folders, RunCollection& colle
   std::vector<std::string> configs;
   const std::size_t first = collection.runs.size();
   for (const fs::path& folder : folders) {
-    RunRecord run;
+    RunRecord& run = collection.runs.emplace_back();
     run.folder = folder;
     run.data = read_run(folder);
     configs.push_back(config_but_seed(*run.data, run.seed));
     folder_of[run.data->experiment].try_emplace(configs.back(), folder.string());
     run.status = run.data->converged() ? "converged" : "not_converged";
     collection.complete = collection.complete && run.data->complete;
-    collection.runs.push_back(std::move(run));
   }
   for (std::size_t k = 0; k < folders.size(); ++k) {
     RunRecord& run = collection.runs[first + k];
@@ -136,29 +130,28 @@ RunCollection read_runs(const std::vector<fs::path>& given) {
   for (const fs::path& folder : given)
     for (fs::path& each : runs_at(folder)) folders.push_back(std::move(each));
   std::vector<fs::path> single, sweep_of_run;
-  std::map<std::string, int> sweeps;  // by their name
+  std::vector<std::string> names;  // of the sweeps, else of the experiments
   for (const fs::path& folder : folders) {
     if (is_sweep(folder)) {
-      ++sweeps[read_sweep(folder, collection)];
+      names.push_back(read_sweep(folder, collection));
       sweep_of_run.resize(collection.runs.size(), folder);
     } else {
       single.push_back(folder);
     }
   }
   // Runs of two sweeps are no repeats of each other, even if their variations have one name.
-  const bool several = !sweeps.empty() && folders.size() > 1;
+  const bool several = !names.empty() && folders.size() > 1;
   for (std::size_t k = 0; several && k < collection.runs.size(); ++k) {
     RunRecord& run = collection.runs[k];
-    const bool named = !run.sweep.empty() && sweeps[run.sweep] == 1;
+    const bool named = !run.sweep.empty() && std::ranges::count(names, run.sweep) == 1;
     run.variation = (named ? run.sweep : sweep_of_run[k].string()) + ": " + run.name;
   }
   read_single_runs(single, collection);
-  if (collection.name.empty()) {
-    std::set<std::string> names;
-    for (const RunRecord& run : collection.runs)
-      if (run.data && names.insert(run.data->experiment).second)
-        collection.name += (collection.name.empty() ? "" : ", ") + run.data->experiment;
-  }
+  std::erase(names, "");
+  const bool unnamed = names.empty();
+  for (const RunRecord& run : collection.runs)
+    if (unnamed && run.data) add_new(names, run.data->experiment);
+  collection.name = joined(names);
   return collection;
 }
 
