@@ -197,18 +197,15 @@ Comparison compare(const RunCollection& before, const RunCollection& after, cons
     for (const Entry& entry : side->entries) add_new(known, entry.key);
   const std::map<std::string, double> ratios = parsed(bounds, known);
 
-  std::map<std::pair<const RunData*, const RunData*>, Names> differences;  // keys of the models
   std::map<std::string, int> counts, met;
   std::vector<Names> rows = {{"where", "quantity", "before", "after", "change", "verdict"}};
   for (const Entry& was : a.entries) {
     const Entry* now = b.find(was);
     if (!now) continue;
     std::string word = verdict(was, now->value);
-    if (was.key == "energy_released") {  // has no better and worse where the models differ
-      const auto [found, is_new] = differences.try_emplace({was.run, now->run});
-      if (is_new) found->second = differing_model_keys(was.run->config, now->run->config);
-      for (const std::string& key : found->second) add_new(differing, key), word = "other";
-    }
+    if (was.key == "energy_released")  // has no better and worse where the models differ
+      for (const std::string& key : differing_model_keys(was.run->config, now->run->config))
+        add_new(differing, key), word = "other";
     ++counts[word];
     const auto bound = ratios.find(was.key);
     const bool breaks = bound != ratios.end() && !holds(was, now->value, bound->second);
