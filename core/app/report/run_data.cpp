@@ -1,8 +1,6 @@
 #include "core/app/report/run_data.h"
 
 #include <algorithm>
-#include <cmath>
-#include <iterator>
 #include <regex>
 #include <stdexcept>
 
@@ -24,14 +22,12 @@ const Json& list(const Json& json) {
 }
 
 LevelRecord level_of(const Json& json, std::size_t position, const JsonFile& file) {
-  LevelRecord r;
-  r.level = file.find<int>(json, "level").value_or(static_cast<int>(position));
-  r.status = text_member(json, "status");
-  r.message = text_member(json, "message");
-  r.mesh = text_member(json, "mesh");
-  r.from_initial_state = member_of(json, "from_initial_state") == true;
-  r.values = json;
-  return r;
+  return {.level = file.find<int>(json, "level").value_or(static_cast<int>(position)),
+          .status = text_member(json, "status"),
+          .message = text_member(json, "message"),
+          .mesh = text_member(json, "mesh"),
+          .from_initial_state = member_of(json, "from_initial_state") == true,
+          .values = json};
 }
 
 MethodRecord method_of(const std::string& name, const Json& json, const JsonFile& file) {
@@ -47,8 +43,7 @@ MethodRecord method_of(const std::string& name, const Json& json, const JsonFile
     if (coarse >= 0 && fine > coarse)
       method.consistency.push_back({coarse, fine, pair, text_member(pair, "fields")});
   }
-  std::stable_sort(method.levels.begin(), method.levels.end(),
-                   [](const LevelRecord& a, const LevelRecord& b) { return a.level < b.level; });
+  std::ranges::stable_sort(method.levels, {}, &LevelRecord::level);
   return method;
 }
 
@@ -114,7 +109,7 @@ SnapshotFile RunData::snapshots(const LevelRecord& level, Eigen::Index n) const 
 }
 
 bool is_file_of_run(const std::string& folder, const std::string& name) {
-  if (folder.empty()) return std::ranges::find(own_files, name) != std::end(own_files);
+  if (folder.empty()) return std::ranges::count(own_files, name) > 0;
   return std::ranges::any_of(own_folders, [&](const auto& own) {
     return folder == own.first && std::regex_match(name, std::regex(own.second));
   });
@@ -165,8 +160,7 @@ RunData read_run(const std::filesystem::path& folder) {
   for (const auto& [name, value] : member_of(json, "methods").items())
     run.methods.push_back(method_of(name, value, file));
   // The progressive method comes first; the others stay in file order.
-  std::stable_partition(run.methods.begin(), run.methods.end(),
-                        [](const MethodRecord& m) { return m.name == "pcs"; });
+  std::ranges::stable_partition(run.methods, [](const MethodRecord& m) { return m.name == "pcs"; });
   run.iterations = Csv(folder / "iterations.csv");
   run.errors = Csv(folder / "errors.csv");
   return run;

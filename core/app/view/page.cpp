@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <boost/algorithm/string/replace.hpp>
 #include <cctype>
-#include <iterator>
 #include <utility>
 
 // The assembler includes the file as it is.
@@ -33,7 +32,7 @@ std::string page(const std::string& title, const Json& data, const std::string& 
 
 int solver_style(std::string_view solver) {
   constexpr std::string_view styled[] = {"pcs", "cascadic", "newton"};
-  return static_cast<int>(std::find(std::begin(styled), std::end(styled), solver) - std::begin(styled));
+  return static_cast<int>(std::ranges::find(styled, solver) - styled);
 }
 
 std::string url_path(const std::filesystem::path& path) {
