@@ -33,11 +33,10 @@ Json csv_json(const Csv& csv) {
     const std::size_t count = counts[series(k)], number = ++seen[series(k)];
     const std::size_t stride = (count + most_rows - 1) / most_rows;
     if ((number - 1) % stride != 0 && number != count) continue;
-    Json row = Json::array();
+    Json& row = rows.emplace_back(Json::array());
     for (const std::string& name : csv.names())
       row.push_back(name == "method" ? Json(csv.text(k, name)) : json_of(csv.number(k, name)));
     row.push_back(number);
-    rows.push_back(std::move(row));
   }
   names.push_back("row");
   return {{"names", names}, {"rows", rows}};

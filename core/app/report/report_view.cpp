@@ -98,14 +98,13 @@ Json states_json(const RunData& run, const LevelRecord& level, const State& last
   for (std::size_t k = 0; k < shown; ++k) {
     const std::size_t f = k * count / shown;
     const Positions x = snapshots.positions(f);
-    Json state = document.state(name + "f" + std::to_string(f), x, document.fields(level.level, x));
+    Json& state = states.emplace_back(
+        document.state(name + "f" + std::to_string(f), x, document.fields(level.level, x)));
     state["iteration"] = level.snapshots()["iterations"][f];
     state["seconds"] = level.snapshots()["seconds"][f];
-    states.push_back(std::move(state));
   }
-  Json state = document.state(name, last.x, last.fields);
+  Json& state = states.emplace_back(document.state(name, last.x, last.fields));
   if (const auto iterations = number_member(level.values, "iterations")) state["iteration"] = *iterations;
-  states.push_back(std::move(state));
   return states;
 }
 

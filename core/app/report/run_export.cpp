@@ -142,11 +142,9 @@ GltfSurface gltf_surface(const std::string& name, GltfMaterial material, Triangl
       if (!(normals.row(i).squaredNorm() > 0.5)) normals.row(i) << 0, 0, 1;  // glTF asks for length 1
     return GltfState{split.of(x), split.of(normals)};
   };
-  GltfSurface surface{name, material, split.triangles, state(mesh.vertices), split.uv};
+  GltfSurface surface{name, material,  split.triangles, state(mesh.vertices), split.uv,
+                      {},   uv_length, mesh.piece,      mesh.piece_names};
   for (const Positions& x : earlier) surface.earlier.push_back(state(x));
-  surface.uv_length = uv_length;
-  surface.piece = mesh.piece;
-  surface.piece_names = mesh.piece_names;
   return surface;
 }
 
