@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <cmath>
 #include <map>
 
 #include "core/app/experiment/exit_codes.h"
@@ -14,9 +13,8 @@ namespace {
 
 std::optional<Better> better_of(const std::string& column, const std::vector<DeclaredMetric>& metrics) {
   if (column == "energy_released") return Better::higher;
-  if (is_one_of(column, {"iterations", "seconds", "cpu_seconds", "preview_seconds", "flops"}))
+  if (column == "cpu_seconds" || is_one_of(column, summary_quantities(error_measures(metrics))))
     return Better::lower;
-  if (is_one_of(column, summary_quantities(error_measures(metrics)))) return Better::lower;
   for (const MetricScope scope : {MetricScope::state, MetricScope::pair})
     for (const MetricColumn& declared : columns_of(metrics, scope, Shown::stored))
       if (declared.name == column && declared.better != Better::neither) return declared.better;
@@ -92,12 +90,11 @@ std::vector<TableRow> summary_of(const RunTable& table, const std::vector<Declar
     for (const std::string& key : table.keys) entry[key] = (*rows.front())[key];
     entry["starts"] = rows.size();
     entry["converged"] = std::to_string(good.size()) + " of " + std::to_string(rows.size());
-    entry["reference"] =
-        std::ranges::count_if(rows, [](const auto* row) { return member_of(*row, "reference") == true; });
-    entry["machine"] =
-        std::ranges::any_of(rows, [](const auto* row) { return member_of(*row, "machine") == "busy"; })
-            ? "busy"
-            : "";
+    const auto count = [&](const char* key, const Json& value) {
+      return std::ranges::count_if(rows, [&](const auto* row) { return member_of(*row, key) == value; });
+    };
+    entry["reference"] = count("reference", true);
+    entry["machine"] = count("machine", "busy") > 0 ? "busy" : "";
     entry["best"] = Json::array();
     for (const std::string& column : numbers) {
       std::vector<double> values;

@@ -79,8 +79,7 @@ std::string statuses(const MethodRecord& method) {
   std::vector<std::string> words;
   for (const LevelRecord& level : method.levels) words.push_back(level.status);
   if (!method.status.empty() && !is_one_of(method.status, words)) words.push_back(method.status);
-  const bool same =
-      std::all_of(words.begin(), words.end(), [&](const auto& w) { return w == method.status; });
+  const bool same = std::ranges::count(words, method.status) == std::ssize(words);
   return same ? method.status : joined(words);
 }
 
@@ -112,15 +111,6 @@ bool passes(const RunRecord& run, const std::string& status, const TableRow& row
   if (number_member(row, "intersections").value_or(0) > 0) return false;
   const bool expected = status == run.expected || (run.expected == "converged" && has_converged(status));
   return expected && text_member(row, "message").find(run.expected_message) != std::string::npos;
-}
-
-/// The keys that the variations of sweeps set. Methods and seeds have columns of their own.
-std::vector<std::string> varied_keys(const RunCollection& collection) {
-  std::vector<std::string> keys;
-  for (const RunRecord& run : collection.runs)
-    for (const auto& [key, value] : run.settings.items())
-      if (key != "methods" && key != "start.seed") add_new(keys, key);
-  return keys;
 }
 
 }  // namespace
@@ -201,13 +191,15 @@ OptionalNumber worst_over_levels(const MetricColumn& column, const MethodRecord&
 
 RunTable table_of(const RunCollection& collection) {
   RunTable table;
+  for (const RunRecord& run : collection.runs)
+    for (const auto& [key, value] : run.settings.items())
+      if (key != "methods" && key != "start.seed") add_new(table.keys, key);  // these have own columns
   table.columns = {"sweep", "run"};
-  table.keys = varied_keys(collection);
   table.columns.insert(table.columns.end(), table.keys.begin(), table.keys.end());
-  for (const char* column : {"seed", "method", "pass", "status", "stability", "vertices", "steps",
-                             "iterations", "shortened_steps", "seconds", "cpu_seconds", "machine",
-                             "energy_released", "smallest_gap", "intersections", "force_residual"})
-    table.columns.emplace_back(column);
+  table.columns.insert(table.columns.end(),
+                       {"seed", "method", "pass", "status", "stability", "vertices", "steps", "iterations",
+                        "shortened_steps", "seconds", "cpu_seconds", "machine", "energy_released",
+                        "smallest_gap", "intersections", "force_residual"});
   const std::vector<DeclaredMetric> metrics = collection.metrics();
   for (const MetricScope scope : {MetricScope::state, MetricScope::pair})
     for (const MetricColumn& column : columns_of(metrics, scope, Shown::summary))
@@ -232,10 +224,9 @@ RunTable table_of(const RunCollection& collection) {
       name[key] = value.is_structured() ? Json(json_text(value)) : value;
     }
     const auto add = [&](const std::string& status, const Json& cells) {
-      TableRow row = name;
+      TableRow& row = table.rows.emplace_back(name);
       row.update(cells);
       row["pass"] = passes(run, status, row);
-      table.rows.push_back(row);
     };
     table.has_results = table.has_results || run.data;
     if (run.data)
