@@ -233,7 +233,6 @@ export class Scene {
     this.renderer.setSize(width, this.panel.height * this.rows, false);
     this.canvas.style.height = this.panel.height * this.rows + 'px';
     this.labels.style.gridTemplate = `repeat(${this.rows}, ${this.panel.height}px) / repeat(${this.columns}, 1fr)`;
-    [...this.labels.children].forEach((label, k) => label.classList.toggle('first', k % this.columns === 0));
     this.draw();
   }
 
