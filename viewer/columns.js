@@ -2,13 +2,11 @@
 import {formula} from './text.js';
 
 const titles = {
-  run: 'run', seed: 'seed', method: 'method', level: 'level', status: 'status', vertices: 'vertices', triangles: 'triangles', steps: 'steps',
-  iterations: 'Newton iterations', shortened_steps: 'shortened steps', seconds: 'time [s]', cpu_seconds: 'CPU time [s]', machine: 'machine', preview_seconds: 'preview after [s]', flops: 'flops',
-  energy_released: 'energy released [J]', smallest_gap: 'smallest gap [m]', intersections: 'intersections', force_residual: 'force residual',
-  decrement: 'decrement [m/s]', peak_memory_bytes: 'peak memory [B]', message: 'message', pass: 'passes',
-  piece: 'piece', phase: 'phase', stretch_warp: 'stretch along warp [%]', largest_stretch_warp: 'largest along warp [%]', stretch_weft: 'stretch along weft [%]',
-  largest_stretch_weft: 'largest along weft [%]', ease: 'ease [mm]', pressure: 'pressure [kPa]', pressure_mmhg: 'pressure [mmHg]', largest_pressure: 'largest pressure [kPa]',
-  stability: 'stability', lowest_eigenvalue: 'lowest eigenvalue of M⁻¹H [1/s²]', curvature_ratio: 'curvature ratio',
+  iterations: 'Newton iterations', shortened_steps: 'shortened steps', seconds: 'time [s]', cpu_seconds: 'CPU time [s]', preview_seconds: 'preview after [s]',
+  energy_released: 'energy released [J]', smallest_gap: 'smallest gap [m]', force_residual: 'force residual', decrement: 'decrement [m/s]', peak_memory_bytes: 'peak memory [B]',
+  stretch_warp: 'stretch along warp [%]', largest_stretch_warp: 'largest along warp [%]', stretch_weft: 'stretch along weft [%]', largest_stretch_weft: 'largest along weft [%]',
+  ease: 'ease [mm]', pressure: 'pressure [kPa]', pressure_mmhg: 'pressure [mmHg]', largest_pressure: 'largest pressure [kPa]',
+  lowest_eigenvalue: 'lowest eigenvalue of M⁻¹H [1/s²]', curvature_ratio: 'curvature ratio',
 };
 export const costs = {seconds: 'time [s]', iterations: 'Newton iterations', flops: 'flops of factorisations'};
 export const targets = {reference: 'the reference', own: 'the method’s own end'};

@@ -166,11 +166,9 @@ function convergence(run) {
     return plot.element;
   };
   const pieces = run.order.flatMap(method => (run.results.methods[method].levels || []).flatMap(level => (level.pieces || []).map(row => ({method, level: level.level, ...row}))));
-  const phases = Object.values(increments.filter(row => row.phase).reduce((all, row) => {
-    const own = all[`${row.method} ${row.level} ${row.phase}`] ??= {phase: row.phase, method: row.method, level: row.level, steps: 0, iterations: 0, seconds: 0};
-    for (const key of ['steps', 'iterations', 'seconds']) own[key] += row[key];
-    return all;
-  }, {}));
+  const sum = (rows, key) => rows.reduce((all, row) => all + row[key], 0);
+  const phases = [...grouped(increments.filter(row => row.phase), row => `${row.method} ${row.level} ${row.phase}`).values()].map(rows =>
+    ({phase: rows[0].phase, method: rows[0].method, level: rows[0].level, steps: sum(rows, 'steps'), iterations: sum(rows, 'iterations'), seconds: sum(rows, 'seconds')}));
   return h('section', {id: 'convergence-section'}, h('h2', {}, 'On the way'),
     pieces.length ? fold('The garment, by piece', dataTable('pieces', 'of pieces', columnsOf(Object.keys(pieces[0]), Object.keys(pieces[0]), run.of), pieces)) : null,
     phases.length ? fold('Phases', dataTable('phases', 'of phases', columnsOf(Object.keys(phases[0]), Object.keys(phases[0]), run.of), phases)) : null,
