@@ -98,11 +98,10 @@ Json run_json(const RunRecord& run, const fs::path& from) {
       {"error", run.error},
       {"count", run.data ? run.data->methods.size() : 1},
       {"report", fs::is_regular_file(report) ? Json(url_path(report.lexically_relative(from))) : Json()},
-      {"pictures", Json::array()},
+      {"pictures", run.data ? thumbnails(*run.data) : Json::array()},
       {"errors", csv_json(run.data ? run.data->errors : Csv())},
       {"first_levels", Json::object()}};
   if (!run.data) return entry;
-  entry["pictures"] = thumbnails(*run.data);
   entry["reference"] = run.data->reference;
   for (const MethodRecord& method : run.data->methods)
     entry["first_levels"][method.name] = method.first_level();

@@ -91,13 +91,12 @@ Eigen::VectorXd contact_gap(const Level& level, const Positions& x,
 
 std::pair<double, double> field_range(const FieldKind& kind,
                                       const std::vector<const Eigen::VectorXd*>& values, double gap_range) {
-  const std::string& map = kind.map;
-  if (map == "near") return {0, gap_range};
-  if (map == "diverging") {
+  if (kind.map == "near") return {0, gap_range};
+  if (kind.map == "diverging") {
     const double end = magnitude_quantile(values, quantile);
     return {-std::max(end, 1e-6), std::max(end, 1e-6)};
   }
-  if (map == "force") return {0, magnitude_quantile(values, quantile)};
+  if (kind.map == "force") return {0, magnitude_quantile(values, quantile)};
   // Stretch begins at 1; the largest matters, so none is cut off.
   return {1, std::max(1.001, magnitude_quantile(values, 1))};
 }
@@ -113,11 +112,8 @@ VertexFields garment_fields_at(const Level& level, const Positions& x,
     const double along = (m[0] * e1 + m[1] * e2).norm() - 1, across = (m[2] * e1 + m[3] * e2).norm() - 1;
     for (int k = 0; k < 3; ++k) warp[v[k]] += m[4] * along, weft[v[k]] += m[4] * across, area[v[k]] += m[4];
   }
-  const auto percent = [&](const Eigen::VectorXd& sums) {
-    return Eigen::VectorXd(100 * sums.cwiseQuotient(area));
-  };
-  return {{"stretch_warp", percent(warp)},
-          {"stretch_weft", percent(weft)},
+  return {{"stretch_warp", 100 * warp.cwiseQuotient(area)},
+          {"stretch_weft", 100 * weft.cwiseQuotient(area)},
           {"ease", 1000 * obstacle_distance(x, obstacles, ease_range)}};
 }
 
