@@ -154,18 +154,15 @@ export class Chart {
   }
 
   line({label, colour, mark, dash = '', width = 2, opacity = 1, points, band, joined}, k, at, py) {
-    const group = s('g', {class: `series series-${k}`, fill: 'none', stroke: colour, 'stroke-width': width, opacity});
-    const path = list => list.map(p => at(p).join(' ')).join('L');
-    group.append(s('title', {}, label));
-    if (band && points.length > 1)
-      group.append(s('path', {class: 'band', d: `M${points.map(p => `${at(p)[0]} ${py(p.high)}`).join('L')}L${
-        [...points].reverse().map(p => `${at(p)[0]} ${py(p.low)}`).join('L')}z`, fill: colour, 'fill-opacity': .15, stroke: 'none'}));
-    if (joined && points.length > 1) group.append(s('path', {class: 'line', d: 'M' + path(points), 'stroke-dasharray': dash}));
-    for (const p of points) {
-      if (!band && known(p.low) && p.low < p.high) group.append(s('path', {class: 'range', d: `M${at(p)[0]} ${py(p.low)}V${py(p.high)}`, 'stroke-width': 1.2}));
-      if (mark) group.append(s('path', {class: 'mark', d: markPath(mark, ...at(p), p.end === undefined ? 3 : p.end ? 4.5 : 2), fill: colour, stroke: 'none'}));
-    }
-    return group;
+    const several = points.length > 1;
+    return s('g', {class: `series series-${k}`, fill: 'none', stroke: colour, 'stroke-width': width, opacity},
+      s('title', {}, label),
+      band && several ? s('path', {class: 'band', d: `M${points.map(p => `${at(p)[0]} ${py(p.high)}`).join('L')}L${
+        [...points].reverse().map(p => `${at(p)[0]} ${py(p.low)}`).join('L')}z`, fill: colour, 'fill-opacity': .15, stroke: 'none'}) : '',
+      joined && several ? s('path', {class: 'line', d: 'M' + points.map(p => at(p).join(' ')).join('L'), 'stroke-dasharray': dash}) : '',
+      points.flatMap(p => [
+        !band && known(p.low) && p.low < p.high ? s('path', {class: 'range', d: `M${at(p)[0]} ${py(p.low)}V${py(p.high)}`, 'stroke-width': 1.2}) : '',
+        mark ? s('path', {class: 'mark', d: markPath(mark, ...at(p), p.end === undefined ? 3 : p.end ? 4.5 : 2), fill: colour, stroke: 'none'}) : '']));
   }
 
   /// Names in rows below the plot; a click, Enter or Space hides or shows a line.
@@ -178,20 +175,18 @@ export class Chart {
       x += width;
       return item;
     });
-    const toggle = label => () => { this.hidden[this.hidden.has(label) ? 'delete' : 'add'](label); this.render(); };
     const group = top => s('g', {class: 'legend', fill: 'var(--ink)'}, ...items.map(({label, line, x: at, row: r}) => {
-      const y = top + 18 * r, g = s('g', {role: 'button', tabindex: 0, 'aria-pressed': String(!this.hidden.has(label)), opacity: this.hidden.has(label) ? .4 : 1});
-      g.append(s('rect', {x: at, y: y - 11, width: 38 + 7.6 * label.length, height: 17, fill: 'transparent'}),
-        s('path', {d: `M${at} ${y - 3}h28`, stroke: line.colour, 'stroke-width': line.width ?? 2, 'stroke-opacity': line.opacity ?? 1, 'stroke-dasharray': line.dash || ''}));
-      if (line.mark) g.append(s('path', {d: markPath(line.mark, at + 14, y - 3, 3.5), fill: line.colour}));
-      g.append(s('text', {x: at + 34, y: y + 1}, label));
-      g.addEventListener('click', toggle(label));
-      g.addEventListener('keydown', event => {
+      const y = top + 18 * r, off = this.hidden.has(label), click = () => { this.hidden[off ? 'delete' : 'add'](label); this.render(); };
+      const keydown = event => {
         if (event.key !== 'Enter' && event.key !== ' ') return;
         event.preventDefault();
-        toggle(label)();
-      });
-      return g;
+        click();
+      };
+      return s('g', {role: 'button', tabindex: 0, 'aria-pressed': String(!off), opacity: off ? .4 : 1, click, keydown},
+        s('rect', {x: at, y: y - 11, width: 38 + 7.6 * label.length, height: 17, fill: 'transparent'}),
+        s('path', {d: `M${at} ${y - 3}h28`, stroke: line.colour, 'stroke-width': line.width ?? 2, 'stroke-opacity': line.opacity ?? 1, 'stroke-dasharray': line.dash || ''}),
+        line.mark ? s('path', {d: markPath(line.mark, at + 14, y - 3, 3.5), fill: line.colour}) : '',
+        s('text', {x: at + 34, y: y + 1}, label));
     }));
     return {height: 18 * (row + 1), group};
   }
