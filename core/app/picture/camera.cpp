@@ -7,15 +7,10 @@
 
 namespace drape {
 
-namespace {
-
-constexpr double half_angle_tangent = 0.22;  // of the vertical field of view, 25°: little distortion
-constexpr double margin = 1.06;              // of the picture's size to the cloth's
-
-}  // namespace
-
 Camera Camera::around(const std::vector<const Positions*>& states, const Eigen::Vector3d& direction,
                       double aspect) {
+  constexpr double half_angle_tangent = 0.22;  // of the vertical field of view, 25°: little distortion
+  constexpr double margin = 1.06;              // of the picture's size to the cloth's
   Camera camera;
   Eigen::Matrix3d& frame = camera.frame;
   frame.row(2) = direction.normalized();
