@@ -4,6 +4,9 @@ import {columnsOf, describe, ranking} from './columns.js';
 import {dataTable, matcher} from './tables.js';
 import {about, busyWarning, choice, converged, count, counted, day, explained, fold, grouped, h, known, rowsOf, spread, tick, unique, words, written} from './text.js';
 
+/// A point of a plot of a spread over repeats.
+const point = (x, {median, low, high, count: runs}) => ({x, y: median, low, high, runs});
+
 /// Median and extremes over repeats of a curve of error over cost, a step function, at costs in geometric progression from that
 /// at which all have a state to the largest.
 function medianCurve(repeats, points = 40) {
@@ -11,10 +14,7 @@ function medianCurve(repeats, points = 40) {
   if (!curves.length) return [];
   const from = Math.max(...curves.map(curve => curve[0].x)), to = Math.max(...curves.map(curve => curve.at(-1).x));
   const costsOf = from < to ? Array.from({length: points}, (_, k) => k === points - 1 ? to : from * (to / from) ** (k / (points - 1))) : [to];
-  return costsOf.map(x => {
-    const {median, low, high, count: runs} = spread(curves.map(curve => curve.filter(p => p.x <= x).at(-1).y));
-    return {x, y: median, low, high, runs};
-  });
+  return costsOf.map(x => point(x, spread(curves.map(curve => curve.filter(p => p.x <= x).at(-1).y))));
 }
 
 /// The thumbnails of a method: a cell has all starts of a variation.
@@ -60,8 +60,7 @@ function against(all) {
     const wide = numeric && Math.min(...values) > 0 && Math.max(...values) > 20 * Math.min(...values);
     chart.draw({x: {title: all.keyTitle(chosen.key), name: chosen.key, log: wide, categories: numeric ? null : values}, y: {title: describe(all.quantity, all.of).text, name: all.quantity},
       absent: 'No run has this value.', series: [...lines].map(([label, rows]) => ({label, ...variantLook(all.methods, rows[0].method, variants.indexOf(variant(rows[0])), variants.length),
-        points: rows.filter(row => row[all.quantity]).map(row => ({x: (chosen.key === 'run' ? row.variation : row[chosen.key]) ?? null, row: row[all.quantity]}))
-          .map(({x, row: {median, low, high, count: runs}}) => ({x, y: median, low, high, runs}))}))});
+        points: rows.filter(row => row[all.quantity]).map(row => point((chosen.key === 'run' ? row.variation : row[chosen.key]) ?? null, row[all.quantity]))}))});
   };
   all.redraw.push(draw);
   return h('section', {id: 'against'}, h('h2', {}, 'A value against a parameter'), h('p', {class: 'controls'}, choice('against', all.keyNames, chosen.key,
