@@ -27,7 +27,7 @@ int vertices_within(const OutlineSize& outline, double edge_length);
 /// reports.
 std::vector<double> estimated_vertices(const ExperimentParameters& p, std::optional<double> of_pattern = {});
 
-/// Estimated peak memory of a run whose finest level has so many vertices [bytes].
+/// Estimated peak memory of a run whose finest level has `vertices` vertices [bytes].
 double estimated_memory(double vertices);
 
 /// "2.3 GB".

@@ -86,7 +86,7 @@ void check_declarations(const std::vector<DeclaredMetric>& metrics, const Locati
   static const auto of_pair = split("coarse fine fields fields_checksum of_start against not_measured", ' ');
   std::map<std::pair<MetricScope, std::string>, std::string> owners;
   std::map<std::string, std::string> measures = {{energy_gap, "the run itself"}};  // of errors.csv, by whom
-  std::map<std::string, std::string> fields;                                       // likewise
+  std::map<std::string, std::string> fields;                                       // of fields/, by whom
   for (const DeclaredMetric& metric : metrics) {
     const auto refuse = [&](const std::string& what) {
       errors.push_back({where, "metric " + metric.name + ": " + what});

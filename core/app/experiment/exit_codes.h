@@ -12,7 +12,7 @@ constexpr int exit_done = 0;
 constexpr int exit_not_converged = 1, exit_bound_broken = 1;
 constexpr int exit_bad_input = 2;
 constexpr int exit_aborted = 3;
-/// Of a run that exceeded its sweep's time limit, as in `timeout`.
+/// Exit code of a run that exceeded its sweep's time limit, as in `timeout`.
 constexpr int exit_too_slow = 124;
 /// Plus the signal's number, as in a shell.
 constexpr int exit_by_signal = 128;

@@ -25,7 +25,7 @@ struct Experiment {
   std::vector<NamedEnergy> energies;
   std::shared_ptr<Refiner> refiner;
   std::vector<std::shared_ptr<ContactModel>> contacts;
-  /// Of each contact model, its obstacles' indices in the experiment's list, ascending. An experiment
+  /// The indices of each contact model's obstacles in the experiment's list, ascending. An experiment
   /// describes its obstacles once, in one list, and friction once. Contact models declare what they take of
   /// it (Parameter::from_experiment): `friction` goes to every model that declares it, an obstacle to the
   /// first model that knows one of its keys (Parameter::identifies_item), such as `shape` or `mesh`. A plugin
@@ -56,8 +56,9 @@ struct Load {
   std::vector<std::shared_ptr<ContactModel>> contacts;
 };
 
-/// Makes anew what differs from `load` with these values of the keys: what the experiment's source gives with
-/// the values in it. Returns the keys whose values differ. Appends an error for every value that is refused.
+/// Makes again what differs from `load` with these values of the keys: what the experiment's source gives
+/// with the values in it. Returns the keys whose values differ. Appends an error for every value that is
+/// refused.
 std::vector<const ScheduleKey*> set_values(const Experiment& experiment, std::vector<double> values,
                                            Load& load, ConfigErrors& errors);
 

@@ -156,7 +156,7 @@ struct ScheduleKey {
   KeyInterpolation interpolation = KeyInterpolation::linear;
   static void declare(Declaration<ScheduleKey>& d);
 
-  // Of a valid experiment (read_keys):
+  // Set by read_keys, for a valid experiment:
   std::vector<std::vector<double>> values;  ///< at each of the times, equally many numbers
   std::string section;                      ///< of the experiment: the path's first word
   std::size_t item = 0;                     ///< of that section, if it is a list

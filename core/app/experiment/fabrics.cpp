@@ -131,7 +131,7 @@ struct Table {
     return i < std::ssize(header) && i < std::ssize(rows[row]) ? rows[row][i] : "";
   }
   std::string cell(std::size_t row, const std::string& column) const { return cell(row, place_of(column)); }
-  /// Of each row, or its number.
+  /// The name of each row, or its number.
   std::vector<std::string> names() const {
     std::vector<std::string> all;
     const std::ptrdiff_t place = place_of("name");

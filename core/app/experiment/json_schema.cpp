@@ -9,7 +9,7 @@
 namespace drape {
 namespace {
 
-/// Of a scalar parameter, or of an item of its list or map.
+/// The schema of a scalar parameter, or of an item of its list or map.
 Json scalar_schema(const Parameter& p) {
   const bool is_text = p.type.kind == ValueKind::text;
   Json json = {{"type", is_text ? "string" : p.type.item().text()}};  // for the others both have one word
@@ -43,7 +43,7 @@ Json named_constants_schema(const Parameter& p) {
   return {{"type", "object"}, {"additionalProperties", {{"anyOf", Json::array({number, with_unit})}}}};
 }
 
-/// Of a parameter's value, or of an item of its list.
+/// The schema of a parameter's value, or of an item of its list.
 Json item_schema(const Parameter& p, const Registry* registry) {
   if (p.type.is_map()) return named_constants_schema(p);
   if (p.section) return json_schema(*p.section, registry);
@@ -65,7 +65,7 @@ Json parameter_schema(const Parameter& p, const Registry* registry) {
   return json;
 }
 
-/// Of an experiment's `obstacles`: the items that the registered contact models take.
+/// The schema of an experiment's `obstacles`: the items that the registered contact models take.
 Json obstacles_schema(const Registry& registry) {
   Json alternatives = Json::array();
   for (const RegistryEntry* model : registry.of_kind("contact"))
@@ -82,7 +82,8 @@ Json obstacles_schema(const Registry& registry) {
   return {{"type", "array"}, {"items", {{"anyOf", alternatives}}}};
 }
 
-/// Of a map from names to plugins of a kind, as an experiment's methods; `type` defaults to the name.
+/// The schema of a map from names to plugins of a kind, as an experiment's methods; `type` defaults to the
+/// name.
 Json named_plugins_schema(const std::string& kind, const Registry& registry) {
   Json one = plugin_schema(kind, registry);
   for (Json& alternative : one["anyOf"])

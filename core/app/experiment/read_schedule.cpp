@@ -19,7 +19,7 @@ using NodeKind = ConfigNode::Kind;
 /// Sections whose parameters may change; the others choose the discretisation and the methods.
 const std::vector<std::string> changeable = {"material", "energies", "contact", "obstacles",
                                              "friction", "pins",     "handles"};
-/// Those of them that contact models are made from.
+/// The changeable sections that contact models are made from.
 const std::vector<std::string> of_contact = {"contact", "obstacles", "friction"};
 
 bool is_changeable(const std::string& path) { return is_one_of(path.substr(0, path.find('.')), changeable); }

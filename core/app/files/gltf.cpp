@@ -21,7 +21,7 @@ using Rows = Eigen::Matrix<Number, Eigen::Dynamic, columns, columns == 1 ? Eigen
 constexpr int float_component = 5126, unsigned_int_component = 5125;
 constexpr int vertex_data = 34962, index_data = 34963, other_data = 0;
 
-/// Texture coordinates that span more are no tiles of a picture, as of UDIM, but lengths, as a CAD program
+/// Texture coordinates that span more are not tiles of a picture, as of UDIM, but lengths, as a CAD program
 /// writes them.
 constexpr double most_tiles = 10;
 

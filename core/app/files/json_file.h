@@ -42,14 +42,16 @@ class JsonFile {
 /// Throws if a part of the way below a folder is a symbolic link.
 void refuse_links(const std::filesystem::path& folder, const std::filesystem::path& way);
 
-/// A member of an object; null if the key is absent or it is no object.
+/// A member of an object; null if the key is absent or the node is not an object.
 const Json& member_of(const Json& object, std::string_view key);
-/// A member's text; empty if it is none.
+/// A member's text; empty if it is not a text.
 std::string text_member(const Json& object, const std::string& key);
-/// A member's finite number; nothing if it is none. "energy_parts.hinge" is the member hinge of energy_parts.
+/// A member's finite number; nothing if it is not one. "energy_parts.hinge" is the member hinge of
+/// energy_parts.
 std::optional<double> number_member(const Json& object, const std::string& key);
 
-/// The value that a JSON text describes; discarded (nlohmann's is_discarded(), of no type) if it is none.
+/// The value that a JSON text describes; discarded (nlohmann's is_discarded(), without a type) if it is not
+/// JSON.
 Json parse_json(const std::string& text);
 /// The JSON's text, on one line without `indent`. Bytes that are not UTF-8, as in a file's name, are
 /// replaced; a number that is not finite, which JSON does not have, becomes null.

@@ -12,7 +12,7 @@ namespace drape {
 /// States of one level in a file: positions as little-endian float32, state by state, row by row.
 class SnapshotFile {
  public:
-  SnapshotFile() = default;  ///< of no states
+  SnapshotFile() = default;  ///< without states
   /// Reads a file of `count` states of n vertices. Throws std::runtime_error if it is missing, has another
   /// size or another checksum than the recorded one, if there is one.
   SnapshotFile(const std::filesystem::path& file, std::size_t count, Eigen::Index n,

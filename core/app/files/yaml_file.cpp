@@ -138,7 +138,7 @@ bool is_text(const std::string& text, const std::string& name, ConfigErrors& err
   return false;
 }
 
-/// Of a line, counted from 0.
+/// Whether a tab indents the line, counted from 0.
 bool is_indented_by_tab(const std::string& text, std::size_t line) {
   const std::vector<std::string> lines = split(text, '\n');
   return line < lines.size() && lines[line].find('\t') < lines[line].find_first_not_of(" \t");

@@ -20,7 +20,7 @@ ConfigNode parse_yaml(const std::string& text, const std::string& name, ConfigEr
 std::string to_yaml(const ConfigNode& node);
 
 /// The YAML value of an option of the command line, which is its location; empty, with an error appended, if
-/// it is no YAML.
+/// it is not YAML.
 std::optional<ConfigNode> value_of_option(const std::string& text, const std::string& option,
                                           ConfigErrors& errors);
 

@@ -37,7 +37,7 @@ class Solve {
   }
 
  public:
-  /// Those that exist, guarded by the GIL. Never destroyed: solves may outlive the module.
+  /// All solves that exist, guarded by the GIL. Never destroyed: solves may outlive the module.
   static std::set<Solve*>& all() {
     static auto* const all = new std::set<Solve*>;
     return *all;

@@ -124,7 +124,7 @@ struct SceneHandle {
   ModelHandle model(int l) const { return {scene->models[checked(l)], scene}; }
 };
 
-/// An experiment as written; it is read anew whenever it is used.
+/// An experiment as written; it is read again whenever it is used.
 struct ExperimentHandle {
   ConfigNode source;
 

@@ -8,7 +8,7 @@ namespace drape::python {
 
 namespace {
 
-// Of Python the exception itself: a py::error_already_set can be raised only once.
+// The Python exception itself, since a py::error_already_set can be raised only once.
 thread_local SharedObject raised;
 thread_local std::exception_ptr thrown;
 

@@ -43,7 +43,7 @@ Stencils integer_rows(const py::handle& values, Eigen::Index columns, const std:
 /// ValueError.
 struct State {
   Positions x;
-  /// x. Throws ValueError, with both shapes, unless it has so many rows.
+  /// x. Throws ValueError, with both shapes, unless it has `vertices` rows.
   const Positions& of(Eigen::Index vertices) const;
 };
 State state_of(const py::handle& values);

@@ -126,7 +126,7 @@ std::map<std::string, double> parsed(const Names& bounds, const Names& known) {
   return ratios;
 }
 
-/// At most so many names, then how many more there are.
+/// The first `most` names, then how many more there are.
 Names first_of(Names names, std::size_t most) {
   if (names.size() <= most) return names;
   const std::string rest = "and " + std::to_string(names.size() - most) + " more";

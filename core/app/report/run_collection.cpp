@@ -139,7 +139,7 @@ RunCollection read_runs(const std::vector<fs::path>& given) {
       single.push_back(folder);
     }
   }
-  // Runs of two sweeps are no repeats of each other, even if their variations have one name.
+  // Runs of two sweeps are not repeats of each other, even if their variations have one name.
   const bool several = !names.empty() && folders.size() > 1;
   for (std::size_t k = 0; several && k < collection.runs.size(); ++k) {
     RunRecord& run = collection.runs[k];

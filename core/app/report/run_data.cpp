@@ -125,7 +125,7 @@ Json read_results(const std::filesystem::path& folder, const std::string& remedy
   const JsonFile file(path, remedy);
   if (!json.is_object()) file.refuse("is damaged or cut short: it is not a JSON object");
   if (!member_of(json, "methods").is_object()) file.refuse("is damaged: \"methods\" is not a map");
-  file.find<bool>(json, "complete");  // refuses what is no boolean
+  file.find<bool>(json, "complete");  // refuses what is not a boolean
   return json;
 }
 

@@ -17,7 +17,7 @@ namespace {
 
 /// Pins further off than this fraction of the cloth's diagonal are not at their targets.
 constexpr double max_pin_distance = 1e-6;
-/// Forces may be out of balance by so many times what the method claims.
+/// How far forces may be out of balance, over what the method claims.
 constexpr double residual_slack = 10;
 
 double distance_of_pins(const LevelModel& model, const Positions& x) {

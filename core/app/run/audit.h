@@ -6,7 +6,7 @@ namespace drape {
 
 /// Throws std::runtime_error for a level that the scene does not have.
 void require_level(const Scene& scene, int level);
-/// Throws std::runtime_error for x (n×3) [m] that is no state of the level: with other vertices, or not
+/// Throws std::runtime_error for x (n×3) [m] that is not a state of the level: with other vertices, or not
 /// finite.
 void require_state(const Scene& scene, int level, const Positions& x);
 

@@ -57,8 +57,8 @@ struct ErrorTarget {
 /// The finest level's energy at the scene's start, without noise and with pins where they begin [J].
 double energy_of_start(const Scene& scene);
 
-/// The error of a state x of the finest level, whose energy is given [J]. There is no energy gap to a target
-/// that releases none. A metric that throws is reported to `fault`; its values stay absent.
+/// The error of a state x of the finest level, whose energy is given [J]. A target that releases no energy
+/// has no energy gap. A metric that throws is reported to `fault`; its values stay absent.
 StateError state_error(const std::vector<ErrorMeasure>& measures, const Experiment& experiment,
                        const Scene& scene, const Positions& x, double energy, const ErrorTarget& target,
                        const std::function<void(const std::string&)>& fault);

@@ -12,8 +12,8 @@ namespace drape {
 enum class Verbosity { quiet, progress, iterations };
 
 /// Shows a run on the terminal: one line that is rewritten while a level is solved (a new line now and then
-/// if standard error is no terminal, one for every iteration if the user asks for them), and a permanent one
-/// for every finished level.
+/// if standard error is not a terminal, one for every iteration if the user asks for them), and a permanent
+/// one for every finished level.
 class Progress : public Observer {
  public:
   /// The bar is full at `tolerance` of the force residual; `levels` is their number. Under load stepping

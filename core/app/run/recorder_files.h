@@ -10,7 +10,7 @@
 
 namespace drape {
 
-/// A cell of a CSV file, to so many significant digits; empty for a number that is absent or not finite.
+/// A cell of a CSV file, to `digits` significant digits; empty for a number that is absent or not finite.
 std::string number_cell(const std::optional<double>& value, int digits);
 
 /// Status of a method that threw, and of its current level; no solver returns it.

@@ -34,7 +34,7 @@ constexpr double contractions[] = {0.009, 0.018, 0.028, 0.05};
 /// A body that fits stretches the placed pieces, which are much longer than they are sewn, by less than a
 /// hundredth while it grows.
 constexpr double largest_placed_stretch = 0.1;
-/// Of the garment's size: less is a body in another unit.
+/// Smallest size of a body over the garment's; a smaller one is in another unit.
 constexpr double smallest_body = 0.01;
 
 /// The triangles of the cloth that a start's intersections name.

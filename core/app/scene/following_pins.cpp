@@ -54,7 +54,7 @@ struct FollowedSurface {
     return near.offset.norm();
   }
 
-  /// Of the triangles with one of these vertices.
+  /// The search among the triangles that have one of these vertices.
   SurfaceSearch part(const std::vector<int>& vertices) const {
     std::vector<int> triangles;
     for (const int v : vertices)

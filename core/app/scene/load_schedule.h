@@ -66,7 +66,7 @@ class LoadSchedule {
   std::shared_ptr<const LoadState> first_;
 };
 
-/// Of positions of a level's vertices (n×3), those of the vertices of a coarser one, which are among them.
+/// The positions of a coarser level's vertices, which are among those of a finer level (x, n×3).
 Positions own_of(const Hierarchy& hierarchy, const Positions& x, int fine, int coarse);
 
 /// Load stepping along the schedule of an experiment with keys; refers to the scene, which owns it. Null,

@@ -38,13 +38,13 @@ struct SceneSummary {
 
 SceneSummary summary_of(const Scene& scene);
 
-/// Seconds that PCS takes to bring the scene's cloth to rest on a mesh of so many vertices, those of coarser
-/// levels among them, on one core of `estimate_processor`; none without a bending length. A fit to
+/// Seconds that PCS takes to bring the scene's cloth to rest on a mesh of `vertices` vertices, those of
+/// coarser levels included, on one core of `estimate_processor`; none without a bending length. A fit to
 /// docs/results/speed.md's record of every scene, which it meets within a factor of 3.
 std::optional<double> estimated_seconds(const SceneSummary& summary, double vertices);
 inline constexpr const char* estimate_processor = "an AMD EPYC (AVX-512)";
 
-/// Of a level's rest shape [m].
+/// The median length of a level's edges at rest [m].
 double median_edge(const Level& level);
 
 /// One line such as "0.62 × 0.7 m, 1 part, edges 8–31 mm, 0.19 kg, bending length 12 mm (2.1 edges), d̂ 1 mm
@@ -57,7 +57,7 @@ std::string size_text(const Eigen::Vector3d& size);
 /// A length with two significant digits, in millimetres below 0.1 m: "31 mm", "0.25 m".
 std::string length_text(double length);
 
-/// A number with so many significant digits and without exponent, from 1e-4 to 1e15.
+/// A number with `digits` significant digits and without exponent, from 1e-4 to 1e15.
 std::string rounded_text(double value, int digits);
 /// "(0.5, 0, 1)"
 std::string point_text(const Eigen::Vector3d& p);

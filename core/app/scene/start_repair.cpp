@@ -22,7 +22,7 @@ using Eigen::Vector3d;
 constexpr double tiny_gap = 1e-6;
 /// Trial distances, relative to the cloth's diagonal, in a geometric series.
 constexpr double shortest_part = 1e-3, growth = 1.5;
-/// No start is moved by more than so many times its depth in an obstacle and its longest edge.
+/// The farthest that a start is moved, over its depth in an obstacle and its longest edge.
 constexpr double reach = 2;
 /// Bisections of the first free translation, to move no further than necessary.
 constexpr int halvings = 5;

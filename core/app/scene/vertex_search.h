@@ -22,7 +22,7 @@ class VertexSearch {
   std::vector<int> selected(const VertexSelection& selection) const;
 
  private:
-  /// Those among which the selected ones are, ascending.
+  /// A superset of the selected vertices, ascending.
   std::vector<int> candidates(const VertexSelection& selection) const;
   std::vector<int> selected_by_name(const VertexSelection& selection) const;
 

@@ -72,7 +72,7 @@ const std::string prefix = "factor=";
 
 std::string name_of(double factor) { return prefix + ConfigNode::of(factor).scalar; }
 
-/// To so many significant digits.
+/// The number, rounded to `digits` significant digits.
 double rounded(double value, int digits) { return parse_number(general_text(value, digits)).value(); }
 
 const double first_step = std::log(4), last_place = std::log(1024);

@@ -48,7 +48,7 @@ namespace {
 namespace fs = std::filesystem;
 
 fs::file_time_type time_of(const fs::path& file) {
-  std::error_code none;  // the kernel's own library is no file
+  std::error_code none;  // the kernel's own library is not a file
   return fs::last_write_time(file, none);
 }
 

@@ -42,7 +42,7 @@ struct RunFiles {
   std::filesystem::path log() const { return folder.string() + ".log"; }  ///< its output
 };
 
-/// The status in the file, pending without one. Throws std::runtime_error for a file that is no status.
+/// The status in the file, pending without one. Throws std::runtime_error for a file that is not a status.
 RunStatus read_status(const RunFiles& files);
 void write_status(const RunFiles& files, const RunStatus& status);
 

@@ -21,7 +21,7 @@ std::string title(const std::string& name, int seed) {
   return "run \"" + name + "\", seed " + std::to_string(seed);
 }
 
-/// Of an entry of sweep.json's runs.
+/// What an entry of sweep.json's runs expects of its run.
 Expectation expectation_of(const Json& run) { return {run["expect"]["status"], run["expect"]["message"]}; }
 
 }  // namespace

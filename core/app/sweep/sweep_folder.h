@@ -60,7 +60,8 @@ class MemoryEstimate {
   MemoryEstimate(const Sweep& sweep, const SweepFolder& folder);
   void learn(const SweepRun& run, const RunFiles& files);  ///< from a finished run's results
   double bytes(const SweepRun& run) const;
-  /// Throws std::runtime_error if one of the sweep's runs without results may need more than so many bytes.
+  /// Throws std::runtime_error if one of the sweep's runs without results may need more than the machine's
+  /// bytes.
   void require(const Sweep& sweep, const SweepFolder& folder, double machine) const;
 
  private:

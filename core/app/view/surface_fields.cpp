@@ -78,7 +78,7 @@ std::vector<FieldKind> field_kinds(bool worn) {
 Eigen::VectorXd contact_gap(const Level& level, const Positions& x,
                             const std::vector<TriangleMesh>& obstacles, double range) {
   Eigen::VectorXd gap = obstacle_distance(x, obstacles, range);
-  // A vertex's neighbourhood along the cloth is always near and is no contact.
+  // A vertex's neighbourhood along the cloth is always near and is not a contact.
   const Positions& rest = level.rest.vertices;
   const Triangles& triangles = level.rest.triangles;
   lower_to_distance(gap, x, {x, triangles}, range, [&](Eigen::Index i, int t) {

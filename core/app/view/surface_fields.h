@@ -34,7 +34,7 @@ Eigen::VectorXd contact_gap(const Level& level, const Positions& x,
 std::pair<double, double> field_range(const FieldKind& kind,
                                       const std::vector<const Eigen::VectorXd*>& values, double gap_range);
 
-/// Of a cloth that is worn `stretch_warp` and `stretch_weft` [%], means over the triangles around a vertex,
+/// Fields of a worn cloth: `stretch_warp` and `stretch_weft` [%], means over the triangles around a vertex,
 /// and `ease` [mm], the distance to the body, NaN beyond 60 mm.
 VertexFields garment_fields_at(const Level& level, const Positions& x,
                                const std::vector<TriangleMesh>& obstacles);
