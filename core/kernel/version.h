@@ -8,7 +8,7 @@ namespace drape {
 std::string version();
 
 /// The commit it was built from, as `git describe` names it ("-dirty" when files had changed), or
-/// "unknown" where the sources are no git tree.
+/// "unknown" where the sources are not a git tree.
 std::string commit();
 
 }  // namespace drape

@@ -29,7 +29,7 @@ std::string reason_of(const std::exception& error);
 /// The exception that is being handled as a sentence, whatever it is: plugins throw anything.
 std::string message_in_flight();
 
-/// What `call` returns. The message of a runtime_error that it throws, and of what is no std::exception,
+/// What `call` returns. The message of a runtime_error that it throws, and of what is not a std::exception,
 /// begins with `name`, such as "energy hinge", or with the name's last words; others (memory, Python) pass.
 template <class Call>
 auto with_name(const std::string& name, const Call& call) {

@@ -69,8 +69,8 @@ struct MetricValue {
 
 struct MetricResult {
   std::vector<MetricValue> values;
-  /// Of the level's vertices, with names of letters, digits and underscores. Those of pairs are written to
-  /// fields/, for pictures; those of states are for callers of the library.
+  /// Fields over the level's vertices, with names of letters, digits and underscores. Those of pairs are
+  /// written to fields/, for pictures; those of states are for callers of the library.
   VertexFields fields;
 };
 

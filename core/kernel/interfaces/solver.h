@@ -127,7 +127,7 @@ class Solver {
   virtual bool can_resume() const { return false; }
   /// Continues from a state, with the results of finished levels at the front; bit for bit as if `solve` had
   /// not been interrupted. A state without a finished level or one under way begins its level from the start.
-  /// By default begins anew.
+  /// By default begins from the start.
   virtual std::vector<LevelResult> resume(const Problem& problem, [[maybe_unused]] const MethodState& from,
                                           Observer& observer) const {
     return solve(problem, observer);

@@ -22,7 +22,7 @@ namespace drape {
 template <class Struct>
 class Declaration;
 
-/// Of a plugin without parameters.
+/// The parameters of a plugin without any.
 struct NoParameters {
   static void declare(Declaration<NoParameters>&) {}
 };

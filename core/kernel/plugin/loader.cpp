@@ -28,8 +28,8 @@ std::vector<fs::path> libraries_of(const fs::path& directory) {
   return libraries;
 }
 
-/// Why the file is no loadable library, with a remedy; "" if it may be one. dlopen maps a file without a look
-/// at its size, so one that is cut short would end the process with SIGBUS. Section headers come last.
+/// Why the file cannot be loaded as a library, with a remedy; "" if it may be one. dlopen maps a file without
+/// a look at its size, so one that is cut short would end the process with SIGBUS. Section headers come last.
 std::string fault_of(const fs::path& library) {
   std::error_code error;
   const fs::file_status status = fs::status(library, error);

@@ -12,7 +12,7 @@ namespace drape {
 std::vector<std::filesystem::path> plugin_directories();
 
 /// Loads every *.so of the folders, by name, and registers its entries. Throws std::runtime_error, one line
-/// with the library's path, for a library that cannot be loaded, is no plugin, is not compatible with this
+/// with the library's path, for a library that cannot be loaded, is not a plugin, is not compatible with this
 /// build (before any of its C++ is called) or repeats a name. Libraries are never unloaded.
 void load_plugins(Registry& registry, const std::vector<std::filesystem::path>& directories);
 
