@@ -29,7 +29,7 @@ struct Dihedrals {
   Bends vertex;
   std::vector<char> edge_is_rim;  ///< on the boundary, or with an angle above 30°
 
-  /// Of a surface with its vertices at `vertices` (n×3) [m].
+  /// The bends of a surface with its vertices at `vertices` (n×3) [m].
   static Dihedrals of(const Surface& surface, const Positions& vertices);
 };
 

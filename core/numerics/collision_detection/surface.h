@@ -19,7 +19,7 @@ struct Surface {
   Eigen::VectorXd triangle_area;           ///< at rest [m²]
   Eigen::VectorXd edge_length_squared;     ///< at rest [m²]
 
-  /// Of a mesh whose triangles have areas and whose vertices have triangles, and its topology.
+  /// The surface of a mesh without triangles of no area and vertices of no triangle; `topology` is its own.
   static Surface of(const TriangleMesh& rest, const Topology& topology);
   /// Appends another surface. Its vertices, edges and triangles follow this one's.
   void append(const Surface& other);

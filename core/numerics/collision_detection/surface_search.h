@@ -20,7 +20,7 @@ struct NearestPoint {
 class SurfaceSearch {
  public:
   explicit SurfaceSearch(const TriangleMesh& mesh);
-  /// Of these triangles of the mesh.
+  /// Finds only these triangles of the mesh.
   SurfaceSearch(const TriangleMesh& mesh, std::vector<int> triangles);
 
   /// The nearest point to p that is nearer than `reach` [m].

@@ -22,8 +22,8 @@ Vector3d position(const FrictionContact& contact, const Positions& x) {
   return sum;
 }
 
-/// Of a contact with an obstacle: 1 if Σ c_k x_k is the position of the cloth relative to the obstacle, -1 if
-/// it is that of the obstacle relative to the cloth.
+/// For a contact with an obstacle: 1 if Σ c_k x_k is the position of the cloth relative to the obstacle, -1
+/// if it is the obstacle's relative to the cloth.
 double side_of_cloth(const FrictionContact& contact) {
   double sum = 0;
   for (int k = 0; k < 4; ++k)
@@ -105,7 +105,7 @@ LaggedFriction::LaggedFriction(FrictionContacts groups, const Positions& referen
     : epsilon_(friction_smoothing_distance) {
   for (std::vector<FrictionContact>& group : groups) {
     if (contacts_.empty())
-      contacts_ = std::move(group);  // mostly there is no other
+      contacts_ = std::move(group);  // there are rarely other groups
     else
       contacts_.insert(contacts_.end(), group.begin(), group.end());
     group_ends_.push_back(size());

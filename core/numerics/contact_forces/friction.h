@@ -75,7 +75,7 @@ class LaggedFriction final : public BoundEnergy {
 
   std::vector<FrictionContact> contacts_;
   std::vector<int> group_ends_;  // indices of contacts_
-  // Of each contact: Σ c_k reference_k less its stored displacement [m].
+  // Σ c_k reference_k of each contact, less its stored displacement [m].
   std::vector<Eigen::Vector3d> origin_;
   double epsilon_;  // ε, the friction smoothing distance [m]
 };

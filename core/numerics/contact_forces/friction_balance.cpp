@@ -9,7 +9,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// After so many sweeps over the contacts the lower bound decides.
+/// Sweeps over the contacts after which the lower bound decides.
 constexpr int max_sweeps = 2000;
 /// Over-relaxation: forces that pass through layers of cloth need fewer sweeps.
 constexpr double relaxation = 1.5;

@@ -11,8 +11,9 @@ struct Tightness {
   int triangle = 0;    ///< of the piece, the most stretched one
 };
 
-/// Of the tightest piece of a cloth of flat pieces at x (n×3) [m]. A tenth, since single triangles are
-/// stretched at corners of a garment that fits, and the girth that is too narrow may be a part of a piece.
+/// The tightest piece of a cloth of flat pieces at x (n×3) [m]. A tenth of its area, since single triangles
+/// are stretched at corners of a garment that fits, and the girth that is too narrow may be a part of a
+/// piece.
 Tightness tightest_piece(const Level& level, const Positions& x);
 
 }  // namespace drape

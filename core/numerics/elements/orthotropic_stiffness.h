@@ -16,15 +16,15 @@ struct OrthotropicStiffness {
 
   /// From the stiffness of strips along warp and weft, ν = √(ν12 ν21) < 1, and c66.
   static OrthotropicStiffness of_strips(double warp, double weft, double nu, double shear);
-  /// Of a strip at an angle to warp [rad], whose sides are free.
+  /// The stiffness of a strip at an angle to warp [rad], whose sides are free.
   double strip(double angle) const;
 };
 
-/// Of a membrane [N/m].
+/// The stiffness of the material as a membrane [N/m].
 OrthotropicStiffness membrane_stiffness(const Material& material);
 
-/// Of a plate [N·m]. Throws std::runtime_error with the eigenvalue if no strip at 45° can be as stiff as
-/// `bias_bending`.
+/// The stiffness of the material as a plate [N·m]. Throws std::runtime_error with the eigenvalue if no strip
+/// at 45° can be as stiff as `bias_bending`.
 OrthotropicStiffness plate_stiffness(const Material& material);
 
 /// The coefficient k = E_bend d³ / (24 (1 - ν²)) [J] of every isotropic bending energy: half a plate's

@@ -11,7 +11,7 @@ struct StretchSlopes {
   T first1, first2, second1, second2, divided;
 };
 
-/// Slopes of an energy Φ(σ₁, σ₂) that is no sum of two laws: by one stretch each, and ∂²Φ/∂σ₁∂σ₂.
+/// Slopes of an energy Φ(σ₁, σ₂) that is not a sum of two laws: by one stretch each, and ∂²Φ/∂σ₁∂σ₂.
 template <class T>
 struct CoupledSlopes : StretchSlopes<T> {
   T mixed;

@@ -125,7 +125,7 @@ class ElementFormula final : public Energy {
     if (role() != EnergyRole::bending) return 0;
     try {
       return fold_plate_stiffness([&](const Level& level) { return bind(level, material); });
-    } catch (const std::runtime_error&) {  // likewise
+    } catch (const std::runtime_error&) {  // as above
       return 0;
     }
   }

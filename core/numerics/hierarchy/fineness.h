@@ -14,7 +14,7 @@ struct Fineness {
 
   /// Not explicit: a number of regular refinements stands for the fineness that they make.
   Fineness(double regular_levels) : levels(regular_levels) {}
-  /// Of a level of a hierarchy, by the operators above it.
+  /// The fineness above a level of a hierarchy, by the operators there.
   static Fineness of(const Hierarchy& hierarchy, int level);
 
   /// h factors by which edges are shorter on the finest level than a level's hinges, over their mean 2^levels

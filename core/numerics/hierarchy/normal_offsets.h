@@ -14,9 +14,9 @@ struct NormalOffsets {
   std::vector<int> triangle;  ///< the coarse triangle of each fine vertex; empty: there are no offsets
   Eigen::VectorXd height;     ///< along its normal [m]
 
-  /// Of weights that project the places of the fine vertices to the planes of coarse triangles. Without
-  /// offsets where U X is the fine rest shape but for rounding, for sewn cloth, whose pieces rest flat, and
-  /// for other weights, as those in the plane of a cloth that is nearly flat.
+  /// The offsets of weights that project the places of the fine vertices to the planes of coarse triangles.
+  /// There are none where U X is the fine rest shape up to rounding, for sewn cloth, whose pieces rest flat,
+  /// and for other weights, such as those in the plane of a cloth that is nearly flat.
   static NormalOffsets of(const Level& coarse, const ProlongationMatrix& weights, const Level& fine);
 
   /// Adds height · n(x) to `fine` = U x.

@@ -46,7 +46,7 @@ struct SymbolicAnalysis : CholmodContext {
 constexpr double max_flops_growth = 1.5;
 
 /// Conjugate gradients with a factor in single precision: relative residual at which they end, commonly after
-/// two iterations, and iterations after which the factor counts as of no use. A residual of 1e-3 takes one
+/// two iterations, and iterations after which the factor counts as useless. A residual of 1e-3 takes one
 /// iteration and Newton no more of its own, but keeps less of a distance to soft modes, of which the residual
 /// shows little.
 constexpr double mixed_tolerance = 1e-5;

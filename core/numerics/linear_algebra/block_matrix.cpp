@@ -9,7 +9,7 @@
 namespace drape {
 namespace {
 
-/// Of the elements [begin, end).
+/// Refuses elements of [begin, end) that repeat a vertex or name one out of range.
 void require_vertices(int vertex_count, const Stencils& stencils, Eigen::Index begin, Eigen::Index end) {
   for (Eigen::Index e = begin; e < end; ++e)
     for (Eigen::Index a = 0; a < stencils.cols(); ++a) {

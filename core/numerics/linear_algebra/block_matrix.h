@@ -77,7 +77,7 @@ class BlockPattern {
     for (int i = 0; i < rows(); ++i)
       for (int b = row_start[i]; b < row_start[i + 1]; ++b) visit(i, columns[b], b);
   }
-  /// Of each row i all j with a block (i, j) or (j, i), i itself among them.
+  /// For each row i all j with a block (i, j) or (j, i), i itself included.
   AdjacencyList neighbours() const;
   /// Index of block (i, j), i ≤ j; -1 if it is not in the pattern.
   int find(int i, int j) const;

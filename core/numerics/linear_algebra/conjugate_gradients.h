@@ -42,7 +42,7 @@ class ConjugateGradients {
   struct Accuracy {
     double tolerance;    ///< the residual that is wanted
     int max_iterations;  ///< for it
-    double sufficient;   ///< the residual that counts as converged after so many, ≥ tolerance
+    double sufficient;   ///< the residual that counts as converged after max_iterations, ≥ tolerance
   };
 
   /// z = M⁻¹ r for n×3 r and z, whose fixed rows are zero.

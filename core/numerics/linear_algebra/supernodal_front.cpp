@@ -103,7 +103,7 @@ bool Front<Scalar>::eliminate() const {
           factorise_columns_below(panel_rows(i), panel_rows(column / row_panel_height),
                                   column % row_panel_height, first, column);
     });
-    // Of a small front smaller tiles, so that there are enough for threads to share.
+    // A small front has smaller tiles, so that there are enough for threads to share.
     const int height = std::clamp((panels - end) / 4, 1, tile<Scalar>);
     const int tiles = (panels - end + height - 1) / height;
     parallel_kernels<Scalar>(tiles * (tiles + 1) / 2, 1, [&](int pair, int) {

@@ -17,11 +17,11 @@ std::vector<int> connected_parts(const TriangleMesh& mesh);
 /// cut_directions of flat pieces: as they are drawn, from y (for x), u or the mesh's own directions.
 Positions flat_directions(const TriangleMesh& mesh, GrainAxis along, const Eigen::VectorXd& degrees);
 
-/// Lengths in space over lengths in texture coordinates [m]: by areas, and along u and v alone.
+/// Lengths in space over lengths in texture coordinates [m]: by areas, and along u and along v.
 struct UvLength {
   double whole = 0, along_u = 0, along_v = 0;
 
-  /// Of the triangles that are marked and have an area in texture coordinates.
+  /// Measured on the triangles that are marked and have an area in texture coordinates.
   static UvLength of(const TriangleMesh& mesh, const std::vector<char>& marked);
 };
 

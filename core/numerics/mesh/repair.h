@@ -16,7 +16,7 @@ struct RepairedMesh {
 };
 
 /// Joins the vertices that are at one place, drops the vertices of no triangle, the triangles that repeat
-/// another or have no area, and numbers the rest anew in their order. `frames` are one mesh or several with
+/// another or have no area, and renumbers the rest in their order. `frames` are one mesh or several with
 /// the same triangles, which lose the same elements; indices are in range, as in what read_mesh reads. Throws
 /// std::runtime_error if no triangle is left or a triangle has an area in some frames only.
 RepairedMesh repair_mesh(std::vector<TriangleMesh> frames);

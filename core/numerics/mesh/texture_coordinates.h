@@ -36,8 +36,8 @@ struct PlanarUv {
   Eigen::Matrix<double, 2, 3> axes;  ///< u and v [1/m]
   Eigen::Vector2d origin;            ///< at u = v = 0
 
-  /// Of a mesh with triangles; nothing if a vertex is farther from the plane than a thousandth of the mesh's
-  /// diagonal.
+  /// Texture coordinates of a mesh with triangles; nothing if a vertex is farther from the plane than a
+  /// thousandth of the mesh's diagonal.
   static std::optional<PlanarUv> of(const TriangleMesh& mesh);
   CornerUv at(const TriangleMesh& mesh) const;
 };

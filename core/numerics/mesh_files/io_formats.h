@@ -10,7 +10,7 @@
 namespace drape {
 
 // The formats behind read_mesh and write_mesh; bytes are a file's whole contents, the path is for errors. The
-// number of lines between vertices, which are no part of the mesh, is added to `lines`.
+// number of lines between vertices, which are not part of the mesh, is added to `lines`.
 
 TriangleMesh read_obj(const std::filesystem::path& path, std::string_view bytes, MeshUse use, int& lines);
 TriangleMesh read_off(const std::filesystem::path& path, std::string_view bytes, MeshUse use);

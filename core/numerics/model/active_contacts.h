@@ -19,7 +19,7 @@ struct LagDamping {
 /// The state of a level's contacts at the beginning of a step, for checkpoints.
 struct ContactMemory {
   Positions reference;  ///< n×3, from where tangential displacements are measured [m]
-  /// Of each model's contacts, at `reference`.
+  /// How far the contacts of each model have slid, at `reference`.
   std::vector<TangentialDisplacements> tangential_displacements;
   Positions candidates_begin, candidates_end;  ///< the motion whose candidates gave the step's collisions [m]
   double seconds_building = 0;                 ///< total time of building collisions [s]
@@ -114,7 +114,7 @@ class ActiveContacts {
   std::vector<std::unique_ptr<CollisionCandidates>> candidates_;
   std::vector<std::unique_ptr<Collisions>> collisions_;                        // at state_
   std::shared_ptr<const PositionPair> candidates_motion_, collisions_motion_;  // that each was built for
-  // Of each model, or null without friction; empty before a step.
+  // One for each model, null without friction; empty before a step.
   std::vector<std::unique_ptr<const LaggedFriction>> friction_;
   std::vector<TangentialDisplacements> tangential_displacements_;  // of each model
   Positions state_;                                                // that the collisions were built at

@@ -11,7 +11,7 @@ namespace drape {
 struct DerivativeError {
   double error = 0;  ///< relative to the largest entry of the finite differences [1]; +∞ where not finite
   int row = 0;       ///< 3 i + c: coordinate c of vertex i
-  int column = 0;    ///< likewise; of Hessians alone
+  int column = 0;    ///< as `row`; 0 for gradients
 };
 
 struct DerivativeCheck {

@@ -100,7 +100,7 @@ class LevelModel {
   /// empty for a model without contact.
   Eigen::VectorXd contact_pressure(const Positions& x) const;
   /// The Hessian of energy(x) [N/m], projected per element. Its pattern has the contacts at x, so every call
-  /// builds it anew: solvers take an Objective.
+  /// builds it again: solvers take an Objective.
   BlockMatrix energy_hessian(const Positions& x, Projection projection) const;
   /// The parts of energy(x): each term in the order given, and the contacts, `contact`, if there are any [J].
   /// No two have one name: the second energy of a type is `gravity 2`.

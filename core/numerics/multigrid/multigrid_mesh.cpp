@@ -16,7 +16,7 @@ constexpr int product_piece = 512;
 /// Three numbers in double precision and one of padding.
 using Double4 = double __attribute__((vector_size(32)));
 
-/// A row of blocks, at given columns. Each row of a block is padded by a number of no meaning.
+/// A row of blocks, at given columns. Each row of a block is padded by a number without meaning.
 class BlockRow {
  public:
   explicit BlockRow(int columns) : place_(static_cast<std::size_t>(columns)) {}
@@ -174,7 +174,7 @@ double MultigridMesh::make_product(MultigridMesh& coarse) {
         const double* sum = sums.block(k - to_start[i]);
         double* value = &coarse.values_[9 * static_cast<std::size_t>(k)];
         for (int r = 0; r < 3; ++r) std::copy_n(sum + 4 * r, 3, value + 3 * r);
-        // Of a vertex whose children are all fixed.
+        // The block is 0 for a vertex whose children are all fixed.
         if (to_columns[k] == i && std::all_of(value, value + 9, [](double e) { return e == 0; }))
           for (int e = 0; e < 9; e += 4) value[e] = 1;
         round_to(to.block(k), value);

@@ -17,7 +17,7 @@ Float4 load(const float* p) {
   return v;
 }
 
-/// Sums of blocks times vectors. The fourth number is of no meaning.
+/// Sums of blocks times vectors. The fourth number has no meaning.
 struct Products {
   Float4 s0 = {}, s1 = {}, s2 = {};
 

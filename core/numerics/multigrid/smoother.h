@@ -11,8 +11,8 @@ using Float4 = float __attribute__((vector_size(16)));
 
 /// A symmetric matrix of 3×3 blocks in single precision, all of it stored, with block Gauss–Seidel sweeps.
 ///
-/// The sweeps go through pieces of so many rows side by side, which see each other's old values, so that bits
-/// do not depend on the number of threads. The diagonal blocks of such rows are raised by the norms of their
+/// The sweeps go through pieces of 4096 rows side by side, which see each other's old values, so that bits
+/// do not depend on the number of threads. The diagonal blocks are raised by the norms of their
 /// blocks in other pieces, without which the preconditioner need not be positive definite (Baker, Falgout,
 /// Kolev and Yang 2011, l1 hybrid smoothers).
 class SmoothedMatrix {

@@ -55,7 +55,7 @@ enum class VertexCount { about, at_least_about };
 TriangleMesh delaunay_polygon(const std::vector<Polygon>& loops, int vertices_about, unsigned seed,
                               VertexCount count);
 
-/// A flat mesh whose parts are meshed anew within their outlines, with edges of about this length [m]; the
+/// A flat mesh whose parts are meshed again within their outlines, with edges of about this length [m]; the
 /// mesh is valid (check_mesh), its parts need not lie in one plane. Border vertices that are nearer to each
 /// other and at which the border turns by less than 30° are left out. Keeps texture coordinates that are an
 /// affine function of the place in each part, and warp that is the same all over it. Throws

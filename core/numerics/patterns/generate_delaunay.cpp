@@ -155,7 +155,7 @@ TriangleMesh inside(Triangulation& triangulation) {
       in_order(std::move(triangles))};
 }
 
-/// Empty if the corners and angles require more than so many vertices.
+/// Empty if the corners and angles require more than `most` vertices.
 std::optional<TriangleMesh> refined(const std::vector<Polygon>& loops, const std::optional<Point2>& inner,
                                     const std::vector<Point2>& hole_points, double spacing,
                                     double longest_edge, double most) {
@@ -241,7 +241,7 @@ TriangleMesh delaunay_polygon(const std::vector<Polygon>& loops, int vertices_ab
     std::optional<TriangleMesh> mesh = refined(loops, inner, hole_points, spacing, longest_edge, most);
     if (!mesh) refuse("above " + std::to_string(std::llround(most)));
     longest_edge *= std::sqrt(static_cast<double>(mesh->vertices.rows()) / vertices_about);
-    // The loops alone ask for so many.
+    // The loops alone ask for this many.
     if (attempt > 0 && miss(*mesh) > far_off && mesh->vertices.rows() == best.vertices.rows()) break;
     if (attempt == 0 || miss(*mesh) < miss(best)) best = std::move(*mesh);
     if (miss(best) < 0.02) break;

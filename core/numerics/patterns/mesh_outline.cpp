@@ -41,7 +41,7 @@ std::vector<TriangleMesh> parts_of(const TriangleMesh& mesh) {
 }
 
 /// A border's corners without those between which it hardly turns in less than an edge: a curve that was
-/// sampled finely is divided anew.
+/// sampled finely is divided again.
 Polygon thinned(const Polygon& border, double edge_length) {
   constexpr double corner = 0.866;  // cosine of 30°, from which on a corner stays
   constexpr double shortest = 0.8;  // of an edge

@@ -133,7 +133,7 @@ std::vector<char> turned_panels(const Pattern& pattern, ConfigErrors& errors) {
   return turned;
 }
 
-/// Appends where the joined panels are no sheet of two sides.
+/// Appends where the joined panels are not a sheet of two sides.
 void check_joints(const Pattern& pattern, const TriangleMesh& cloth, double edge_length,
                   ConfigErrors& errors) {
   MeshFaults faults = MeshFaults::of_elements(cloth);

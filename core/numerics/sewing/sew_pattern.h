@@ -11,7 +11,7 @@
 
 namespace drape {
 
-/// Of each label, the ends of its edges in the cloth, two by two.
+/// The ends of each label's edges in the cloth, two by two.
 using LabelEdges = std::map<std::string, std::vector<int>>;
 
 /// The cloth of a pattern, and the edges of its labels: panels meshed with edges of about `edge_length` [m]

@@ -24,7 +24,7 @@ constexpr double min_initial_stiffness = 0.1;
 
 /// A move by less than this fraction of the way gains nothing.
 constexpr double min_move = 5e-3;
-/// After so many idle moves in a row the penalty takes over.
+/// Idle moves in a row after which the penalty takes over.
 constexpr int max_idle_moves = 4;
 /// Below this gap, as a fraction of the bounding box diagonal, pins move on only by their penalty: each move
 /// takes most of a gap, and gaps far below this one leave the line search no descent.

@@ -18,7 +18,7 @@ namespace {
 constexpr double near_equilibrium = 10;
 /// Pins that were stopped move on after a full step once forces are within this multiple of the load.
 constexpr double relaxed_residual = 1;
-/// They move on after so many steps of an increment in any case.
+/// Steps of an increment after which they move on in any case.
 constexpr int max_steps_between_moves = 5;
 /// Force residual below which contacts count as carrying the load and no more.
 constexpr double balanced = 1;

@@ -14,7 +14,7 @@ struct LevelRun {
   Observer& observer;
   bool finer_follows = false;             ///< the level may be refined early, on request
   LevelResult before = {};                ///< costs of the level so far, and how its message begins
-  const NewtonState* from = nullptr;      ///< state to resume from; null to start anew
+  const NewtonState* from = nullptr;      ///< state to resume from; null to begin
   LoadStepping* load_stepping = nullptr;  ///< null without a schedule
   ContactStiffness stiffness = {};        ///< at least this of each contact model [Pa]
   const Hierarchy* hierarchy = nullptr;   ///< of the level, for LinearSolver::multigrid; may be null

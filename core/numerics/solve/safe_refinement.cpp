@@ -24,7 +24,7 @@ constexpr double tolerance = 0.05;
 /// the end must be within a fraction of an edge.
 constexpr double flight_tolerance = 5e-4;
 constexpr int max_steps = 100, max_rounds = 12;
-/// A round ends after so many steps in a row of which the line search left less than this fraction.
+/// A round ends after this many steps in a row of which the line search left less than this fraction.
 constexpr int max_negligible_steps = 8;
 constexpr double negligible_step = 1e-3;
 /// Consecutive rounds without convergence and without fewer violations, after which refinement fails.
@@ -226,7 +226,7 @@ LevelResult refine_safely(const Problem& problem, int level, const Positions& x,
     newton.psd_blend = PsdBlend::full;
     newton.force_tolerance = goal ? flight_tolerance : tolerance;
     newton.max_steps = max_steps;
-    newton.stability = StabilityMode::off;  // the target term is no energy of the cloth
+    newton.stability = StabilityMode::off;  // the target term is not an energy of the cloth
     newton.step_size = target_step_size;    // scales the mass that damps a step without descent
     int fewest = model.level().triangle_count() + 1, idle = 0;
     for (int round = 0; round < max_rounds; ++round) {

@@ -19,7 +19,7 @@ class EquilibriumCheck {
     static constexpr double unknown = std::numeric_limits<double>::infinity();
     /// Decrements of the last three iterations; iteration k is at k mod 3 [m/s].
     std::array<double, 3> decrements = {unknown, unknown, unknown};
-    /// Of the free vertices where the drift begins [m].
+    /// The centroid of the free vertices where the drift begins [m].
     Eigen::RowVector3d initial_centroid = Eigen::RowVector3d::Zero();
     IdleSteps idle = {};
     CycleDetector cycle = {};

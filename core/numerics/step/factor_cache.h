@@ -25,14 +25,14 @@ class FactorCache {
     Objective::PatternState pattern;
     BlockCholesky::Analysis analysis;
     LinearSolver fallback = LinearSolver::mixed;  ///< used instead of the preferred one …
-    int fallback_solves = 0;                      ///< … for so many further solves
+    int fallback_solves = 0;                      ///< … for this many further solves
   };
   State state() const;
   /// The iterate must have been evaluated.
   void restore(const State& state);
 
-  /// Refers to the iterate. Its result counts the factorisations, their operations and seconds. Without a
-  /// hierarchy of its level there is no multigrid.
+  /// Refers to the iterate. Its result counts the factorisations, their operations and seconds. Multigrid
+  /// needs the hierarchy of its level.
   FactorCache(Iterate& iterate, const NewtonParameters& parameters, const Hierarchy* hierarchy = nullptr);
 
   /// Factorises the Hessian at the iterate plus `mass_shift` [1/s²] times the masses, without the rows and

@@ -77,7 +77,7 @@ class Iterate {
   /// includes the load's work across the cloth, because terms of the energy cancel while their round-off does
   /// not.
   double energy_noise(double inertia) const;
-  /// F(x) without friction, whose potential is no function of the state alone [J].
+  /// F(x) without friction, whose potential depends on more than the state [J].
   double energy_without_friction() const { return energy_ - f_.contacts().friction(result_.x); }
 
  private:

@@ -13,7 +13,7 @@ class LineSearch {
   static constexpr double min_step_length = 1e-6;
 
   /// Moves the iterate, at which `step` was evaluated, along the direction p (n×3) [m]. Returns false, with
-  /// the iterate as it was, if p is no descent direction or no step length is accepted.
+  /// the iterate as it was, if p does not descend or no step length is accepted.
   bool search(Iterate& iterate, const ImplicitStep& step, const Positions& direction);
 
   /// α of the last search that had a descent direction, in [0, 1].

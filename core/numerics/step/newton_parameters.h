@@ -15,7 +15,7 @@ enum class PsdBlend {
   adaptive  ///< as little as keeps the matrix positive definite (HessianModification)
 };
 
-/// What becomes of an equilibrium that is no minimum.
+/// What becomes of an equilibrium that is not a minimum.
 enum class StabilityMode { leave, report, off };
 
 /// Settings of the Newton solver. All methods share one implementation, so their comparison compares methods.

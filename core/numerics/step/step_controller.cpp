@@ -12,7 +12,7 @@ namespace {
 constexpr double short_step = 0.25;
 /// Steps that leave a force residual above this count as stalled.
 constexpr double stall_residual = 1e3;
-/// After so many stalled steps in a row h is shortened.
+/// Stalled steps in a row after which h is shortened.
 constexpr int max_stall_count = 20;
 /// But only if they have left more than this part of the residual: steps that carry the cloth on are no
 /// stall.
