@@ -17,7 +17,7 @@ constexpr long unlimited = std::numeric_limits<long>::max();
 
 // Limits on the pairs of one step (README.md, "Long steps").
 constexpr long box_pairs_each = 48, primitive_pairs_each = 16;  // per cloth triangle
-constexpr long min_counted_triangles = 1000;                    // the cloth counts as having so many
+constexpr long min_counted_triangles = 1000;                    // a cloth counts as having at least these
 constexpr long dense_factor = 3;                                // over the pairs at x0
 /// A step with more pairs is shortened to this fraction, again and again; after so many tries it is not
 /// searched at all.

@@ -10,7 +10,7 @@ namespace drape::ipc {
 /// Nested closed surfaces around an obstacle, which replace it on coarse levels of the cloth.
 struct CageParameters {
   int count = 0;
-  /// Of the innermost cage, over the diagonal of the mesh's bounding box.
+  /// Alpha and offset of the innermost cage, over the diagonal of the mesh's bounding box.
   double alpha = 0.05, offset = 0.01;
   double growth = 2;  ///< factor on both from one cage to the next outer one
 

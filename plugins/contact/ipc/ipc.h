@@ -43,7 +43,7 @@ class Ipc final : public ContactModel {
   Parameters p_;
   std::vector<ObstacleMeshes> meshes_;                       // of each obstacle
   std::vector<std::shared_ptr<const Obstacles>> obstacles_;  // by level; finer levels use the last
-  // Of each of obstacles_, made when a level is first bound, because a load may be bound to one level alone.
+  // One for each of obstacles_, made when its level is first bound: a load may be bound to a single level.
   mutable std::vector<std::shared_ptr<const ObstacleTree>> trees_;
   mutable std::mutex busy_;  // guards trees_
 };

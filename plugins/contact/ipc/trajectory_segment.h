@@ -26,7 +26,7 @@ inline double rotation_angle(const Pose& a, const Pose& b) {
 /// A segment of the obstacles' trajectory: local coordinates and transform parameters change linearly with
 /// the time t in [0, 1].
 struct TrajectorySegment {
-  /// Of one that moves.
+  /// The motion of one obstacle.
   struct Body {
     Pose begin, end;
     Eigen::Matrix3d rotation;  ///< at t = 0

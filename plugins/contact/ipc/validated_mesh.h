@@ -16,7 +16,7 @@ struct ValidatedMesh {
   TriangleMesh mesh;
   Topology topology;
 
-  /// Of a repaired mesh.
+  /// `mesh` must have been repaired (repair_mesh).
   static std::shared_ptr<const ValidatedMesh> of(TriangleMesh mesh) {
     Topology topology = Topology::of_any(mesh.triangles, static_cast<int>(mesh.vertices.rows()));
     return std::make_shared<const ValidatedMesh>(ValidatedMesh{std::move(mesh), std::move(topology)});

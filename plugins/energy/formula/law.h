@@ -80,7 +80,7 @@ struct Function {
 
 /// In the order in which they are listed.
 const std::vector<Function>& functions();
-/// The function or operator called by this name with so many arguments; null without one of the name.
+/// The function or operator called by this name with this number of arguments; null without one of the name.
 const Function* find_function(const std::string& name, std::size_t arguments);
 
 /// What each kind offers and the functions, as text for `drape describe formula`.

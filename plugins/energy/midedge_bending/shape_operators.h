@@ -16,8 +16,8 @@ struct ShapeOperators {
     Eigen::Vector3d weight;  ///< [√J]
   };
   Grouped<Term> terms;  ///< of each triangle
-  /// Of each hinge: ‖s‖² [J] of its two triangles, over (θ - θ̄)², if all other angles stay at rest and no
-  /// border gives way.
+  /// ‖s‖² [J] of each hinge's two triangles, over (θ - θ̄)², if all other angles stay at rest and no border
+  /// gives way.
   Eigen::VectorXd lone_folds;
 
   /// For the energy Ā k ((1 - ν) tr S² + ν (tr S)²) of a triangle with rest area Ā and shape operator S, or

@@ -80,8 +80,8 @@ class BoundStrainLimit final : public ElementEnergy<Kernel>, public StretchLimit
 
   int count() const { return static_cast<int>(limited_.triangles.size()); }
 
-  /// Of W triangles from `first` on, those whose reach is certainly 1: σ₁, convex along the step, is inside
-  /// the bound at both ends. Lanes beyond the last triangle repeat it.
+  /// Marks those of W triangles from `first` on whose reach is certainly 1: σ₁, convex along the step, is
+  /// inside the bound at both ends. Lanes beyond the last triangle repeat it.
   __attribute__((flatten)) PackMask<W> stay_inside(int first, const Positions& x0,
                                                    const Positions& x1) const {
     using T = Pack<W>;

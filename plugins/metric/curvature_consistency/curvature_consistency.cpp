@@ -19,10 +19,10 @@ class RecentCurvatures {
     VertexCurvatures fit, ddg;
   };
 
-  /// Fits reach so many edges away from a vertex.
+  /// Fits reach `rings` edges away from a vertex.
   explicit RecentCurvatures(int rings) : rings_(rings) {}
 
-  /// Of a state of a level. Throws as fit_curvatures and ddg_curvatures.
+  /// The curvatures of a state of a level. Throws as fit_curvatures and ddg_curvatures.
   std::shared_ptr<const Curvatures> of(const Positions& x, const Level& level) const {
     const Triangles& triangles = level.rest.triangles;
     const std::lock_guard lock(mutex_);

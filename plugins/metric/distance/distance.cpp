@@ -32,7 +32,7 @@ struct Traits : Plain {
   struct Nearest {
     Plain::Closest_point of_others;
 
-    /// Of the triangle, or `bound` if that is as near to p.
+    /// The triangle's nearest point to p, or `bound` if that is as near.
     Point operator()(const Point& p, const Primitive& primitive, const Point& bound) const {
       const Geometry::Triangle_3& t = *primitive.id();
       const Eigen::Vector3d a = vector(t[0]), b = vector(t[1]), c = vector(t[2]);

@@ -14,7 +14,7 @@ namespace {
 
 using Projected = Eigen::Matrix<double, Eigen::Dynamic, 2, Eigen::RowMajor>;  // n×2 on the picture plane
 
-/// States that reach over more than so many pixels are seen in larger ones: pictures stay small.
+/// Most pixels across a state; a larger state is seen in larger pixels, so that pictures stay small.
 constexpr double max_pixels_a_side = 4096;
 
 /// The line through two corners of a triangle. A point's side is rounded in the same way, but for the sign,

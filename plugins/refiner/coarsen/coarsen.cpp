@@ -112,7 +112,7 @@ class CoarsenRefiner : public Refiner {
     return rest;
   }
 
-  /// Of the fine triangles at a coarse triangle's corners, in its piece, the one nearest to its centroid.
+  /// The fine triangle nearest to a coarse triangle's centroid, among those at its corners in its piece.
   static int fine_triangle_near(const Level& fine, const FlatCloth& flat, const Eigen::RowVector3i& images) {
     const auto centroid = [&](const auto& t) -> Eigen::Vector2d {
       return (flat.images[t[0]].place + flat.images[t[1]].place + flat.images[t[2]].place) / 3;

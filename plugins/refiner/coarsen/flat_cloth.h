@@ -30,8 +30,8 @@ struct FlatCloth {
   std::vector<char> on_outline;   ///< n flags
   Eigen::VectorXd triangle_area;  ///< n, mean area at rest of the triangles around each vertex [m²]
 
-  /// Of a cloth of flat pieces, or of a mesh whose connected parts are flat; nothing of another mesh. Throws
-  /// std::runtime_error naming a triangle that is turned over.
+  /// Lays out a cloth of flat pieces, or a mesh whose connected parts are flat; nothing for another mesh.
+  /// Throws std::runtime_error naming a triangle that is turned over.
   static std::optional<FlatCloth> of(const Level& level);
 };
 
