@@ -135,7 +135,7 @@ py::dict evaluate_metric(const SceneHandle& s, const std::string& name, int leve
 std::string page(const SceneHandle& s, const State& state, int level) {
   const LevelModel& model = *s.scene->models[s.checked(level)];
   const Positions& x = state.of(model.level().vertex_count());
-  return viewer_page(s.experiment->parameters.name, model.level(), x, obstacles_of(model.contacts()),
+  return viewer_page(s.experiment->parameters.name, model.level(), x, model.obstacles(),
                      x.allFinite() ? model.contact_pressure(x) : Eigen::VectorXd());
 }
 

@@ -118,7 +118,7 @@ void Recorder::write_scene() {
 void Recorder::write_obstacles() {
   Json& entries = results_["obstacles"] = Json::array();
   std::vector<std::string> names = experiment_.obstacle_names();
-  const std::vector<TriangleMesh> obstacles = obstacles_of(scene_.finest_model().contacts());
+  const std::vector<TriangleMesh> obstacles = scene_.finest_model().obstacles();
   names.resize(obstacles.size());
   for (std::size_t k = 0; k < obstacles.size(); ++k) {
     const std::string file = "obstacles/" + std::to_string(k) + ".ply";
@@ -140,8 +140,7 @@ void Recorder::follow_schedule() {
 
 VertexFields Recorder::garment_fields_of(const RecordedState& state) const {
   if (!scene_.dressing) return {};
-  return garment_fields_at(scene_.hierarchy.levels[state.level], state.x,
-                           obstacles_of(scene_.finest_model().contacts()));
+  return garment_fields_at(scene_.hierarchy.levels[state.level], state.x, scene_.finest_model().obstacles());
 }
 
 std::uint32_t Recorder::write_state(const RecordedState& state, const VertexFields& garment) {

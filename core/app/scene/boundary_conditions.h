@@ -56,10 +56,10 @@ std::shared_ptr<const Energy> handles_energy(const ExperimentParameters& paramet
 std::vector<FollowingVertices> following_vertices(const Experiment& experiment, const Scene& scene,
                                                   ConfigErrors& errors);
 
-/// Moves the targets of `following`, which `dirichlet` has as under the first load, with the obstacles of
-/// `contacts`, those of the same level under another load. Throws std::runtime_error naming the pin and the
+/// Moves the targets of `following`, which `dirichlet` has as under the first load, with the obstacles, those
+/// of the same level under another load. Throws std::runtime_error naming the pin and the
 /// obstacle if the obstacle has other triangles, or the followed one no area.
-void move_targets(const FollowingVertices& following, const BoundContacts& contacts,
+void move_targets(const FollowingVertices& following, const std::vector<TriangleMesh>& obstacles,
                   std::vector<DirichletVertex>& dirichlet);
 
 }  // namespace drape

@@ -58,7 +58,7 @@ std::vector<Intersection> intersections_of(const LevelModel& model, const Positi
 TriangleMesh body_of(const Experiment& e, const LevelModel& model) {
   const std::vector<std::string> names = e.obstacle_names();
   const auto index = std::ranges::find(names, e.parameters.dress.obstacle) - names.begin();
-  return obstacles_of(model.contacts()).at(index);
+  return model.obstacles().at(index);
 }
 
 /// Makes a garment without intersections the scene's start, on every level.

@@ -125,7 +125,7 @@ class Follower {
     for (const Level& level : scene.hierarchy.levels)
       conflicts_.push_back(conflicts(e, followed_, level, scene.hierarchy.levels[0]));
     for (const auto& model : scene.models) {
-      meshes_.push_back(obstacles_of(model->contacts()));
+      meshes_.push_back(model->obstacles());
       std::vector<std::vector<DirichletVertex>>& own = held_.emplace_back(e.parameters.pins.size());
       for (const DirichletVertex& d : model->dirichlet()) own[d.pin].push_back(d);
     }
@@ -222,9 +222,8 @@ std::vector<FollowingVertices> following_vertices(const Experiment& e, const Sce
   return levels;
 }
 
-void move_targets(const FollowingVertices& following, const BoundContacts& contacts,
+void move_targets(const FollowingVertices& following, const std::vector<TriangleMesh>& obstacles,
                   std::vector<DirichletVertex>& dirichlet) {
-  const std::vector<TriangleMesh> meshes = obstacles_of(contacts);
   for (const FollowingVertex& f : following) {
     const auto d = std::lower_bound(dirichlet.begin(), dirichlet.end(), f.vertex,
                                     [](const DirichletVertex& a, int vertex) { return a.vertex < vertex; });
@@ -233,7 +232,7 @@ void move_targets(const FollowingVertices& following, const BoundContacts& conta
       throw std::runtime_error("pin " + std::to_string(f.pin) + " cannot follow " + name_of(f.name) + ": " +
                                what);
     };
-    const TriangleMesh& mesh = meshes.at(f.obstacle);
+    const TriangleMesh& mesh = obstacles.at(f.obstacle);
     if (f.corners.maxCoeff() >= mesh.vertices.rows()) fail("it has other triangles than at the start");
     const Eigen::Matrix3d corners = mesh.vertices(f.corners, Eigen::all).transpose();
     if (corners == f.first) continue;

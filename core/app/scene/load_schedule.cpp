@@ -83,7 +83,7 @@ std::shared_ptr<const LevelModel> LoadSchedule::model(const LoadState& load, int
   const FollowingVertices& following = scene_.following[level];
   if (following.empty()) return with(std::move(dirichlet), before);
   const auto moved = with({}, before);  // where the obstacles are decides the targets
-  move_targets(following, moved->contacts(), dirichlet);
+  move_targets(following, moved->obstacles(), dirichlet);
   return with(std::move(dirichlet), *moved);
 }
 

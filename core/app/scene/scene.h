@@ -15,7 +15,7 @@ namespace drape {
 /// A vertex of a pin that follows an obstacle, and the point of the obstacle that it is attached to.
 struct FollowingVertex {
   int pin = 0, vertex = 0;
-  Eigen::Index obstacle = 0;                          ///< in obstacles_of
+  Eigen::Index obstacle = 0;                          ///< in LevelModel::obstacles
   std::string name;                                   ///< the obstacle's, as the pin has it
   Eigen::Vector3i corners{0, 0, 0};                   ///< of the followed triangle
   Eigen::Matrix3d first = Eigen::Matrix3d::Zero();    ///< these under the first load, one a column [m]

@@ -56,7 +56,7 @@ class TranslationSearch {
       : scene_(scene),
         diagonal_(bounding_box_diagonal(scene.starts[0])),
         points_(scene.starts[0](components(scene.hierarchy.levels[0].topology), Eigen::all)),
-        obstacles_(obstacles_of(scene.model(0)->contacts())),
+        obstacles_(scene.model(0)->obstacles()),
         crossed_(scene.hierarchy.levels[0], scene.starts[0], obstacles_) {
     const Level& level = scene.hierarchy.levels[0];
     for (const auto& edge : level.topology.edges.rowwise())

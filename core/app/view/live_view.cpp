@@ -24,7 +24,7 @@ LiveView::LiveView(const Experiment& experiment, const Scene& scene, const std::
     : scene_(scene),
       title_(experiment.parameters.name),
       finest_(static_cast<int>(scene.models.size()) - 1),
-      first_obstacles_(obstacles_of(scene.finest_model().contacts())),
+      first_obstacles_(scene.finest_model().obstacles()),
       document_(scene.hierarchy.levels, first_obstacles_, !scene.finest_model().contacts().empty(),
                 [this](const std::string& name, std::string bytes) {
                   blocks_[name] = std::make_shared<const std::string>(std::move(bytes));
@@ -76,8 +76,7 @@ void LiveView::show(LevelView& view, int level, const Positions& x, const Eigen:
   const Stopwatch watch;
   if (scene_.load_stepping && scene_.load_stepping->state().values != load_) {
     load_ = scene_.load_stepping->state().values;
-    obstacles_ =
-        std::make_shared<const std::vector<TriangleMesh>>(obstacles_of(scene_.finest_model().contacts()));
+    obstacles_ = std::make_shared<const std::vector<TriangleMesh>>(scene_.finest_model().obstacles());
   }
   view.x = x;
   view.obstacles = obstacles_;

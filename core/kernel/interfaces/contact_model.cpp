@@ -15,25 +15,4 @@ StepLimit BoundContact::max_step([[maybe_unused]] const BoundContact& before, co
   return found.empty() ? StepLimit{} : StepLimit{0.5, to_string(found.front())};
 }
 
-std::vector<TriangleMesh> obstacles_of(const BoundContacts& contacts) {
-  std::vector<TriangleMesh> all;
-  for (const auto& contact : contacts)
-    for (TriangleMesh& mesh : contact->obstacles()) all.push_back(std::move(mesh));
-  return all;
-}
-
-ContactStiffness stiffness_of(const BoundContacts& contacts) {
-  ContactStiffness stiffness;
-  for (const auto& contact : contacts) stiffness.push_back(contact->stiffness());
-  return stiffness;
-}
-
-BoundContacts stiffened(const BoundContacts& contacts, const ContactStiffness& stiffness) {
-  BoundContacts result = contacts;
-  for (std::size_t k = 0; k < stiffness.size(); ++k)
-    if (stiffness[k] > contacts.at(k)->stiffness())
-      if (auto stiffer = contacts[k]->with_stiffness(stiffness[k])) result[k] = std::move(stiffer);
-  return result;
-}
-
 }  // namespace drape

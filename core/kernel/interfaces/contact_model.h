@@ -2,7 +2,6 @@
 
 #include <Eigen/Core>
 #include <array>
-#include <cmath>
 #include <limits>
 #include <memory>
 #include <string>
@@ -22,24 +21,6 @@ struct Intersection {
 
 /// "cloth triangle 12 and ball: sphere at (0.1, 0, 0.3)".
 std::string to_string(const Intersection& intersection);
-
-/// The normal forces of collisions, to judge their barrier by.
-struct NormalForces {
-  double sum = 0;       ///< Σ force [N]
-  double weighted = 0;  ///< Σ force · |b'(gap / d̂)|: each weighted by its pressure over κ [N]
-
-  /// Adds a contact's normal force [N], whose barrier has the slope b'.
-  void add(double force, double slope) {
-    sum += force;
-    weighted += force * std::abs(slope);
-  }
-  void add(const NormalForces& other) {
-    sum += other.sum;
-    weighted += other.weighted;
-  }
-  /// The pressure over κ that the average newton of contact acts with; 0 without contact.
-  double mean_pressure() const { return sum > 0 ? weighted / sum : 0; }
-};
 
 /// Identifies a contact of one contact model from one state to the next.
 using ContactKey = std::array<int, 5>;
@@ -73,8 +54,9 @@ class Collisions : public BoundEnergy {
  public:
   virtual int contact_count() const = 0;
   virtual double smallest_gap() const = 0;  ///< [m]; +∞ without a contact
-  /// None for collisions without a barrier.
-  virtual NormalForces normal_forces() const { return {}; }
+  /// The pressure over κ that the average newton of normal force acts with, by which κ is judged; 0 without
+  /// contact or barrier.
+  virtual double mean_pressure() const { return 0; }
   /// Appends the contacts with friction, in groups. By default none.
   virtual void append_friction_contacts([[maybe_unused]] FrictionContacts& groups) const {}
   /// ε_v h, below which friction is smoothed [m].
@@ -157,14 +139,6 @@ using BoundContacts = std::vector<std::shared_ptr<const BoundContact>>;
 
 /// The barrier stiffness κ of each contact model [Pa].
 using ContactStiffness = std::vector<double>;
-
-ContactStiffness stiffness_of(const BoundContacts& contacts);
-/// The contacts with the larger of their own κ and `stiffness`, which may be empty or has a value for each;
-/// the same objects where κ stays.
-BoundContacts stiffened(const BoundContacts& contacts, const ContactStiffness& stiffness);
-
-/// The obstacles of all contacts, as meshes for drawing.
-std::vector<TriangleMesh> obstacles_of(const BoundContacts& contacts);
 
 /// A kind of contact, made by name from its parameters.
 class ContactModel {

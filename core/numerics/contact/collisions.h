@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <limits>
 #include <memory>
 #include <span>
@@ -20,6 +21,18 @@ namespace drape {
 template <int Vertices>
 struct ContactBlocks {
   double block[Vertices * (Vertices + 1) / 2][9];
+};
+
+/// Sums of the collisions' normal forces.
+struct NormalForces {
+  double sum = 0;       ///< Σ force [N]
+  double weighted = 0;  ///< Σ force · |b'(gap / d̂)|: each weighted by its pressure over κ [N]
+
+  /// Adds a contact's normal force [N], whose barrier has the slope b'.
+  void add(double force, double slope) {
+    sum += force;
+    weighted += force * std::abs(slope);
+  }
 };
 
 /// All collisions of a contact model at one state: its contacts of each kind, in order. Sums, threads, and
@@ -63,14 +76,10 @@ class BarrierCollisions final : public Collisions {
   void append_gaps(std::vector<double>& gaps) const override {
     for_each_contact([&](const auto& contact) { gaps.push_back(contact.gap()); });
   }
-  NormalForces normal_forces() const override {
+  double mean_pressure() const override {
     NormalForces forces;
-    for_each_kind([&](const auto& of_kind) {
-      NormalForces own;
-      for (const auto& contact : of_kind) contact.add_normal_forces(p_, own);
-      forces.add(own);
-    });
-    return forces;
+    for_each_contact([&](const auto& contact) { contact.add_normal_forces(p_, forces); });
+    return forces.sum > 0 ? forces.weighted / forces.sum : 0;
   }
   void append_friction_contacts(FrictionContacts& groups) const override {
     for_each_kind([&](const auto& of_kind) {

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
+#include "core/kernel/interfaces/contact_model.h"
 #include "core/kernel/interfaces/material.h"
 
 namespace drape {
@@ -41,6 +43,22 @@ inline double stiffness_for_load(double stiffness, double pressure) {
 inline double raised_stiffness(double stiffness, double mean_pressure, double largest) {
   constexpr double largest_mean = 50;
   return mean_pressure > largest_mean ? std::max(stiffness, std::min(4 * stiffness, largest)) : stiffness;
+}
+
+/// The κ of each of the contacts [Pa].
+inline ContactStiffness stiffness_of(const BoundContacts& contacts) {
+  ContactStiffness stiffness;
+  for (const auto& contact : contacts) stiffness.push_back(contact->stiffness());
+  return stiffness;
+}
+
+/// The contacts with the larger of their own κ and `stiffness`, which may be empty or has a value for each;
+/// the same objects where κ stays.
+inline BoundContacts stiffened(BoundContacts contacts, const ContactStiffness& stiffness) {
+  for (std::size_t k = 0; k < stiffness.size(); ++k)
+    if (stiffness[k] > contacts.at(k)->stiffness())
+      if (auto stiffer = contacts[k]->with_stiffness(stiffness[k])) contacts[k] = std::move(stiffer);
+  return contacts;
 }
 
 }  // namespace drape

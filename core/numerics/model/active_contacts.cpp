@@ -4,7 +4,6 @@
 #include <limits>
 #include <utility>
 
-#include "core/numerics/contact_forces/contact_stiffness.h"
 #include "core/numerics/model/required.h"
 
 namespace drape {
@@ -66,7 +65,7 @@ bool ActiveContacts::raise_stiffness(const Positions& x, double largest) {
   build_collisions(x);
   ContactStiffness raised = stiffness();
   for (std::size_t k = 0; k < models_.size(); ++k)
-    raised[k] = raised_stiffness(raised[k], collisions_[k]->normal_forces().mean_pressure(), largest);
+    raised[k] = raised_stiffness(raised[k], collisions_[k]->mean_pressure(), largest);
   BoundContacts models = stiffened(models_, raised);
   if (models == models_) return false;
   replace(std::move(models));

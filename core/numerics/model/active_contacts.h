@@ -5,6 +5,7 @@
 
 #include "core/kernel/interfaces/contact_model.h"
 #include "core/kernel/threads/stopwatch.h"
+#include "core/numerics/contact_forces/contact_stiffness.h"
 #include "core/numerics/contact_forces/friction.h"
 
 namespace drape {
@@ -45,7 +46,7 @@ class ActiveContacts {
   /// Keeps the barrier stiffness as it is from now on.
   void fix_stiffness() { stiffness_is_fixed_ = true; }
   /// Raises the barrier stiffness of each model whose contacts at x carry far more than its barrier is made
-  /// for, to at most `largest` [Pa] (core/numerics/contact_forces/contact_stiffness.h). Returns whether any
+  /// for, to at most `largest` [Pa] (raised_stiffness). Returns whether any
   /// was raised. Call it between steps.
   bool raise_stiffness(const Positions& x, double largest);
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <map>
 #include <set>
@@ -75,6 +76,12 @@ LevelModel LevelModel::with_stiffness(const ContactStiffness& stiffness) const {
   LevelModel model = *this;
   model.contacts_ = stiffened(contacts_, stiffness);
   return model;
+}
+
+std::vector<TriangleMesh> LevelModel::obstacles() const {
+  std::vector<TriangleMesh> all;
+  for (const auto& contact : contacts_) std::ranges::move(contact->obstacles(), std::back_inserter(all));
+  return all;
 }
 
 double LevelModel::load_pressure(const Positions& x) const {

@@ -89,6 +89,8 @@ class LevelModel {
   const std::vector<const BoundEnergy*>& limits() const { return limits_; }
   /// Empty without contact.
   const BoundContacts& contacts() const { return contacts_; }
+  /// The obstacles of all contacts, as meshes for drawing and for pins to follow.
+  std::vector<TriangleMesh> obstacles() const;
 
   /// E_l with its limits and without contact [J].
   double energy_without_contact(const Positions& x) const;

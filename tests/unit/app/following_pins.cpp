@@ -39,7 +39,7 @@ struct IncrementObserver : Observer {
     ++increments;
     most_violated = std::max(most_violated, row.max_constraint_violation);
     for (const auto& contact : model.contacts()) intersections += contact->intersections(x).size();
-    const TriangleMesh obstacle = obstacles_of(model.contacts())[0];
+    const TriangleMesh obstacle = model.obstacles()[0];
     for (const FollowingVertex& f : scene.following[row.level]) {
       const Eigen::Matrix3d corners = obstacle.vertices(f.corners, Eigen::all).transpose();
       const Eigen::Vector3d p = x.row(f.vertex), start = scene.starts[row.level].row(f.vertex);
@@ -52,7 +52,7 @@ struct IncrementObserver : Observer {
     }
   }
   const Scene& scene;
-  Positions first = obstacles_of(scene.models[0]->contacts())[0].vertices;
+  Positions first = scene.models[0]->obstacles()[0].vertices;
   bool rigid = true;
   int increments = 0;
   std::size_t intersections = 0;

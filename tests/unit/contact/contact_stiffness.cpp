@@ -3,6 +3,7 @@
 #include <catch2/catch.hpp>
 #include <limits>
 
+#include "core/numerics/contact/vertex_contacts.h"
 #include "core/numerics/model/level_model.h"
 #include "core/numerics/patterns/generate.h"
 #include "tests/support/registry.h"
@@ -65,15 +66,13 @@ TEST_CASE("The stiffness is raised by four above a mean pressure of fifty times 
   for (const auto& [pressure, bound, expected] :
        {std::tuple(0.0, 1e6, 10.0), {50, 1e6, 10}, {51, 1e6, 40}, {1e12, 1e6, 40}, {51, 25, 25}, {51, 5, 10}})
     CHECK(raised_stiffness(10, pressure, bound) == expected);
-  NormalForces forces;  // each contact counts by its force
-  CHECK(forces.mean_pressure() == 0);
-  forces.add(3, -10);
-  forces.add(1, -50);
-  CHECK(forces.mean_pressure() == Approx((3 * 10 + 50) / 4.0));
-  NormalForces others;
-  others.add(4, -20);
-  forces.add(others);
-  CHECK(forces.mean_pressure() == Approx(20));
+  // Each contact counts by its force, |b'| times its weight here.
+  const BarrierParameters unit{1, 1};
+  CHECK(make_collisions<VertexContact>(unit, {})->mean_pressure() == 0);
+  const auto contact = [](double weight, double gap) { return VertexContact{0, 0, weight, 0, {gap}}; };
+  const double near = std::abs(barrier(0.1).first), far = std::abs(barrier(0.5).first);
+  const auto collisions = make_collisions<VertexContact>(unit, {contact(2, 0.1), contact(3, 0.5)});
+  CHECK(collisions->mean_pressure() == Approx((2 * near * near + 3 * far * far) / (2 * near + 3 * far)));
 }
 
 TEST_CASE("A stiffness that the experiment gives stays, while that of another model follows the load") {

@@ -109,7 +109,7 @@ TEST_CASE("An obstacle's files are read in its unit and by its axis") {
   const auto obstacle = [&](const std::string& keys) {
     const Solved s =
         cloth_scene("{vertices: 9}", "contact: ipc\nobstacles: [{" + keys + ", unit: mm, up: y}]\n");
-    return obstacles_of(s.model().contacts()).at(0).vertices;
+    return s.model().obstacles().at(0).vertices;
   };
   const std::string mesh = (folder / "ball.ply").string(), other = (folder / "moved.ply").string();
   CHECK(obstacle("mesh: " + mesh).isApprox(ball.vertices, 1e-14));
