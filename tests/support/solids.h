@@ -11,16 +11,34 @@
 
 namespace drape::shapes {
 
-inline constexpr SolidKind kinds[] = {SolidKind::sphere, SolidKind::box, SolidKind::capsule,
-                                      SolidKind::cylinder, SolidKind::half_space};
 inline constexpr double dhat = 1e-3, kappa = 20;
+
+/// The plugin's own conversion is tested through the model; here the solid is made by hand.
+inline Solid solid_of(const ShapeParameters& p) {
+  Solid s;
+  s.kind = p.shape;
+  s.centre = p.translate;
+  const Eigen::Vector3d angle = p.rotate * (M_PI / 180);
+  s.axes = (Eigen::AngleAxisd(angle.z(), Eigen::Vector3d::UnitZ()) *
+            Eigen::AngleAxisd(angle.y(), Eigen::Vector3d::UnitY()) *
+            Eigen::AngleAxisd(angle.x(), Eigen::Vector3d::UnitX()))
+               .toRotationMatrix();
+  if (p.shape == SolidKind::half_space)
+    s.axes = Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), p.normal).toRotationMatrix();
+  else if (p.shape == SolidKind::box)
+    s.half = p.size / 2;
+  else
+    s.radius = p.radius;
+  if (p.shape == SolidKind::capsule || p.shape == SolidKind::cylinder) s.half.z() = p.height / 2;
+  return s;
+}
 
 /// The solid with its axis along z and its top at the height -gap.
 inline ShapeParameters upright(ShapeParameters p, double gap = 0) {
-  const double half[] = {p.radius, p.size.z() / 2, p.height / 2 + p.radius, p.height / 2, 0};
   p.rotate.setZero();
   p.normal = {0, 0, 2};
-  p.translate = {0, 0, -gap - half[static_cast<int>(p.shape)]};
+  p.translate.setZero();
+  p.translate.z() = -gap - solid_of(p).support({0, 0, 1});
   return p;
 }
 inline ShapeParameters upright(SolidKind kind, double gap = 0) {
@@ -55,31 +73,11 @@ inline ShapeParameters some(SolidKind kind) {
   return p;
 }
 
-/// The plugin's own conversion is tested through the model; here the solid is made by hand.
-inline Solid solid_of(const ShapeParameters& p) {
-  Solid s;
-  s.kind = p.shape;
-  s.centre = p.translate;
-  const Eigen::Vector3d angle = p.rotate * (M_PI / 180);
-  s.axes = (Eigen::AngleAxisd(angle.z(), Eigen::Vector3d::UnitZ()) *
-            Eigen::AngleAxisd(angle.y(), Eigen::Vector3d::UnitY()) *
-            Eigen::AngleAxisd(angle.x(), Eigen::Vector3d::UnitX()))
-               .toRotationMatrix();
-  if (p.shape == SolidKind::half_space)
-    s.axes = Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), p.normal).toRotationMatrix();
-  else if (p.shape == SolidKind::box)
-    s.half = p.size / 2;
-  else
-    s.radius = p.radius;
-  if (p.shape == SolidKind::capsule || p.shape == SolidKind::cylinder) s.half.z() = p.height / 2;
-  return s;
-}
-
 /// Runs the body on a solid of every kind.
 template <class Body>
 void for_each_solid(const Body& body) {
-  for (const SolidKind kind : kinds) {
-    INFO(to_string(kind));
+  for (const auto& [name, kind] : kind_names) {
+    INFO(name);
     body(solid_of(some(kind)), some(kind));
   }
 }

@@ -59,8 +59,8 @@ double distance_to_segment(const Vector3d& p, const Vector3d& a, const Vector3d&
   return (p - a - nearest_on_segment(e, p - a) * e).norm();
 }
 
-/// The surface of revolution of a profile of (radius, z), ordered from top to bottom.
-TriangleMesh revolve(const Solid& solid, const std::vector<Vector2d>& profile) {
+/// The surface of revolution of a profile of (radius, z), ordered from top to bottom, with poles at ±top.
+TriangleMesh revolve(const Solid& solid, const std::vector<Vector2d>& profile, double top) {
   const int sides = 64, rings = static_cast<int>(profile.size());
   TriangleMesh mesh;
   mesh.vertices.resize(rings * sides + 2, 3);
@@ -75,7 +75,6 @@ TriangleMesh revolve(const Solid& solid, const std::vector<Vector2d>& profile) {
         mesh.triangles.row(row++) << a + next, a + sides + k, a + sides + next;
       }
     }
-  const double top = solid.half.z() + (solid.kind == SolidKind::cylinder ? 0 : solid.radius);
   for (const double side : {1.0, -1.0}) {
     const int pole = rings * sides + (side > 0 ? 0 : 1), ring = side > 0 ? 0 : (rings - 1) * sides;
     mesh.vertices.row(pole) = solid.to_world({0, 0, side * top});
@@ -94,11 +93,33 @@ TriangleMesh box_surface(const Solid& solid) {
   return mesh;
 }
 
+/// Two quarter circles, separated by the core of a capsule, revolved.
+TriangleMesh capsule_surface(const Solid& solid) {
+  std::vector<Vector2d> profile;
+  const int steps = 16;
+  for (int i = 1; i < 2 * steps; ++i) {
+    const double angle = 0.5 * M_PI * i / steps;
+    const double shift = i < steps ? solid.half.z() : -solid.half.z();
+    if (i == steps) profile.push_back({solid.radius, solid.half.z()});
+    if (i != steps || solid.half.z() > 0)
+      profile.push_back({solid.radius * std::sin(angle), solid.radius * std::cos(angle) + shift});
+  }
+  return revolve(solid, profile, solid.half.z() + solid.radius);
+}
+
 }  // namespace
 
 Features Features::of(const Solid& solid, double max_inset) {
   Features f;
-  if (solid.kind == SolidKind::cylinder) {
+  const auto of_box = [&] {
+    f.points = core_corners(solid.half);
+    f.offset = solid.radius;
+    const int count = static_cast<int>(f.points.size());
+    for (int i = 0; i < count; ++i)
+      for (int bit = 1; bit < count; bit *= 2)
+        if (!(i & bit)) f.edges.push_back({i, i | bit});
+  };
+  const auto of_cylinder = [&] {
     const double step = std::acos(1 - std::min(0.5, max_inset / solid.radius));
     const int sides = std::max(16, static_cast<int>(std::ceil(M_PI / step)));
     f.sides = sides;
@@ -109,14 +130,8 @@ Features Features::of(const Solid& solid, double max_inset) {
         f.edges.push_back({ring + k, ring + (k + 1) % sides});
       }
     for (const double end : {-1.0, 1.0}) f.points.push_back({0, 0, end * solid.half.z()});
-  } else if (solid.kind != SolidKind::half_space) {
-    f.points = core_corners(solid.half);
-    f.offset = solid.radius;
-    const int count = static_cast<int>(f.points.size());
-    for (int i = 0; i < count; ++i)
-      for (int bit = 1; bit < count; bit *= 2)
-        if (!(i & bit)) f.edges.push_back({i, i | bit});
-  }
+  };
+  by_form(solid.kind, of_box, of_cylinder, [] {});
   for (Vector3d& point : f.points) point = solid.to_world(point);
   return f;
 }
@@ -136,28 +151,22 @@ void Features::edges_near(const Solid& solid, const Vector3d& centre, double rad
 }
 
 TriangleMesh tessellate(const Solid& solid, double half_side) {
-  if (solid.kind == SolidKind::box) return box_surface(solid);
-  TriangleMesh mesh;
-  if (solid.kind == SolidKind::half_space) {
+  const double r = solid.radius, top = solid.half.z();
+  const auto square = [&] {
+    TriangleMesh mesh;
     mesh.vertices.resize(4, 3);
     for (int i = 0; i < 4; ++i)
       mesh.vertices.row(i) = solid.to_world(half_side * Vector3d(i % 2 ? 1 : -1, i / 2 ? 1 : -1, 0));
     mesh.triangles.resize(2, 3);
     mesh.triangles << 0, 1, 2, 1, 3, 2;
     return mesh;
-  }
-  if (solid.kind == SolidKind::cylinder)
-    return revolve(solid, {{solid.radius, solid.half.z()}, {solid.radius, -solid.half.z()}});
-  std::vector<Vector2d> profile;  // two quarter circles separated by the capsule's core
-  const int steps = 16;
-  for (int i = 1; i < 2 * steps; ++i) {
-    const double angle = 0.5 * M_PI * i / steps;
-    const double shift = i < steps ? solid.half.z() : -solid.half.z();
-    if (i == steps) profile.push_back({solid.radius, solid.half.z()});
-    if (i != steps || solid.half.z() > 0)
-      profile.push_back({solid.radius * std::sin(angle), solid.radius * std::cos(angle) + shift});
-  }
-  return revolve(solid, profile);
+  };
+  return by_form(
+      solid.kind, [&] { return r > 0 ? capsule_surface(solid) : box_surface(solid); },
+      [&] {
+        return revolve(solid, {{r, top}, {r, -top}}, top);
+      },
+      square);
 }
 
 }  // namespace drape::shapes

@@ -84,7 +84,7 @@ class Finder {
 
   /// Adds pairs of the solid's points and triangles.
   void add_point_triangle(const std::vector<int>& triangles, std::vector<ContactPair>& pairs) const {
-    const double share = solid_.kind == SolidKind::sphere ? 1 : half;  // a sphere has no other pairs
+    const double share = features_.edges.empty() ? 1 : half;  // a sphere has no other pairs
     std::vector<int> found;
     for (const int i : triangles) {
       const Ball ball = ball_of(&scene_.cloth.triangles(i, 0), 3, x0_, x1_);
@@ -191,7 +191,7 @@ ShapeScene ShapeScene::of(const Level& level, const std::vector<Solid>& solids,
   std::vector<Vector3d> points;
   for (const bool cylinders : {false, true})
     for (std::size_t k = 0; k < solids.size(); ++k) {
-      if ((solids[k].kind == SolidKind::cylinder) != cylinders) continue;
+      if ((s.features[k].sides > 0) != cylinders) continue;
       s.first_point[k] = static_cast<int>(points.size());
       points.insert(points.end(), s.features[k].points.begin(), s.features[k].points.end());
     }
@@ -246,18 +246,18 @@ CandidatePairs find_candidates(const ShapeScene& scene, const std::vector<SolidP
   CandidatePairs c;
   std::size_t next = 0;
   for (int k = 0; k < static_cast<int>(scene.solids.size()); ++k) {
-    const SolidKind kind = scene.solids[k].kind;
+    const Features& features = scene.features[k];
     const Finder finder(scene, k, x0, x1);
     std::vector<int> triangles;
     for (; next < found.size() && found[next].solid == k; ++next) triangles.push_back(found[next].element);
     triangles = finder.triangles_near(triangles);
     finder.add_point_triangle(triangles, c.pairs);
-    if (kind == SolidKind::sphere) continue;
+    if (features.points.size() == 1) continue;  // a sphere
     for (const int i : finder.vertices_of(triangles)) c.vertices.push_back({i, k});
-    if (kind == SolidKind::half_space) continue;
+    if (features.edges.empty()) continue;  // a half-space
     const std::vector<int> edges = finder.edges_of(triangles);
     finder.add_edge_edge(edges, c.pairs);
-    if (kind == SolidKind::cylinder) finder.add_curved_side(edges, c.curved_sides);
+    if (features.sides > 0) finder.add_curved_side(edges, c.curved_sides);
   }
   return c;
 }

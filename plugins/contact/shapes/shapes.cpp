@@ -11,13 +11,13 @@
 
 namespace drape::shapes {
 
-namespace {
-
 const std::vector<std::pair<std::string, SolidKind>> kind_names = {{"sphere", SolidKind::sphere},
                                                                    {"box", SolidKind::box},
                                                                    {"capsule", SolidKind::capsule},
                                                                    {"cylinder", SolidKind::cylinder},
                                                                    {"half_space", SolidKind::half_space}};
+
+namespace {
 
 /// A rim's polygon has more sides the smaller d̂ is compared with the radius: 700 000 at this ratio.
 constexpr double max_radius_over_dhat = 5e6;
@@ -30,15 +30,21 @@ Solid solid_of(const ShapeParameters& p, int index, double friction) {
   s.rotate = p.rotate;
   s.plane = p.normal;
   s.friction = p.friction.value_or(friction);
-  if (p.shape == SolidKind::half_space) {
-    // The square of a smaller norm would underflow.
-    if (!(p.normal.norm() > 1e-100))
-      throw std::runtime_error(s.name + " needs a \"normal\" that is not zero");
-  } else if (p.shape == SolidKind::box) {
-    s.half = p.size / 2;
-  } else {
-    s.radius = p.radius;
-    if (p.shape != SolidKind::sphere) s.half.z() = p.height / 2;
+  switch (p.shape) {
+    case SolidKind::half_space:
+      // The square of a smaller norm would underflow.
+      if (!(p.normal.norm() > 1e-100))
+        throw std::runtime_error(s.name + " needs a \"normal\" that is not zero");
+      break;
+    case SolidKind::box:
+      s.half = p.size / 2;
+      break;
+    case SolidKind::capsule:
+    case SolidKind::cylinder:
+      s.half.z() = p.height / 2;
+      [[fallthrough]];
+    case SolidKind::sphere:
+      s.radius = p.radius;
   }
   s.update_axes();
   return s;

@@ -19,7 +19,8 @@ struct ShapeParameters : CommonObstacleParameters {
   static void declare(Declaration<ShapeParameters>& d);
 };
 
-/// The name of a kind in configs, as in `shape: half_space`.
+/// Each kind and its name in configs, as in `shape: half_space`.
+extern const std::vector<std::pair<std::string, SolidKind>> kind_names;
 std::string to_string(SolidKind kind);
 
 /// Contact with convex obstacles in closed form (see README.md).

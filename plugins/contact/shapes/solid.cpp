@@ -112,11 +112,9 @@ void Solid::update_axes() {
 
 SignedDistance Solid::nearest(const Vector3d& p) const {
   const Vector3d q = to_local(p);
-  SignedDistance n;
-  if (kind == SolidKind::half_space)
-    n.distance = q.z();
-  else
-    n = kind == SolidKind::cylinder ? nearest_to_cylinder(*this, q) : nearest_to_box(*this, q);
+  SignedDistance n = by_form(
+      kind, [&] { return nearest_to_box(*this, q); }, [&] { return nearest_to_cylinder(*this, q); },
+      [&] { return SignedDistance{q.z()}; });
   n.normal = axes * n.normal;
   n.tangent = axes * n.tangent;
   return n;
@@ -124,34 +122,40 @@ SignedDistance Solid::nearest(const Vector3d& p) const {
 
 double Solid::distance(const Vector3d& p) const {
   const Vector3d q = to_local(p);
-  if (kind == SolidKind::half_space) return q.z();
-  if (kind == SolidKind::cylinder) {
+  const auto to_box = [&] {
+    const double length = (q - q.cwiseMax(-half).cwiseMin(half)).norm();
+    return (length > 0 ? length : (q.cwiseAbs() - half).maxCoeff()) - radius;
+  };
+  const auto to_cylinder = [&] {
     const double out = std::hypot(q.x(), q.y()) - radius, up = std::abs(q.z()) - half.z();
     return out > 0 && up > 0 ? std::hypot(out, up) : std::max(out, up);
-  }
-  const double length = (q - q.cwiseMax(-half).cwiseMin(half)).norm();
-  return (length > 0 ? length : (q.cwiseAbs() - half).maxCoeff()) - radius;
+  };
+  return by_form(kind, to_box, to_cylinder, [&] { return q.z(); });
 }
 
 double Solid::support(const Vector3d& n) const {
   const double middle = n.dot(centre);
   const Vector3d m = axes.transpose() * n;
-  if (kind == SolidKind::half_space)  // 1e-7: m.z() then rounds to 1
-    return m.z() > 0 && m.head<2>().norm() < 1e-7 ? middle : std::numeric_limits<double>::infinity();
-  if (kind == SolidKind::cylinder) return middle + radius * m.head<2>().norm() + half.z() * std::abs(m.z());
-  return middle + half.dot(m.cwiseAbs()) + radius;
+  const auto across = [&] { return m.head<2>().norm(); };
+  return by_form(
+      kind, [&] { return middle + half.dot(m.cwiseAbs()) + radius; },
+      [&] { return middle + radius * across() + half.z() * std::abs(m.z()); },
+      [&] {  // 1e-7: m.z() then rounds to 1
+        return m.z() > 0 && across() < 1e-7 ? middle : std::numeric_limits<double>::infinity();
+      });
 }
 
 double Solid::nearest_on_edge(const Vector3d& a, const Vector3d& b) const {
   const Vector3d p = to_local(a), e = axes.transpose() * (b - a);
-  if (kind == SolidKind::half_space) return e.z() < 0 ? 1 : 0;
-  if (kind != SolidKind::cylinder) return nearest_to_box_on_edge(half, p, e);
-  return monotone_root([&](double t) {  // derivative of half the squared distance
+  const auto half_slope = [&](double t) {  // derivative of half the squared distance to a cylinder
     const Vector3d q = p + t * e;
     const double rho = std::hypot(q.x(), q.y());
     const double out = std::max(0.0, 1 - radius / rho), up = std::abs(q.z()) - half.z();
     return out * (q.x() * e.x() + q.y() * e.y()) + (up > 0 ? std::copysign(up, q.z()) * e.z() : 0.0);
-  });
+  };
+  return by_form(
+      kind, [&] { return nearest_to_box_on_edge(half, p, e); }, [&] { return monotone_root(half_slope); },
+      [&] { return e.z() < 0 ? 1.0 : 0.0; });
 }
 
 }  // namespace drape::shapes

@@ -9,6 +9,23 @@ namespace drape::shapes {
 
 enum class SolidKind { sphere, box, capsule, cylinder, half_space };
 
+/// Calls the function for the form of a kind. A kind that has none of these forms is given another function.
+template <class RoundedBox, class Cylinder, class HalfSpace>
+auto by_form(SolidKind kind, const RoundedBox& rounded_box, const Cylinder& cylinder,
+             const HalfSpace& half_space) {
+  switch (kind) {
+    case SolidKind::sphere:
+    case SolidKind::box:
+    case SolidKind::capsule:
+      return rounded_box();
+    case SolidKind::cylinder:
+      return cylinder();
+    case SolidKind::half_space:
+      break;
+  }
+  return half_space();
+}
+
 /// A convex obstacle. A box, sphere or capsule is a core box, possibly degenerate, rounded by `radius`. The
 /// distance is continuously differentiable outside.
 struct Solid {

@@ -15,7 +15,9 @@ using Eigen::Vector3d;
 
 /// The largest distance from the centre of a point that rotates with the axes. The rounding does not rotate.
 double lever_arm(const Solid& s) {
-  return s.kind == SolidKind::cylinder ? std::hypot(s.radius, s.half.z()) : s.half.norm();
+  const auto of_core = [&] { return s.half.norm(); };
+  return by_form(
+      s.kind, of_core, [&] { return std::hypot(s.radius, s.half.z()); }, of_core);
 }
 
 /// A lower bound of a triangle's distance: that of its bounding ball.

@@ -27,8 +27,8 @@ Positions resting(const Level& level) {
 TEST_CASE(
     "shapes: a solid slides and turns freely below the cloth, and a ball may grow up to a tenth of dhat") {
   const Level level = square_sheet(9, 0.4);
-  for (const SolidKind kind : kinds) {
-    INFO(to_string(kind));
+  for (const auto& [name, kind] : kind_names) {
+    INFO(name);
     const ShapeParameters below = upright(kind, 1e-4);
     ShapeParameters beside = below;
     beside.translate.x() += 0.2;

@@ -96,7 +96,7 @@ TEST_CASE("shapes: a cylinder thinner than the cloth's edges carries cloth howev
 TEST_CASE("shapes: forces are continuous during sliding") {
   const Level level = square_sheet(4, 0.03);
   std::vector<ShapeParameters> solids;
-  for (const SolidKind kind : kinds) solids.push_back(upright(some(kind)));
+  for (const auto& [name, kind] : kind_names) solids.push_back(upright(some(kind)));
   for (const int k : {2, 3}) {  // the capsule and the cylinder, lying
     solids.push_back(solids[k]);
     solids.back().rotate = {0, 90, 0};

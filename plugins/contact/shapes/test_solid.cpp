@@ -1,4 +1,5 @@
 #include <catch2/catch.hpp>
+#include <map>
 
 #include "plugins/contact/shapes/features.h"
 #include "plugins/contact/shapes/separation.h"
@@ -108,11 +109,14 @@ TEST_CASE("shapes: distance, gradient and curvature of solids") {
 
 TEST_CASE("shapes: a solid's mesh is closed, has its volume and agrees with its support function") {
   const double ball = 4.0 / 3 * M_PI * std::pow(0.06, 3), roll = M_PI * 0.06 * 0.06 * 0.1;
-  const double volumes[] = {ball, 0.1 * 0.14 * 0.08, ball + roll, roll};
+  const std::map<SolidKind, double> volumes = {{SolidKind::sphere, ball},
+                                               {SolidKind::box, 0.1 * 0.14 * 0.08},
+                                               {SolidKind::capsule, ball + roll},
+                                               {SolidKind::cylinder, roll}};
   for_each_solid([&](const Solid& s, const ShapeParameters&) {
     if (s.kind == SolidKind::half_space) return;
     const TriangleMesh mesh = tessellate(s, 1);
-    CHECK(volume_of(mesh) == Approx(volumes[static_cast<int>(s.kind)]).epsilon(0.01));
+    CHECK(volume_of(mesh) == Approx(volumes.at(s.kind)).epsilon(0.01));
     const Topology topology = Topology::of(mesh.triangles, static_cast<int>(mesh.vertices.rows()));
     CHECK(topology.edge_triangles.col(1).minCoeff() >= 0);  // closed
     for (const auto& vertex : mesh.vertices.rowwise()) CHECK(std::abs(s.distance(vertex)) < 1e-12);
