@@ -49,39 +49,36 @@ void DressParameters::declare(Declaration<DressParameters>& d) {
 }
 
 void apply_dress(ConfigNode& experiment, ConfigErrors& errors) {
-  for (std::size_t i = 0; i < experiment.entries.size(); ++i) {
-    if (experiment.entries[i].first != "dress") continue;
-    ConfigNode dress = experiment.entries[i].second.as_map("body");
-    for (auto& [key, value] : dress.entries)
-      if (key == "type") key = "body";  // of a shorthand that set_path has made a map
-    const ConfigNode* written = dress.find("body");
-    if (!written || written->scalar.empty()) return;
-    const ConfigNode file = *written;
-    if (const ConfigNode* other = dress.find("obstacle"); other && !other->scalar.empty())
-      errors.push_back(
-          {other->where, "\"dress\" takes either a \"body\" or the \"obstacle\" that is one, not both"});
-    ConfigNode body;
-    body.where = file.where;
-    body.add("name", ConfigNode::of(body_name));
-    body.add("mesh", file);
-    for (const char* key : placement_keys)
-      if (const ConfigNode* own = dress.find(key)) {
-        body.add(key, *own);
-        dress.remove(key);
-      }
-    dress.remove("body");
-    dress.remove("obstacle");
-    dress.add("obstacle", ConfigNode::of(body_name));
-    experiment.entries[i].second = dress;
-    if (!experiment.find("obstacles")) {
-      ConfigNode none(ConfigNode::Kind::list);
-      none.where = file.where;
-      experiment.add("obstacles", none);
+  ConfigNode* section = experiment.find("dress");
+  if (!section) return;
+  ConfigNode dress = section->as_map("body");
+  for (auto& [key, value] : dress.entries)
+    if (key == "type") key = "body";  // of a shorthand that set_path has made a map
+  const ConfigNode* written = dress.find("body");
+  if (!written || written->scalar.empty()) return;
+  const ConfigNode file = *written;
+  if (const ConfigNode* other = dress.find("obstacle"); other && !other->scalar.empty())
+    errors.push_back(
+        {other->where, "\"dress\" takes either a \"body\" or the \"obstacle\" that is one, not both"});
+  ConfigNode body;
+  body.where = file.where;
+  body.add("name", ConfigNode::of(body_name));
+  body.add("mesh", file);
+  for (const char* key : placement_keys)
+    if (const ConfigNode* own = dress.find(key)) {
+      body.add(key, *own);
+      dress.remove(key);
     }
-    for (auto& [key, obstacles] : experiment.entries)
-      if (key == "obstacles") obstacles.items.push_back(body);
-    return;
+  dress.remove("body");
+  dress.remove("obstacle");
+  dress.add("obstacle", ConfigNode::of(body_name));
+  *section = dress;
+  ConfigNode* obstacles = experiment.find("obstacles");
+  if (!obstacles) {
+    obstacles = &experiment.add("obstacles", ConfigNode(ConfigNode::Kind::list));
+    obstacles->where = experiment.key_locations.back() = file.where;
   }
+  obstacles->items.push_back(body);
 }
 
 void make_dressing_schedule(Experiment& e, ConfigErrors& errors) {

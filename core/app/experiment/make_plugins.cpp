@@ -27,13 +27,11 @@ bool has_newton(const Schema& solver) {
 
 /// Gives a solver's `newton` what the experiment's own sets and the solver's does not.
 void take_newton(const ConfigNode& common, ConfigNode& solver) {
-  ConfigNode newton;
-  if (const ConfigNode* own = solver.find("newton")) newton = *own;
+  ConfigNode* own = solver.find("newton");
+  ConfigNode& newton = own ? *own : solver.add("newton", {});
   if (newton.kind != ConfigNode::Kind::map && newton.kind != ConfigNode::Kind::null) return;  // is refused
   for (const auto& [key, value] : common.entries)
     if (!newton.find(key)) newton.add(key, value);
-  solver.remove("newton");
-  solver.add("newton", newton);
 }
 
 /// Leaves out of a resolved solver's `newton` what it shares with the experiment's, so that a change of the

@@ -178,12 +178,10 @@ ConfigNode* step(ConfigNode& node, const std::string& word, const Location& wher
     return index ? &node.items[*index] : nullptr;
   }
   if (node.is_scalar()) node = node.as_map("type");
-  for (auto& [key, value] : node.entries)
-    if (key == word) return &value;
+  if (ConfigNode* known = node.find(word)) return known;
   ConfigNode value;
   value.where = where;
-  node.add(word, value);
-  return &node.entries.back().second;
+  return &node.add(word, value);
 }
 
 /// Why a word of a path names no item of a list, or which items it names.

@@ -143,11 +143,9 @@ ConfigNode model_part(const ConfigNode& config) {
   ConfigNode model(Kind::map);
   for (const std::string& key : model_keys())
     if (const ConfigNode* part = config.find(key)) model.add(key, *part);
-  for (auto& [key, part] : model.entries) {
-    if (key == "material") part.remove("from_fabric");
-    if (key == "start")
-      for (const char* noise : {"perturbation", "perturbation_wavelength", "seed"}) part.remove(noise);
-  }
+  if (ConfigNode* material = model.find("material")) material->remove("from_fabric");
+  if (ConfigNode* start = model.find("start"))
+    for (const char* noise : {"perturbation", "perturbation_wavelength", "seed"}) start->remove(noise);
   return model;
 }
 

@@ -137,10 +137,10 @@ ConfigNode ConfigNode::as_map(const std::string& key) const {
   return map;
 }
 
-void ConfigNode::add(const std::string& key, ConfigNode value) {
+ConfigNode& ConfigNode::add(const std::string& key, ConfigNode value) {
   kind = Kind::map;
   key_locations.push_back(value.where);
-  entries.emplace_back(key, std::move(value));
+  return entries.emplace_back(key, std::move(value)).second;
 }
 
 std::optional<Location> ConfigNode::remove(const std::string& key) {

@@ -39,6 +39,7 @@ struct ConfigNode {
   bool is_scalar() const { return is_number() || kind == Kind::boolean || kind == Kind::text; }
 
   const ConfigNode* find(const std::string& key) const;  ///< map entry or null
+  ConfigNode* find(const std::string& key) { return const_cast<ConfigNode*>(std::as_const(*this).find(key)); }
   /// The place of a map's entry; without the entry, the map's own.
   const Location& where_of(const std::string& key) const;
   /// Indices of the list's items that a word of a path names by their index from 0, their type or their name.
@@ -53,7 +54,8 @@ struct ConfigNode {
 
   /// The node itself; for a scalar, the map that has it as the value of `key`, at the scalar's location.
   ConfigNode as_map(const std::string& key) const;
-  void add(const std::string& key, ConfigNode value);  ///< appends an entry, making a null node a map
+  /// Appends an entry, making a null node a map; returns the value in it.
+  ConfigNode& add(const std::string& key, ConfigNode value);
   /// Removes a map's first entry of this key. Returns the key's location; nothing without the entry.
   std::optional<Location> remove(const std::string& key);
 
