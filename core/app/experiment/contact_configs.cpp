@@ -22,41 +22,15 @@ std::vector<ConfigNode> contact_sections(const ExperimentParameters& p) {
   return p.contact.kind == NodeKind::list ? p.contact.items : std::vector<ConfigNode>{p.contact};
 }
 
-/// The keys by which the model knows its obstacles.
-std::vector<std::string> identifying_keys(const RegistryEntry& model) {
-  std::vector<std::string> keys;
-  for (const Parameter& list : model.schema.parameters)
-    if (list.from_experiment && list.section)
-      for (const Parameter& p : list.section->parameters)
-        if (p.identifies_item) keys.push_back(p.name);
+/// The keys by which the registered contact models know their obstacles, and those models.
+std::vector<std::pair<std::string, const RegistryEntry*>> identifying_keys(const Registry& registry) {
+  std::vector<std::pair<std::string, const RegistryEntry*>> keys;
+  for (const RegistryEntry* model : registry.of_kind("contact"))
+    for (const Parameter& list : model->schema.parameters)
+      if (list.from_experiment && list.section)
+        for (const Parameter& p : list.section->parameters)
+          if (p.identifies_item) keys.emplace_back(p.name, model);
   return keys;
-}
-
-/// The first key of an obstacle by which the model knows it; "" without one.
-std::string known_key(const RegistryEntry& model, const ConfigNode& obstacle) {
-  for (const std::string& key : identifying_keys(model))
-    if (obstacle.find(key)) return key;
-  return "";
-}
-
-/// "obstacles[2] (ball)".
-std::string label_of(const ConfigNode& obstacle, std::size_t index) {
-  const ConfigNode* name = obstacle.find("name");
-  return "obstacles[" + std::to_string(index) + "]" +
-         (name && !name->scalar.empty() ? " (" + excerpt(name->scalar) + ")" : "");
-}
-
-/// Why no model of an experiment takes the obstacle, with a remedy.
-std::string refusal(const Registry& registry, const ConfigNode& obstacle, std::size_t index) {
-  std::vector<std::string> keys;
-  for (const RegistryEntry* model : registry.of_kind("contact")) {
-    if (const std::string key = known_key(*model, obstacle); !key.empty())
-      return label_of(obstacle, index) + ": no contact model of this experiment takes \"" + key + "\"; add " +
-             model->name + " to \"contact\"";
-    for (const std::string& key : identifying_keys(*model)) keys.push_back(key);
-  }
-  if (keys.empty()) return label_of(obstacle, index) + ": no contact model that is loaded takes obstacles";
-  return label_of(obstacle, index) + " must be a map with " + quoted_choice(keys);
 }
 
 bool has_friction(const RegistryEntry& model) {
@@ -67,10 +41,10 @@ bool has_friction(const RegistryEntry& model) {
 /// Friction that no model of an experiment has, which would be ignored.
 void check_friction(const Experiment& e, const std::vector<const RegistryEntry*>& models,
                     ConfigErrors& errors) {
-  const auto has = [](const RegistryEntry* model) { return !model || has_friction(*model); };
+  const auto may_have = [](const RegistryEntry* model) { return !model || has_friction(*model); };
   const auto& keys = e.parameters.schedule.keys;
   const bool is_scheduled = std::ranges::find(keys, "friction", &ScheduleKey::parameter) != keys.end();
-  if ((e.parameters.friction == 0 && !is_scheduled) || std::ranges::any_of(models, has)) return;
+  if ((e.parameters.friction == 0 && !is_scheduled) || std::ranges::any_of(models, may_have)) return;
   std::vector<std::string> names;
   for (const RegistryEntry* model : e.registry->of_kind("contact"))
     if (has_friction(*model)) names.push_back(model->name);
@@ -78,15 +52,6 @@ void check_friction(const Experiment& e, const std::vector<const RegistryEntry*>
   errors.push_back({contact.line > 0 ? contact : e.location_of("friction"),
                     "no contact model of this experiment has friction; set \"friction\" to 0" +
                         (names.empty() ? "" : ", or add " + quoted_choice(names) + " to \"contact\"")});
-}
-
-/// Each model sees every pair of the cloth and all of its obstacles, so a second one would count them twice.
-void check_models(const std::vector<ConfigNode>& written, const std::vector<const RegistryEntry*>& models,
-                  ConfigErrors& errors) {
-  for (std::size_t k = 0; k < models.size(); ++k)
-    if (models[k] && std::find(models.begin(), models.begin() + k, models[k]) != models.begin() + k)
-      errors.push_back(
-          {written[k].where, "\"contact\" lists " + models[k]->name + " twice; list each model once"});
 }
 
 /// A path of keys finds an obstacle by its name, so no two have the same.
@@ -105,26 +70,35 @@ void check_names(const std::vector<ConfigNode>& obstacles, ConfigErrors& errors)
   }
 }
 
-/// Gives each obstacle to the first model that knows it.
-void share_obstacles(const Registry& registry, const std::vector<ConfigNode>& obstacles,
-                     const std::vector<const RegistryEntry*>& models,
-                     std::vector<std::vector<std::size_t>>& obstacles_of, ConfigErrors& errors) {
-  for (std::size_t i = 0; i < obstacles.size(); ++i) {
-    const auto takes = std::ranges::find_if(models, [&](const RegistryEntry* model) {
-      return model && !known_key(*model, obstacles[i]).empty();
-    });
-    const auto all = registry.of_kind("contact");
-    const auto other = std::ranges::find_if(all, [&](const RegistryEntry* model) {
-      return takes != models.end() && model != *takes && !known_key(*model, obstacles[i]).empty();
-    });
-    if (other != all.end())
-      errors.push_back({obstacles[i].where, label_of(obstacles[i], i) + " has both \"" +
-                                                known_key(**takes, obstacles[i]) + "\" and \"" +
-                                                known_key(**other, obstacles[i]) + "\"; keep one"});
-    else if (takes != models.end())
-      obstacles_of[takes - models.begin()].push_back(i);
-    else if (std::ranges::find(models, nullptr) == models.end())  // else a model's name is wrong
-      errors.push_back({obstacles[i].where, refusal(registry, obstacles[i], i)});
+/// Gives each obstacle to the one contact model that knows a key of it, of `models`, the experiment's.
+void share_obstacles(Experiment& e, const std::vector<const RegistryEntry*>& models, ConfigErrors& errors) {
+  const bool all_exist = std::ranges::find(models, nullptr) == models.end();
+  const auto keys = identifying_keys(*e.registry);
+  std::vector<std::string> words;
+  for (const auto& [key, model] : keys) words.push_back(key);
+  for (std::size_t i = 0; i < e.parameters.obstacles.size(); ++i) {
+    const ConfigNode& obstacle = e.parameters.obstacles[i];
+    const auto is_in = [&](const auto& key) { return obstacle.find(key.first) != nullptr; };
+    const auto own = std::ranges::find_if(keys, is_in);
+    const auto other = std::find_if(own, keys.end(),
+                                    [&](const auto& key) { return key.second != own->second && is_in(key); });
+    const auto taker = own == keys.end() ? models.end() : std::ranges::find(models, own->second);
+    std::string fault;
+    if (other != keys.end())
+      fault = " has both \"" + own->first + "\" and \"" + other->first + "\"; keep one";
+    else if (taker != models.end())
+      e.obstacles_of[taker - models.begin()].push_back(i);
+    else if (all_exist && own != keys.end())
+      fault = ": no contact model of this experiment takes \"" + own->first + "\"; add " + own->second->name +
+              " to \"contact\"";
+    else if (all_exist)
+      fault = keys.empty() ? ": no contact model that is loaded takes obstacles"
+                           : " must be a map with " + quoted_choice(words);
+    if (fault.empty()) continue;
+    const ConfigNode* name = obstacle.find("name");
+    errors.push_back({obstacle.where,
+                      "obstacles[" + std::to_string(i) + "]" +
+                          (name && !name->scalar.empty() ? " (" + excerpt(name->scalar) + ")" : "") + fault});
   }
 }
 
@@ -167,7 +141,11 @@ void make_contacts(Experiment& e, ConfigErrors& errors) {
   std::vector<const RegistryEntry*> models;
   for (const ConfigNode& node : written) models.push_back(e.registry->find("contact", node.plugin_name()));
   e.obstacles_of.resize(written.size());
-  check_models(written, models, errors);
+  // Each model sees every pair of the cloth and all of its obstacles: a second one would count them twice.
+  for (std::size_t k = 0; k < models.size(); ++k)
+    if (models[k] && std::find(models.begin(), models.begin() + k, models[k]) != models.begin() + k)
+      errors.push_back(
+          {written[k].where, "\"contact\" lists " + models[k]->name + " twice; list each model once"});
   constexpr std::size_t most_obstacles = 10'000;
   if (p.obstacles.size() > most_obstacles)
     return errors.push_back(
@@ -176,7 +154,7 @@ void make_contacts(Experiment& e, ConfigErrors& errors) {
                                          "; a mesh can hold many bodies"});
   check_names(p.obstacles, errors);
   check_friction(e, models, errors);
-  share_obstacles(*e.registry, p.obstacles, models, e.obstacles_of, errors);
+  share_obstacles(e, models, errors);
   ConfigNode sections(NodeKind::list), obstacles(NodeKind::list);
   obstacles.items = p.obstacles;
   for (std::size_t k = 0; k < written.size(); ++k) {
