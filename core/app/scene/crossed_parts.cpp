@@ -9,6 +9,7 @@
 #include "core/numerics/collision_detection/components.h"
 #include "core/numerics/collision_detection/intersections.h"
 #include "core/numerics/collision_detection/surface_search.h"
+#include "core/numerics/mesh/area_vectors.h"
 #include "core/numerics/mesh/disjoint_sets.h"
 #include "core/numerics/mesh/mesh_faults.h"
 
@@ -25,25 +26,6 @@ constexpr double past_middle = 0.4;
 /// An edge that is so nearly parallel to a motion sweeps no area: the next edges stand for it.
 constexpr double parallel = 1e-6;
 
-Vector3d corner(const TriangleMesh& mesh, Eigen::Index t, int k) {
-  return mesh.vertices.row(mesh.triangles(t, k));
-}
-
-Vector3d normal_of(const TriangleMesh& mesh, Eigen::Index t) {
-  const Vector3d a = corner(mesh, t, 0);
-  return (corner(mesh, t, 1) - a).cross(corner(mesh, t, 2) - a).normalized();
-}
-
-/// Whether the triangles of a closed mesh face inwards.
-bool faces_inwards(const TriangleMesh& mesh) {
-  double volume = 0;
-  const Vector3d origin = mesh.vertices.row(0);
-  for (Eigen::Index t = 0; t < mesh.triangles.rows(); ++t)
-    volume +=
-        (corner(mesh, t, 0) - origin).dot((corner(mesh, t, 1) - origin).cross(corner(mesh, t, 2) - origin));
-  return volume < 0;
-}
-
 }  // namespace
 
 CrossedParts::CrossedParts(const Level& level, const Positions& start, std::vector<TriangleMesh> obstacles)
@@ -59,15 +41,21 @@ void CrossedParts::add(const Level& level, const TriangleMesh& obstacle) {
       border_half_edges(obstacle.triangles, static_cast<int>(obstacle.vertices.rows())).empty();
   const Positions one_of_each = start_(components(level.topology), Eigen::all);
   const bool is_room = closed && is_inside(one_of_each, obstacle, true);
-  const double facing = closed && !is_room && faces_inwards(obstacle) ? -1 : 1;
+  const Positions normals = area_vectors(obstacle);
+  const auto normal_of = [&](int triangle) -> Vector3d { return normals.row(triangle).normalized(); };
+  const auto faces_inwards = [&] {
+    const Positions corners = obstacle.vertices(obstacle.triangles.col(0), Eigen::all);
+    return (corners.rowwise() - obstacle.vertices.row(0)).cwiseProduct(normals).sum() < 0;  // the volume
+  };
+  const double facing = closed && !is_room && faces_inwards() ? -1 : 1;
   std::vector<char> crosses(cloth.triangles.rows(), 0);
   const auto cuts = [&](const Vector3d& outwards) {
     if (closed) outwards_.push_back(outwards);
   };
   for (const TrianglePair& pair : intersections(cloth, obstacle)) {
     crosses[pair.first] = 1;
-    way_out_ += facing * normal_of(obstacle, pair.second);
-    cuts(facing * normal_of(obstacle, pair.second));
+    way_out_ += facing * normal_of(pair.second);
+    cuts(facing * normal_of(pair.second));
   }
   if (closed && std::ranges::count(crosses, 1) > 0) cut_.push_back(obstacle.vertices);
   // What triangles without an intersection connect is on one side.
@@ -83,7 +71,7 @@ void CrossedParts::add(const Level& level, const TriangleMesh& obstacle) {
   const SurfaceSearch surface(obstacle);
   const auto is_behind = [&](const Vector3d& p) {
     const NearestPoint near = surface.nearest(p);
-    return near.triangle >= 0 && near.offset.dot(normal_of(obstacle, near.triangle)) < 0;
+    return near.triangle >= 0 && near.offset.dot(normal_of(near.triangle)) < 0;
   };
   std::vector<char> behind(vertices, 0);
   for (std::size_t i = 0; i < ones.size(); ++i)

@@ -10,6 +10,7 @@
 
 #include "core/kernel/threads/parallel.h"
 #include "core/numerics/elements/vertex_fields.h"
+#include "core/numerics/mesh/area_vectors.h"
 #include "plugins/metric/curvature_consistency/quadric.h"
 
 namespace drape {
@@ -21,25 +22,12 @@ constexpr int grain = 1024;  // vertices a piece; each piece allocates a mark pe
 
 Vector3d vertex(const Positions& x, int i) { return x.row(i).transpose(); }
 
-Vector3d area_vector(const Positions& x, const Triangles& triangles, int t) {
-  const Vector3d a = vertex(x, triangles(t, 0));
-  return 0.5 * (vertex(x, triangles(t, 1)) - a).cross(vertex(x, triangles(t, 2)) - a);
-}
-
-Positions vertex_normals(const Positions& x, const Triangles& triangles, const Topology& topology) {
-  Positions normals(x.rows(), 3);
-  parallel_for(static_cast<int>(x.rows()), grain, [&](int begin, int end) {
-    for (int i = begin; i < end; ++i) {
-      Vector3d sum = Vector3d::Zero();
-      for (const int t : topology.vertex_triangles.row(i)) sum += area_vector(x, triangles, t);
-      const double length = sum.norm();
-      if (!(length > 0))
-        throw std::runtime_error(
-            "curvature: the triangles around vertex " + std::to_string(i) +
-            " have no common normal; they are degenerate or folded flat onto each other");
-      normals.row(i) = sum.transpose() / length;
-    }
-  });
+Positions vertex_normals(const Positions& x, const Triangles& triangles) {
+  Positions normals = smooth_normals({x, triangles});
+  for (Eigen::Index i = 0; i < normals.rows(); ++i)
+    if (normals.row(i).isZero(0))
+      throw std::runtime_error("curvature: the triangles around vertex " + std::to_string(i) +
+                               " have no common normal; they are degenerate or folded flat onto each other");
   return normals;
 }
 
@@ -78,7 +66,7 @@ class RingSearch {
 VertexCurvatures fit_curvatures(const Positions& x, const Triangles& triangles, const Topology& topology,
                                 int rings) {
   const int n = static_cast<int>(x.rows());
-  const Positions normals = vertex_normals(x, triangles, topology);
+  const Positions normals = vertex_normals(x, triangles);
   VertexCurvatures result{Eigen::VectorXd(n), Eigen::VectorXd(n), Eigen::VectorXd(n)};
   parallel_for(n, grain, [&](int begin, int end) {
     RingSearch search(topology.vertex_vertices, n);
