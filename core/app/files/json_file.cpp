@@ -73,11 +73,7 @@ std::string ascii_json_text(const Json& json) {
 
 std::string fault_of_file_name(const std::string& name) {
   constexpr std::size_t most = 200;  // bytes: most file systems allow 255; a run appends endings
-  try {
-    Json(name).dump();
-  } catch (const Json::exception&) {
-    return "is no UTF-8, which results.json needs";
-  }
+  if (first_unprintable(name) != name.npos) return "is no UTF-8, which results.json needs";
   if (name.size() <= most) return "";
   return "has " + std::to_string(name.size()) + " bytes, and may have " + std::to_string(most);
 }
