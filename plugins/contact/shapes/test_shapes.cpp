@@ -97,10 +97,10 @@ TEST_CASE("shapes: forces are continuous during sliding") {
   const Level level = square_sheet(4, 0.03);
   std::vector<ShapeParameters> solids;
   for (const auto& [name, kind] : kind_names) solids.push_back(upright(some(kind)));
-  for (const int k : {2, 3}) {  // the capsule and the cylinder, lying
-    solids.push_back(solids[k]);
+  for (const SolidKind kind : {SolidKind::capsule, SolidKind::cylinder}) {  // lying
+    solids.push_back(upright(some(kind)));
     solids.back().rotate = {0, 90, 0};
-    solids.back().translate.z() = -solids[k].radius;
+    solids.back().translate.z() = -solids.back().radius;
   }
   for (const ShapeParameters& p : solids) {
     const auto contact = bound({p}, level);
