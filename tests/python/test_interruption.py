@@ -2,6 +2,8 @@
 
 import os
 import signal
+import subprocess
+import sys
 import threading
 from concurrent.futures import ThreadPoolExecutor
 
@@ -112,3 +114,20 @@ def test_two_runs_in_two_threads(small):
         for result in threads.map(lambda _: run(small, methods=["all"], on_iteration=lambda i: None), range(2)):
             for method in alone.methods:
                 assert bits_of(result, method) == bits_of(alone, method)
+
+
+@pytest.mark.parametrize("call", ["e.run(out='r', on_iteration=lambda i: seen.set(), progress=False)",
+                                  "[seen.set() for _ in e.solver('pcs')]"])
+def test_the_interpreter_ends_while_a_thread_runs(small, tmp_path, call):
+    small["newton"] = {"force_tolerance": 1e-300, "step_size": 1e-3, "step_growth": 1, "max_steps": 10**8}
+    (tmp_path / "e.py").write_text(f"""import sys, threading, drape
+e, seen = drape.Experiment({small}), threading.Event()
+threading.Thread(target=lambda: {call}, daemon=True).start()
+seen.wait(60)
+sys.exit(5)
+""")
+    ended = subprocess.run([sys.executable, "e.py"], cwd=tmp_path, timeout=60, stderr=subprocess.PIPE, text=True,
+                           env=os.environ | {"PYTHONPATH": os.pathsep.join(sys.path)})
+    assert ended.returncode == 5 and "terminate" not in ended.stderr
+    if (tmp_path / "r").exists():
+        assert drape.read_run(tmp_path / "r")["pcs"].status == "cancelled"

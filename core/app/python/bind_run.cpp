@@ -40,7 +40,7 @@ class Callbacks : public Observer {
   bool refine_requested() override { return std::exchange(refine_, false); }
 
   bool stop_requested() override {
-    if (has_failed()) stop_ = true;
+    if (has_failed() || WithoutGil::to_end()) stop_ = true;
     if (stop_) return true;
     const py::gil_scoped_acquire gil;
     if (PyErr_CheckSignals() == 0) return false;

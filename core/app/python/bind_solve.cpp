@@ -131,7 +131,8 @@ class Solve {
   void end() {
     if (busy_) return;  // whoever advances it keeps it
     std::unique_ptr<SteppedSolve> ended = std::move(solve_);
-    without_gil([&] { ended.reset(); });  // its thread may need the GIL to end
+    const WithoutGil released;  // its thread may need the GIL to end
+    ended.reset();
   }
 
  private:
@@ -157,6 +158,7 @@ class Solve {
 
 /// For the interpreter's exit: a prototype's solver cannot take the GIL any more after it.
 void end_all_solves() {
+  WithoutGil::wait_for_all();
   const std::set<Solve*> all = Solve::all();
   for (Solve* solve : all)
     if (Solve::all().count(solve) > 0) solve->end();  // one's end may destroy another

@@ -2,6 +2,7 @@
 
 #include <pybind11/pybind11.h>
 
+#include <atomic>
 #include <memory>
 #include <stdexcept>
 #include <string>
@@ -68,11 +69,36 @@ auto with_python(const Body& body) {
   }
 }
 
+/// C++ at work without the GIL, for as long as the object lives. A thread that asked for the GIL after the
+/// interpreter's end would take the process with it, so the end waits for all of them.
+class WithoutGil {
+ public:
+  /// Whether the interpreter ends: runs then stop as on a request.
+  static bool to_end() { return to_end_; }
+  /// For the interpreter's end. A signal's handler may raise an exception.
+  static void wait_for_all();
+  /// Throws std::runtime_error once the interpreter has waited for all. Call with the GIL held.
+  static void refuse_after_end();
+
+ private:
+  struct Counted {
+    Counted() { ++under_way; }
+    ~Counted() { --under_way; }
+    Counted(const Counted&) = delete;
+    Counted& operator=(const Counted&) = delete;
+    inline static int under_way = 0;  // guarded by the GIL
+  };
+  inline static std::atomic<bool> to_end_ = false;
+  Counted counted_;
+  py::gil_scoped_release released_;
+};
+
 /// The result of `body`, which runs without the GIL: it takes long, or calls prototypes, which take it
 /// themselves.
 template <class Body>
 auto without_gil(const Body& body) {
-  const py::gil_scoped_release released;
+  WithoutGil::refuse_after_end();
+  const WithoutGil released;
   return body();
 }
 

@@ -1,5 +1,9 @@
+#include <unistd.h>
+
+#include <chrono>
 #include <exception>
 #include <string>
+#include <thread>
 #include <utility>
 
 #include "core/app/python/module.h"
@@ -13,6 +17,8 @@ thread_local SharedObject raised;
 thread_local std::exception_ptr thrown;
 
 thread_local int depth = 0;  // of calls
+
+const pid_t own_process = getpid();
 
 SharedObject exception_of(const py::error_already_set& error) {
   py::object value = error.value();
@@ -42,6 +48,20 @@ void raise_failure() {
     throw py::error_already_set();
   }
   if (thrown) std::rethrow_exception(std::exchange(thrown, nullptr));
+}
+
+void WithoutGil::wait_for_all() {
+  to_end_ = true;
+  while (Counted::under_way > 0 && getpid() == own_process) {  // the child of a fork has no other thread
+    if (PyErr_CheckSignals() != 0) throw py::error_already_set();
+    const py::gil_scoped_release released;
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  }
+}
+
+void WithoutGil::refuse_after_end() {
+  if (to_end_ && Counted::under_way == 0)
+    throw std::runtime_error("the interpreter ends; nothing more can be run");
 }
 
 OwnCalls::OwnCalls() : outer_(std::exchange(depth, 0)) {
