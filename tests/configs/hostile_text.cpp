@@ -57,6 +57,9 @@ TEST_CASE("a table of fabrics has the line ends of any system, and a refused cel
   const Scratch folder;
   folder.write("cr.csv", "name,mass,warp_bending\ra,0.3,1e-5\r");
   CHECK_THAT(shown_by("fabric a --file cr.csv", folder.path), Contains("300 g/m"));
+  folder.write("quoted.csv",
+               "name,mass,warp_bending,source\r\n\"a\",0.3,1e-5,\"two\r\nlines\"\r\n6\" b,0.2,1e-5,,\r\n");
+  CHECK_THAT(shown_by("fabric '6\" b' --file quoted.csv", folder.path), Contains("200 g/m"));
   folder.write("bad.csv", "name,mass,warp_stiffness,weft_stiffness,warp_bending\na,0.3,1e400,5,1e-5\n");
   folder.write("e.yaml", "name: e\nmaterial: {fabric: {file: bad.csv, row: a}}\n");
   CHECK_THAT(refused_by("check e.yaml", folder.path),

@@ -1,11 +1,13 @@
 #include "core/app/experiment/fabrics.h"
 
 #include <algorithm>
+#include <boost/algorithm/string/classification.hpp>
+#include <boost/algorithm/string/trim.hpp>
 #include <cctype>
 #include <cmath>
 #include <optional>
-#include <sstream>
 
+#include "core/app/files/csv.h"
 #include "core/kernel/files/file.h"
 #include "core/kernel/files/message_text.h"
 #include "core/kernel/files/number_text.h"
@@ -70,47 +72,22 @@ constexpr Column columns[] = {
     {"linear diag[si*1e9]", "bias_bending", 1e-9},
 };
 
-/// A line's cells. In double quotes separators are text, and two quotes are one (RFC 4180).
-std::vector<std::string> cells_of(const std::string& line, char separator) {
-  std::vector<std::string> cells(1);
-  bool in_quotes = false;
-  for (std::size_t i = 0; i < line.size(); ++i) {
-    const bool twice = in_quotes && line.compare(i, 2, "\"\"") == 0;
-    if (line[i] == '"' && !twice)
-      in_quotes = !in_quotes;
-    else if (line[i] == separator && !in_quotes)
-      cells.emplace_back();
-    else
-      cells.back() += line[i];
-    i += twice;
-  }
-  return cells;
-}
-
 struct Table {
   std::string file;                 ///< for messages
   std::vector<std::string> header;  ///< in small letters
   std::vector<std::vector<std::string>> rows;
 
   Table(std::string name, const std::string& text) : file(std::move(name)) {
-    std::string endings(utf8_text(file, text));
-    std::ranges::replace(endings, '\r', '\n');  // empty lines count for nothing
-    std::istringstream lines(endings);
-    char separator = ',';
-    for (std::string line; std::getline(lines, line);) {
-      if (line.find_first_not_of(" \t") == std::string::npos) continue;
-      if (header.empty())  // the first of these that it has
-        if (const std::size_t k = std::string(",;\t").find_first_of(line); k != std::string::npos)
-          separator = ",;\t"[k];
-      std::vector<std::string> cells = cells_of(line, separator);
-      for (std::string& cell : cells) {
-        const std::size_t first = cell.find_first_not_of(" \t"), last = cell.find_last_not_of(" \t");
-        cell = first == std::string::npos ? "" : cell.substr(first, last - first + 1);
-      }
-      if (header.empty())
-        header = std::move(cells);
-      else
-        rows.push_back(std::move(cells));
+    for (CsvRow& row : csv_rows(file, utf8_text(file, text), ",;\t")) {
+      for (std::string& cell : row.cells) boost::trim_if(cell, boost::is_any_of(" \t"));
+      while (row.cells.size() > 1 && row.cells.back().empty()) row.cells.pop_back();
+      if (row.cells.front().empty() && row.cells.size() == 1) continue;
+      if (!header.empty() && row.cells.size() > header.size())
+        refuse_path(file + ":" + std::to_string(row.line),
+                    "has " + std::to_string(row.cells.size()) + " cells, and the first line names " +
+                        std::to_string(header.size()) +
+                        " columns; write numbers with a point, and a text with a separator in double quotes");
+      (header.empty() ? header : rows.emplace_back()) = std::move(row.cells);
     }
     if (rows.empty())
       throw std::runtime_error(
@@ -181,26 +158,28 @@ ConfigNode material_of(const Table& table, std::size_t row, const std::string& n
     const std::string text = table.cell(row, column.name);
     if (text.empty()) continue;
     const std::optional<double> value = number_of(text);
-    const bool is_mass = column.key == std::string("mass");
+    const bool is_mass = column.key == std::string("mass"),
+               is_positive = is_mass || column.key == std::string("thickness");
     if (column.key == std::string("density") && !table.cell(row, "mass").empty())
       continue;  // what is weighed is the sheet
     has_mass = has_mass || is_mass;
-    if (!value || (is_mass && !(*value > 0)))
-      refuse("has \"" + excerpt(text) + "\" in column \"" + column.name + "\", which is not a number" +
-             (is_mass ? " above 0" : ""));
+    if (!value || (is_positive && !(*value > 0)))
+      refuse("has \"" + excerpt(text) + "\" in column \"" + column.name + "\", which is not a finite number" +
+             (is_positive ? " above 0" : ""));
     else if (is_mass)
       mass = *value;
     else
       material.add(column.key,
                    ConfigNode::of(column.factor * *value * std::pow(ratio, column.thickness_power)));
   }
+  if (errors.size() > before) return {};  // what is left would be refused for what it lacks
   if (in_force != own && !material.find("membrane_modulus") && !material.find("warp_stiffness"))
     material.add("membrane_modulus", ConfigNode::of(Material().membrane_modulus * (own / in_force)));
   if (mass) material.add("density", ConfigNode::of(*mass / in_force));
   if (!has_mass && !material.find("density")) refuse("lacks column \"mass\" [kg/m²]");
   if (!material.find("warp_bending") && !material.find("bending_modulus"))
     refuse("lacks column \"warp_bending\" [N m]");
-  if (errors.size() > before) return {};  // what is left would be refused for what it lacks
+  if (errors.size() > before) return {};
   if (const std::string source = table.cell(row, "source"); !source.empty())
     material.add("source", ConfigNode::of(source));
   return material;

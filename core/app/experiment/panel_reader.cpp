@@ -151,7 +151,9 @@ class PanelReader {
                       "edge " + name + " begins and ends at one place; make two edges of a closed curve");
       const auto curve = curve_of(e.curvature, name, vertices_[*a], vertices_[*b]);
       if (!curve) return;
-      if (!own.empty()) read_.named_edges.try_emplace(own, static_cast<int>(read_.edge_names.size()));
+      if (!own.empty() &&
+          !read_.named_edges.try_emplace(own, static_cast<int>(read_.edge_names.size())).second)
+        return refuse(written.where, "edge " + name + " is given twice; rename one");
       read_.edge_names.push_back(own);
       read_.parts.push_back({static_cast<int>(read_.parts.size())});
       read_.panel.edges.push_back({name, *curve, e.label, written.where});

@@ -1,33 +1,60 @@
 #include "core/app/files/csv.h"
 
 #include <algorithm>
-#include <sstream>
-#include <stdexcept>
 
 #include "core/kernel/files/file.h"
 #include "core/kernel/files/number_text.h"
-#include "core/kernel/files/string_utils.h"
 
 namespace drape {
 
+std::vector<CsvRow> csv_rows(const std::filesystem::path& file, std::string_view text,
+                             const std::string& separators) {
+  const std::size_t first = text.find_first_of(separators);
+  const char separator = first == std::string_view::npos ? separators[0] : text[first];
+  std::vector<CsvRow> rows(1, {{""}});
+  std::size_t line = 1, quote = 0;  // the line of the quote that is open
+  bool begun = false;               // the cell; a quote within it is text
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const char c = text[i];
+    std::vector<std::string>& cells = rows.back().cells;
+    const bool ends_line = c == '\n' || (c == '\r' && text.substr(i, 2) != "\r\n");
+    line += ends_line;
+    if (quote > 0 && text.substr(i, 2) == "\"\"") {
+      cells.back() += text[i++];
+    } else if (c == '"' && (quote > 0 || !begun)) {
+      quote = quote > 0 ? 0 : line;
+      begun = true;
+    } else if (quote == 0 && (c == separator || ends_line)) {
+      begun = false;
+      if (c == separator)
+        cells.emplace_back();
+      else if (std::ranges::all_of(cells, &std::string::empty))
+        rows.back() = {{""}, line};
+      else
+        rows.push_back({{""}, line});
+    } else if (quote > 0 || c != '\r') {
+      cells.back() += c;
+      begun = begun || (c != ' ' && c != '\t');
+    }
+  }
+  if (quote > 0) refuse_path(file.string() + ":" + std::to_string(quote), "a quote (\") has no end");
+  if (std::ranges::all_of(rows.back().cells, &std::string::empty)) rows.pop_back();
+  return rows;
+}
+
 Csv::Csv(const std::filesystem::path& path) {
   if (!std::filesystem::is_regular_file(path)) return;
-  std::istringstream lines(read_file(path));
-  std::size_t number = 0, cut_short = 0;
-  for (std::string line; std::getline(lines, line);) {
-    ++number;
-    if (cut_short > 0)
-      throw std::runtime_error(path.string() + ":" + std::to_string(cut_short) +
-                               ": fewer cells than the header has; run the experiment again");
-    std::vector<std::string> cells = split(line, ',');
-    if (!cells.empty() && !cells.back().empty() && cells.back().back() == '\r') cells.back().pop_back();
-    if (names_.empty()) {
-      names_ = std::move(cells);
-    } else if (cells.size() >= names_.size()) {
-      rows_.push_back(std::move(cells));
-    } else {
-      cut_short = number;
-    }
+  std::size_t incomplete = 0;
+  for (CsvRow& row : csv_rows(path, read_file(path))) {
+    if (incomplete > 0)
+      refuse_path(path.string() + ":" + std::to_string(incomplete),
+                  "has not as many cells as the header; run the experiment again");
+    if (names_.empty())
+      names_ = std::move(row.cells);
+    else if (row.cells.size() == names_.size())
+      rows_.push_back(std::move(row.cells));
+    else
+      incomplete = row.line;
   }
 }
 

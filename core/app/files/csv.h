@@ -3,15 +3,28 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace drape {
+
+struct CsvRow {
+  std::vector<std::string> cells;
+  std::size_t line = 1;  ///< of the file, where it begins
+};
+
+/// The rows of a file of separated values (RFC 4180) with any system's line ends: in double quotes separators
+/// and line ends are text, and two quotes are one. Its separator is the first of these that it has. Empty
+/// rows are left out. Throws std::runtime_error for a quote without its end.
+std::vector<CsvRow> csv_rows(const std::filesystem::path& file, std::string_view text,
+                             const std::string& separators = ",");
 
 /// A number of a run, absent if the run did not reach or measure it.
 using OptionalNumber = std::optional<double>;
 
 /// A table of a run, with columns by the header's names. An incomplete last line of a killed run is ignored;
-/// a missing file is an empty table. Throws std::runtime_error for an incomplete line before the last.
+/// a missing file is an empty table. Throws std::runtime_error for
+/// a line before the last that has not as many cells as the header.
 class Csv {
  public:
   Csv() = default;

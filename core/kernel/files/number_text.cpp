@@ -2,6 +2,9 @@
 
 #include <charconv>
 #include <cmath>
+#include <limits>
+#include <locale>
+#include <sstream>
 
 namespace drape {
 namespace {
@@ -9,12 +12,6 @@ namespace {
 std::string text_of_number(double value, std::chars_format format, int precision) {
   char text[400];  // the largest number has 309 digits before its decimals
   return std::string(text, std::to_chars(text, text + sizeof text, value, format, precision).ptr);
-}
-
-template <class Number>
-std::optional<Number> parsed(const std::string& text) {
-  Number value{};
-  return read_number(text, value) == std::errc() ? std::optional(value) : std::nullopt;
 }
 
 }  // namespace
@@ -36,13 +33,24 @@ std::string exact_text(double value) {
   return std::string(text, std::to_chars(text, text + sizeof text, value).ptr);
 }
 
-std::optional<double> parse_number(const std::string& text) { return parsed<double>(text); }
+std::optional<double> parse_number(const std::string& text) {
+  double value = 0;
+  const std::errc error = read_number(text, value);
+  if (error == std::errc()) return value;
+  if (error != std::errc::result_out_of_range) return std::nullopt;
+  std::istringstream in(text);  // from_chars does not say on which side
+  in.imbue(std::locale::classic());
+  return in >> value ? value : std::copysign(std::numeric_limits<double>::infinity(), value);
+}
 
 std::optional<double> number_of(const std::string& text) {
   const std::optional<double> value = parse_number(text);
   return value && std::isfinite(*value) ? value : std::nullopt;
 }
 
-std::optional<int> parse_integer(const std::string& text) { return parsed<int>(text); }
+std::optional<int> parse_integer(const std::string& text) {
+  int value = 0;
+  return read_number(text, value) == std::errc() ? std::optional(value) : std::nullopt;
+}
 
 }  // namespace drape

@@ -24,7 +24,7 @@ std::errc read_number(std::string_view text, Number& number) {
   return end == text.data() + text.size() ? error : std::errc::invalid_argument;
 }
 
-/// The decimal number that the whole text spells ("+1", "1e-3", ".5"), or nothing.
+/// The decimal number that the whole text spells ("+1", "1e-3", ".5"; 1e400 is infinite), or nothing.
 std::optional<double> parse_number(const std::string& text);
 /// The finite number that the whole text spells, or nothing.
 std::optional<double> number_of(const std::string& text);

@@ -21,7 +21,10 @@ std::string with_unit(double value, const Parameter& p) {
 }
 
 /// What a number must be to be a value of the parameter, or of an item of it, as "at least 0"; "" if it is.
-std::string number_fault(const Parameter& p, double value) {
+std::string number_fault(const Parameter& p, const ConfigNode& node) {
+  const double value = node.number;
+  if (std::isinf(value) && std::isdigit(static_cast<unsigned char>(node.scalar.back())))
+    return "a number within ±1.8e+308";
   if (!std::isfinite(value)) return "a finite number";
   if (p.open_minimum && !(value > p.minimum)) return "above " + with_unit(p.minimum, p);
   if (!p.open_minimum && !(value >= p.minimum)) return "at least " + with_unit(p.minimum, p);
@@ -33,9 +36,9 @@ std::string number_fault(const Parameter& p, double value) {
 /// What a scalar must be if it is not, else "".
 std::string scalar_fault(const ConfigNode& node, const Parameter& p) {
   if (p.type.kind == ValueKind::integer)
-    return node.is_number() && parse_integer(node.scalar) ? number_fault(p, node.number) : "an integer";
+    return node.is_number() && parse_integer(node.scalar) ? number_fault(p, node) : "an integer";
   if (p.type.kind == ValueKind::number) {
-    if (node.is_number()) return number_fault(p, node.number);
+    if (node.is_number()) return number_fault(p, node);
     return is_one_of(node.scalar, {".nan", ".inf", "-.inf"}) ? "a finite number" : "a number";
   }
   if (p.type.kind == ValueKind::boolean) return node.kind == NodeKind::boolean ? "" : "true or false";
