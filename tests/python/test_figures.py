@@ -245,3 +245,10 @@ def test_figures_that_cannot_all_be_written_are_no_refusal(tmp_path):
     ended = subprocess.run([sys.executable, "-c", call, tmp_path / "run", "-o", tmp_path / "made"], capture_output=True, text=True)
     assert ended.returncode == 3 and ended.stderr.startswith("error: cannot write ")
     assert (tmp_path / "made/table.csv").exists()
+
+
+def test_the_system_s_error_is_told_not_what_follows_from_it(tmp_path):
+    command("run", SMALL_FILE, "-o", tmp_path / "run", "--no-report", "-q", "--measure")
+    call = "import resource, drape.paper; resource.setrlimit(resource.RLIMIT_FSIZE, (6000, 6000)); raise SystemExit(drape.paper.main())"
+    ended = subprocess.run([sys.executable, "-c", call, tmp_path / "run", "-o", tmp_path / "made"], capture_output=True, text=True)
+    assert ended.returncode == 2 and ended.stderr == "error: a file cannot be written: File too large\n"

@@ -197,8 +197,12 @@ def main() -> int:
         for file in figures(given.pop("results"), given.pop("out"), given.pop("overwrite"), **given):
             print(_printable(file))
     except Exception as error:  # of pandas and matplotlib too: of names and numbers that no run writes
-        known = isinstance(error, (RuntimeError, OSError))
-        print("error: " + _printable(error if known else f"the results are not as drape writes them ({type(error).__name__}: {error})"), file=sys.stderr)
+        cause = error
+        while cause and not isinstance(cause, (RuntimeError, OSError)):  # others follow from it, as of a stream that a full disk cut
+            cause = cause.__context__
+        if isinstance(cause, OSError) and not cause.filename:
+            cause = f"a file cannot be written: {cause.strerror}"
+        print("error: " + _printable(cause or f"the results are not as drape writes them ({type(error).__name__}: {error})"), file=sys.stderr)
         return 3 if isinstance(error, _core.RunAborted) else 2
     return 0
 
