@@ -235,15 +235,17 @@ TEST_CASE("A mesh of very many parts, grain regions or crossing triangles is che
          << " 0\n";
     return text.str();
   };
-  const auto crossing = [](int k) {
+  const auto crossing = [](int k, double step = 1e-7, double height = 0.01) {
     std::ostringstream text;
-    const double a = k * 1e-3, z = k * 1e-7;
-    text << "v " << -std::cos(a) << " " << -std::sin(a) << " " << z - 0.01 << "\nv " << std::cos(a) << " "
-         << std::sin(a) << " " << z - 0.01 << "\nv " << 0.01 * std::cos(a) << " " << 0.01 * std::sin(a) << " "
-         << z + 0.01 << "\n";
+    const double a = k * 1e-3, z = k * step;
+    text << "v " << -std::cos(a) << " " << -std::sin(a) << " " << z - height << "\nv " << std::cos(a) << " "
+         << std::sin(a) << " " << z - height << "\nv " << height * std::cos(a) << " " << height * std::sin(a)
+         << " " << z + height << "\n";
     return text.str();
   };
   CHECK(checked_mesh("a.obj", triangles(60000, apart)).exit_code == 0);
+  // The corners in the middle are near every part's long edge.
+  checked_mesh("a.obj", triangles(60000, [&](int k) { return crossing(k, 1e-9, 1e-4); }));
   const Scratch folder("name: large\nlevels: 1\ncloth: {shape: file, file: a.obj, join: 0.1}\n" +
                        rest_of_experiment);
   folder.write("a.obj", triangles(40000, apart));

@@ -36,11 +36,13 @@ struct BorderEdge : HalfEdge {
 class JunctionSearch {
  public:
   JunctionSearch(const TriangleMesh& mesh, const std::vector<int>& border)
-      : x_(mesh.vertices), parts_(static_cast<int>(mesh.vertices.rows())), edges_at_(mesh.vertices.rows()) {
+      : x_(mesh.vertices), edges_at_(mesh.vertices.rows()) {
+    DisjointSets parts(static_cast<int>(mesh.vertices.rows()));
     for (const auto& t : mesh.triangles.rowwise()) {
-      parts_.unite(t[0], t[1]);
-      parts_.unite(t[1], t[2]);
+      parts.unite(t[0], t[1]);
+      parts.unite(t[1], t[2]);
     }
+    part_ = parts.numbered();
     for (const int h : border)
       edges_.push_back({HalfEdge::of(mesh.triangles, h), mesh.triangles(h / 3, h % 3)});
     for (int i = 0; i < static_cast<int>(edges_.size()); ++i)
@@ -48,15 +50,24 @@ class JunctionSearch {
         if (edges_at_[v].empty()) vertices_.push_back(v);
         edges_at_[v].push_back(i);
       }
-    split(0, 0, static_cast<int>(vertices_.size()));
+    std::ranges::stable_sort(vertices_, {}, [&](int v) { return part_[v]; });
+    for (int begin = 0, end = 0; begin < std::ssize(vertices_); begin = end) {
+      const int part = part_[vertices_[begin]];
+      for (end = begin; end < std::ssize(vertices_) && part_[vertices_[end]] == part;) ++end;
+      trees_.resize(part + 1);
+      trees_[part] = {begin, end, {}};
+      split(trees_[part].balls, 0, begin, end);
+    }
   }
 
-  std::vector<TJunction> all() {
+  std::vector<TJunction> all() const {
     std::vector<TJunction> found;
-    for (const BorderEdge& e : edges_)
-      visit(0, 0, static_cast<int>(vertices_.size()), e, [&](int v) {
+    for (const BorderEdge& e : edges_) {
+      const Tree& own = trees_[part_[e.from]];
+      visit(own.balls, 0, own.begin, own.end, reach_of(e), [&](int v) {
         if (is_inside(v, e) && has_neighbour_across(v, e)) found.push_back({v, {e.from, e.to}});
       });
+    }
     std::ranges::sort(found, {}, [](const TJunction& j) { return std::pair(j.vertex, j.edge); });
     return found;
   }
@@ -67,37 +78,53 @@ class JunctionSearch {
     RowVector3d centre;
     double radius;
   };
+  using Balls = std::vector<Ball>;  // of nodes; the children of node k are 2k + 1 and 2k + 2
+  struct Tree {
+    int begin = 0, end = 0;  // of its part's vertices
+    Balls balls;
+  };
   static constexpr int leaf = 8;  // vertices
 
-  void split(std::size_t node, int begin, int end) {
-    if (begin == end) return;
+  void split(Balls& balls, std::size_t node, int begin, int end) {
     const std::vector<int> own(vertices_.begin() + begin, vertices_.begin() + end);
     const Positions x = x_(own, Eigen::all);
     const RowVector3d low = x.colwise().minCoeff(), size = x.colwise().maxCoeff() - low;
-    if (balls_.size() <= node) balls_.resize(node + 1);
-    balls_[node] = {low + size / 2, size.norm() / 2};
+    if (balls.size() <= node) balls.resize(node + 1);
+    balls[node] = {low + size / 2, size.norm() / 2};
     if (end - begin <= leaf) return;
     Eigen::Index axis = 0;
     size.maxCoeff(&axis);
     const int middle = (begin + end) / 2;
     std::nth_element(vertices_.begin() + begin, vertices_.begin() + middle, vertices_.begin() + end,
                      [&](int a, int b) { return std::pair(x_(a, axis), a) < std::pair(x_(b, axis), b); });
-    split(2 * node + 1, begin, middle);
-    split(2 * node + 2, middle, end);
+    split(balls, 2 * node + 1, begin, middle);
+    split(balls, 2 * node + 2, middle, end);
+  }
+
+  /// Where an edge goes from a vertex, and how far from it one may lie that is on it.
+  struct Reach {
+    RowVector3d from, along, per_length;  ///< per_length: along over its length's square
+    double distance;
+  };
+  Reach reach_of(const BorderEdge& e) const {
+    const RowVector3d along = x_.row(e.to) - x_.row(e.from);
+    return {x_.row(e.from), along, along / along.squaredNorm(), 2 * on_line * along.norm()};
   }
 
   /// Visits the vertices of a node that may lie on the edge.
   template <class Visit>
-  void visit(std::size_t node, int begin, int end, const BorderEdge& e, const Visit& visit_vertex) const {
-    const RowVector3d along = x_.row(e.to) - x_.row(e.from), to = balls_[node].centre - x_.row(e.from);
-    const double at = std::clamp(to.dot(along) / along.squaredNorm(), 0.0, 1.0);
-    if (!((to - at * along).norm() <= balls_[node].radius + 2 * on_line * along.norm())) return;
+  void visit(const Balls& balls, std::size_t node, int begin, int end, const Reach& edge,
+             const Visit& visit_vertex) const {
+    const RowVector3d to = balls[node].centre - edge.from;
+    const double at = std::clamp(to.dot(edge.per_length), 0.0, 1.0);
+    const double most = balls[node].radius + edge.distance;
+    if (!((to - at * edge.along).squaredNorm() <= most * most)) return;
     if (end - begin <= leaf) {
       std::for_each(vertices_.begin() + begin, vertices_.begin() + end, visit_vertex);
       return;
     }
-    visit(2 * node + 1, begin, (begin + end) / 2, e, visit_vertex);
-    visit(2 * node + 2, (begin + end) / 2, end, e, visit_vertex);
+    visit(balls, 2 * node + 1, begin, (begin + end) / 2, edge, visit_vertex);
+    visit(balls, 2 * node + 2, (begin + end) / 2, end, edge, visit_vertex);
   }
 
   RowVector3d off_line(const BorderEdge& e, int v) const {
@@ -105,8 +132,8 @@ class JunctionSearch {
     return to - to.dot(along) * along;
   }
 
-  bool is_inside(int v, const BorderEdge& e) {
-    if (v == e.from || v == e.to || parts_.find(v) != parts_.find(e.from)) return false;
+  bool is_inside(int v, const BorderEdge& e) const {
+    if (v == e.from || v == e.to) return false;
     const RowVector3d along = x_.row(e.to) - x_.row(e.from);
     const double length = along.norm(), at = along.dot(x_.row(v) - x_.row(e.from)) / length;
     return at > on_line * length && at < (1 - on_line) * length && off_line(e, v).norm() <= on_line * length;
@@ -125,10 +152,10 @@ class JunctionSearch {
   }
 
   const Positions& x_;
-  DisjointSets parts_;
   std::vector<BorderEdge> edges_;
-  std::vector<int> vertices_;               // of the border
-  std::vector<Ball> balls_;                 // of the nodes of their tree
+  std::vector<int> part_;                   // of each vertex
+  std::vector<int> vertices_;               // of the border, by parts
+  std::vector<Tree> trees_;                 // of each part
   std::vector<std::vector<int>> edges_at_;  // of each vertex
 };
 
