@@ -80,8 +80,8 @@ struct Table {
   Table(std::string name, const std::string& text) : file(std::move(name)) {
     for (CsvRow& row : csv_rows(file, utf8_text(file, text), ",;\t")) {
       for (std::string& cell : row.cells) boost::trim_if(cell, boost::is_any_of(" \t"));
-      while (row.cells.size() > 1 && row.cells.back().empty()) row.cells.pop_back();
-      if (row.cells.front().empty() && row.cells.size() == 1) continue;
+      while (!row.cells.empty() && row.cells.back().empty()) row.cells.pop_back();
+      if (row.cells.empty()) continue;
       if (!header.empty() && row.cells.size() > header.size())
         refuse_path(file + ":" + std::to_string(row.line),
                     "has " + std::to_string(row.cells.size()) + " cells, and the first line names " +

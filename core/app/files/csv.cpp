@@ -26,19 +26,17 @@ std::vector<CsvRow> csv_rows(const std::filesystem::path& file, std::string_view
       begun = true;
     } else if (quote == 0 && (c == separator || ends_line)) {
       begun = false;
-      if (c == separator)
-        cells.emplace_back();
-      else if (std::ranges::all_of(cells, &std::string::empty))
-        rows.back() = {{""}, line};
-      else
+      if (ends_line)
         rows.push_back({{""}, line});
+      else
+        cells.emplace_back();
     } else if (quote > 0 || c != '\r') {
       cells.back() += c;
       begun = begun || (c != ' ' && c != '\t');
     }
   }
   if (quote > 0) refuse_path(file.string() + ":" + std::to_string(quote), "a quote (\") has no end");
-  if (std::ranges::all_of(rows.back().cells, &std::string::empty)) rows.pop_back();
+  if (rows.back().cells == std::vector<std::string>{""}) rows.pop_back();  // behind the last line's end
   return rows;
 }
 

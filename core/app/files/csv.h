@@ -14,8 +14,8 @@ struct CsvRow {
 };
 
 /// The rows of a file of separated values (RFC 4180) with any system's line ends: in double quotes separators
-/// and line ends are text, and two quotes are one. Its separator is the first of these that it has. Empty
-/// rows are left out. Throws std::runtime_error for a quote without its end.
+/// and line ends are text, and two quotes are one. Its separator is the first of these that it has. Throws
+/// std::runtime_error for a quote without its end.
 std::vector<CsvRow> csv_rows(const std::filesystem::path& file, std::string_view text,
                              const std::string& separators = ",");
 
@@ -23,8 +23,8 @@ std::vector<CsvRow> csv_rows(const std::filesystem::path& file, std::string_view
 using OptionalNumber = std::optional<double>;
 
 /// A table of a run, with columns by the header's names. An incomplete last line of a killed run is ignored;
-/// a missing file is an empty table. Throws std::runtime_error for
-/// a line before the last that has not as many cells as the header.
+/// a missing file is an empty table. Throws std::runtime_error for another one with not as many cells as the
+/// header.
 class Csv {
  public:
   Csv() = default;
