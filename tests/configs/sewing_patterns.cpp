@@ -129,7 +129,7 @@ TEST_CASE("patterns that cannot be sewn are refused with file, line, panel and e
   check_error(said(&Bag::front_edges, "{bottom: [0, 1], bottom: [1, 2]}"),
               "p.yaml:7:31: panel front: bottom is given twice; rename one");
   check_error(said(&Bag::front_edges, "[{endpoints: [0, 1], name: hem}, {endpoints: [1, 2], name: hem}]"),
-              "p.yaml:7:49: panel front: edge hem is given twice; rename one");
+              "p.yaml:7:47: panel front: edge hem is given twice; rename one");
   check_error(said(&Bag::front, "[[1e400, 0], [20, 0], [20, 20]]"),
               "p.yaml:6:18: panel front: a vertex is [x, y], two numbers of at most 1e+09, not [1e400, 0]");
   check_error(said(&Bag::stitches, "{a: [front.left, back.left], a: [front.right, back.right]}"),
