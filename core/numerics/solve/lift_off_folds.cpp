@@ -1,6 +1,8 @@
 #include "core/numerics/solve/lift_off_folds.h"
 
 #include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <memory>
 #include <vector>
@@ -36,51 +38,113 @@ Positions outwards(const LevelModel& model, const Positions& x) {
   return sums;
 }
 
-/// Where a state meets something, or, if nowhere, comes nearer than a barrier can part: edges of two layers
-/// may lie in the plane of one coarse triangle.
-std::vector<Eigen::Vector3d> meetings(const LevelModel& model, const Positions& x) {
-  constexpr double least_gap = 1e-3;  // in d̂
-  std::vector<Eigen::Vector3d> places;
-  for (const auto& contact : model.contacts())
-    for (const Intersection& pair : contact->intersections(x)) places.push_back(pair.where);
-  if (!places.empty()) return places;
-  for (const auto& contact : model.contacts()) {
-    const std::unique_ptr<Collisions> near = collisions_at(*contact, x);
-    const Stencils stencils = near->stencils();
-    std::vector<double> gaps;
-    near->append_gaps(gaps);
-    for (Eigen::Index k = 0; k < std::ssize(gaps); ++k)
-      if (gaps[k] < least_gap * contact->dhat()) places.push_back(x.row(stencils.row(k).maxCoeff()));
+/// Where a state meets something.
+struct Meetings {
+  std::vector<std::array<int, 2>> layers;  // triangles of the cloth that intersect each other
+  std::vector<Eigen::Vector3d> places;  // where it meets an obstacle, or, if it meets nothing, comes nearer
+                                        // to something than a barrier can part
+  std::size_t count() const { return layers.size() + places.size(); }
+
+  Meetings(const LevelModel& model, const Positions& x) {
+    constexpr double least_gap = 1e-3;  // in d̂
+    for (const auto& contact : model.contacts())
+      for (const Intersection& pair : contact->intersections(x))
+        if (pair.triangles[1] >= 0)
+          layers.push_back(pair.triangles);
+        else
+          places.push_back(pair.where);
+    if (count() > 0) return;
+    for (const auto& contact : model.contacts()) {
+      const std::unique_ptr<Collisions> near = collisions_at(*contact, x);
+      const Stencils stencils = near->stencils();
+      std::vector<double> gaps;
+      near->append_gaps(gaps);
+      for (Eigen::Index k = 0; k < std::ssize(gaps); ++k)
+        if (gaps[k] < least_gap * contact->dhat()) places.push_back(x.row(stencils.row(k).maxCoeff()));
+    }
   }
-  return places;
+};
+
+/// The state with these pairs of triangles, which intersect, drawn apart by up to `length` [m], in the
+/// direction in which the curves along which layers intersect grow shorter (Volino and Magnenat-Thalmann
+/// 2006).
+Positions drawn_apart(const LevelModel& model, const std::vector<std::array<int, 2>>& pairs, double length,
+                      Positions x) {
+  const Stencils& triangles = model.level().rest.triangles;
+  Positions move = Positions::Zero(x.rows(), 3);
+  Eigen::ArrayXd weights = Eigen::ArrayXd::Zero(x.rows());
+  const auto corners = [&](int t) { return Eigen::Matrix3d(x(triangles.row(t), Eigen::all).transpose()); };
+  const auto push = [&](int v, double weight, const Eigen::RowVector3d& direction) {
+    move.row(v) += weight * direction;
+    weights[v] += std::abs(weight);
+  };
+  const auto add_edges_through = [&](int pierced, int other) {
+    const Eigen::Matrix3d t = corners(pierced), s = corners(other);
+    const Eigen::Vector3d normal = (t.col(1) - t.col(0)).cross(t.col(2) - t.col(0)),
+                          other_normal = (s.col(1) - s.col(0)).cross(s.col(2) - s.col(0));
+    for (int k = 0; k < 3; ++k) {
+      const int l = (k + 1) % 3;
+      const Eigen::Vector3d edge = s.col(l) - s.col(k);
+      const double at = normal.dot(t.col(0) - s.col(k)) / normal.dot(edge);
+      const Eigen::Matrix3d to = t.colwise() - s.col(k);
+      Eigen::Vector3d in_pierced;  // barycentric, where the edge meets its plane
+      for (int c = 0; c < 3; ++c)
+        in_pierced[c] = to.col((c + 1) % 3).cross(to.col((c + 2) % 3)).dot(edge) / normal.dot(edge);
+      if (!(at >= 0 && at <= 1 && in_pierced.minCoeff() >= 0)) continue;
+      Eigen::Vector3d curve = normal.cross(other_normal).normalized();  // from there into `other`
+      if (curve.dot(other_normal.cross(edge)) < 0) curve = -curve;
+      const Eigen::RowVector3d away =
+          (curve - curve.dot(edge) / normal.dot(edge) * normal).normalized().transpose();
+      push(triangles(other, k), 1 - at, away);
+      push(triangles(other, l), at, away);
+      for (int c = 0; c < 3; ++c) push(triangles(pierced, c), in_pierced[c], -away);
+    }
+  };
+  for (const auto& [first, second] : pairs) {
+    add_edges_through(first, second);
+    add_edges_through(second, first);
+  }
+  for (int v = 0; v < x.rows(); ++v)
+    if (!model.fixed()[v]) x.row(v) += length / std::max(1.0, weights[v]) * move.row(v);
+  return x;
 }
 
 }  // namespace
 
 std::optional<Positions> lifted_off_folds(const LevelModel& model, const Positions& interpolated) {
-  constexpr int rounds = 12, outward_rounds = 4;
+  constexpr int rounds = 16;
   constexpr double step = 0.2, reach = 3;  // of a round's move, in edges
   constexpr int narrowness = 8;            // the fold's own vertices tell its direction
   const Level& level = model.level();
   const double edge = std::sqrt(2 * level.vertex_area.sum() / level.triangle_count());
   Positions x = interpolated, direction;
-  for (int round = 0; round < rounds; ++round) {
-    const std::vector<Eigen::Vector3d> places = meetings(model, x);
-    if (places.empty()) return x;
+  Meetings met(model, x);
+  for (int round = 0; met.count() > 0; ++round) {
+    if (round == rounds) return std::nullopt;
     if (round == 0) direction = outwards(model, interpolated);
     Positions move = Positions::Zero(x.rows(), 3);
     Eigen::ArrayXd weights = Eigen::ArrayXd::Ones(x.rows());
-    for (const Eigen::Vector3d& place : places) {
+    for (const Eigen::Vector3d& place : met.places) {
       const Eigen::ArrayXd distances = (x.rowwise() - place.transpose()).rowwise().norm();
       const Eigen::ArrayXd near = (1 - distances / (reach * edge)).max(0);
       move += near.matrix() * (near.pow(narrowness).matrix().transpose() * direction).normalized();
       weights += near;
     }
-    const double length = (round < outward_rounds ? step : -step) * edge;
     for (int v = 0; v < level.vertex_count(); ++v)
-      if (!model.fixed()[v]) x.row(v) += length / weights[v] * move.row(v);
+      move.row(v) *= model.fixed()[v] ? 0 : step * edge / weights[v];
+    const Positions drawn = drawn_apart(model, met.layers, step * edge, x);
+    x = drawn + move;
+    Meetings left(model, x);
+    if (left.count() >= met.count()) {
+      Positions inwards = drawn - move;
+      if (Meetings other(model, inwards); other.count() < left.count()) {
+        x = std::move(inwards);
+        left = std::move(other);
+      }
+    }
+    met = std::move(left);
   }
-  return std::nullopt;
+  return x;
 }
 
 }  // namespace drape

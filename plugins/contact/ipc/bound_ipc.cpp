@@ -213,7 +213,9 @@ std::vector<Intersection> BoundIpc::intersections(const Positions& x) const {
   if (p_.self_contact)
     for (const TrianglePair& pair : self_intersections(cloth))
       found.push_back({"cloth triangle " + std::to_string(pair.first),
-                       "cloth triangle " + std::to_string(pair.second), pair.where});
+                       "cloth triangle " + std::to_string(pair.second),
+                       pair.where,
+                       {pair.first, pair.second}});
   std::vector<std::pair<const Obstacle*, int>> owners;  // of each triangle of all, with its number there
   for (const Obstacle& body : obstacles_.bodies)
     for (int t = 0; t < body.mesh.triangles.rows(); ++t) owners.emplace_back(&body, t);

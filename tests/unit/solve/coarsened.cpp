@@ -4,6 +4,7 @@
 
 #include "core/kernel/threads/parallel.h"
 #include "core/numerics/model/stretch_limit.h"
+#include "core/numerics/solve/lift_off_folds.h"
 #include "core/numerics/solve/within_limits.h"
 #include "tests/support/solve.h"
 
@@ -99,4 +100,38 @@ TEST_CASE("Coarsened levels: pins, starts and files name the cloth's own vertice
 TEST_CASE("Coarsened levels: a refiner without coarser levels, and curved cloth, are refused") {
   CHECK_THROWS_WITH(scene_from(over_a_ball("refiner: loop\n")),
                     Catch::Contains("write \"refiner: coarsen\""));
+}
+
+TEST_CASE("Layers whose sharp folds pierce each other are drawn apart") {
+  const Solved s = scene_from(R"(
+name: pierced
+cloth: {shape: square, side: 1, triangulation: random, vertices: 1500}
+levels: 1
+energies: [neo_hookean, hinge, gravity]
+contact: ipc
+pins: [{region: vertices, vertices: [0]}]
+methods: {newton: {}}
+)");
+  const LevelModel& model = s.model();
+  constexpr double gap = 0.06, bend = 0.5 * M_PI * gap;  // of the layers, and the bend between them
+  Positions x = model.level().rest.vertices;
+  for (Eigen::Index v = 0; v < x.rows(); ++v) {
+    const double along = x(v, 0) - 0.5, across = x(v, 1) - 0.5;
+    const auto ridge = [&](double distance) {
+      return (gap / 2 + 0.004) * std::max(0.0, 1 - std::abs(distance) / 0.1);
+    };
+    if (along < -bend / 2) {
+      x.row(v) << along + bend / 2, across, ridge(along + 0.3);
+    } else if (along > bend / 2) {
+      x.row(v) << bend / 2 - along, across, gap - (along > 0.15 ? ridge(across) : 0);
+    } else {
+      const double angle = M_PI * along / bend;
+      x.row(v) << gap / 2 * std::cos(angle), across, gap / 2 * (1 + std::sin(angle));
+    }
+  }
+  REQUIRE(intersections(model, x) > 0);
+  const std::optional<Positions> apart = lifted_off_folds(model, x);
+  REQUIRE(apart);
+  CHECK(intersections(model, *apart) == 0);
+  CHECK((*apart - x).rowwise().norm().maxCoeff() < 1 / std::sqrt(1500.0));  // an edge
 }
