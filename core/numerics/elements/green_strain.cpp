@@ -1,6 +1,7 @@
 #include "core/numerics/elements/green_strain.h"
 
-#include "core/numerics/elements/rest_hinge.h"
+#include <Eigen/LU>
+
 #include "core/numerics/elements/stretch.h"
 #include "core/numerics/mesh/grain.h"
 
@@ -20,6 +21,21 @@ MaterialTriangle material_triangle(const Eigen::Vector3d& first, const Level& le
   MaterialTriangle triangle;
   triangle << edges(1, 1) / det, -edges(1, 0) / det, -edges(0, 1) / det, edges(0, 0) / det, area, centroid;
   return triangle;
+}
+
+std::vector<MaterialTriangle> flat_material_triangles(const Level& level) {
+  const Positions warp = warp_directions(level.rest);
+  std::vector<MaterialTriangle> triangles;
+  for (int t = 0; t < level.triangle_count(); ++t) {
+    const Eigen::Matrix3d x = rest_corners(level.rest, t);
+    Eigen::Matrix2d axes, edges;
+    axes << warp(t, 0), warp(t, 1), -warp(t, 1), warp(t, 0);
+    edges << (x.col(1) - x.col(0)).head<2>(), (x.col(2) - x.col(0)).head<2>();
+    const Eigen::Matrix2d inverse = (axes * edges).inverse();
+    triangles.emplace_back() << inverse(0, 0), inverse(1, 0), inverse(0, 1), inverse(1, 1),
+        RestTriangle::of(level, t).area, x.rowwise().mean();
+  }
+  return triangles;
 }
 
 }  // namespace
