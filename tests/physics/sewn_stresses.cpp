@@ -1,6 +1,6 @@
 // Stresses of cloth of flat pieces: seams of two lengths, warp that follows the piece, pressed seams.
 
-#include "core/numerics/elements/seam_energy.h"
+#include "core/numerics/elements/scaled_energy.h"
 #include "core/numerics/elements/stretch.h"
 #include "core/numerics/elements/vertex_fields.h"
 #include "core/numerics/hierarchy/hierarchy.h"

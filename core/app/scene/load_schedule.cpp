@@ -5,7 +5,7 @@
 
 #include "core/app/scene/boundary_conditions.h"
 #include "core/numerics/dressing/intermediate_rest.h"
-#include "core/numerics/dressing/scaled_energy.h"
+#include "core/numerics/elements/scaled_energy.h"
 
 namespace drape {
 

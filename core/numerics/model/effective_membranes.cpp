@@ -7,7 +7,7 @@
 #include <optional>
 #include <stdexcept>
 
-#include "core/numerics/elements/seam_energy.h"
+#include "core/numerics/elements/scaled_energy.h"
 #include "core/numerics/mesh/same_entries.h"
 #include "core/numerics/model/level_model.h"
 #include "core/numerics/model/lone_pins.h"

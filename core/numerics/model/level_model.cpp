@@ -10,7 +10,7 @@
 
 #include "core/kernel/files/message_text.h"
 #include "core/numerics/contact_forces/contact_stiffness.h"
-#include "core/numerics/elements/seam_energy.h"
+#include "core/numerics/elements/scaled_energy.h"
 #include "core/numerics/mesh/same_entries.h"
 #include "core/numerics/model/required.h"
 

@@ -1,7 +1,7 @@
 #include <Eigen/Geometry>
 #include <catch2/catch.hpp>
 
-#include "core/numerics/elements/seam_energy.h"
+#include "core/numerics/elements/scaled_energy.h"
 #include "core/numerics/hierarchy/fineness.h"
 #include "core/numerics/hierarchy/hierarchy.h"
 #include "core/numerics/mesh/check.h"

@@ -7,6 +7,9 @@
 
 namespace drape {
 
+/// The energy times a factor ≥ 0, with the same stencils on every level.
+std::shared_ptr<const Energy> scaled(std::shared_ptr<const Energy> energy, double factor);
+
 /// Binds an energy to the level. If its elements are the level's hinges, each hinge has a factor: the level's
 /// seam stiffness on seams, times its entry of `factors` (one a hinge, rounded to a quarter of an octave;
 /// empty: all are 1).
