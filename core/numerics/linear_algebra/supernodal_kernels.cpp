@@ -64,25 +64,12 @@ struct Tile {
   }
 };
 
-template <int V, class Scalar>
-void subtract_product_of(const RowPanel<Scalar>& a, const RowPanel<Scalar>& b, int begin, int end,
-                         Scalar* c) {
-  for (int row = 0; row < b.height; row += tile_columns, c += tile_columns * V * lanes<Scalar>) {
-    Tile<Scalar, V> tile;
-    tile.load(c);
-    tile.subtract(a.column(begin), b.column(begin) + row, b.height, end - begin);
-    tile.store(c);
-  }
-}
-
-template <int V, class Scalar>
-void columns_below(const RowPanel<Scalar>& a, const RowPanel<Scalar>& diagonal, int row, int begin,
-                   int column) {
-  Tile<Scalar, V> tile;
-  tile.load(a.column(column));
-  tile.subtract(a.column(begin), diagonal.column(begin) + row, diagonal.height, column - begin);
-  tile.solve(diagonal.column(column) + row, diagonal.height);
-  tile.store(a.column(column));
+/// Calls body<V>() for the V vectors of the row panel's height.
+template <class Scalar, class Body>
+[[gnu::always_inline]] inline auto with_vectors(const RowPanel<Scalar>& a, const Body& body) {
+  if (a.height == 3 * lanes<Scalar>) return body.template operator()<3>();
+  if (a.height == 2 * lanes<Scalar>) return body.template operator()<2>();
+  return body.template operator()<1>();
 }
 
 /// Unblocked Cholesky of the lower triangle of the block at l.
@@ -98,34 +85,6 @@ bool factorise_block(Scalar* l, int height) {
       for (int i = j; i < tile_columns; ++i) l[j * height + i] -= column[i] * column[j];
   }
   return true;
-}
-
-template <int V, class Scalar>
-bool diagonal_columns(const RowPanel<Scalar>& diagonal, int row, int begin, int column) {
-  Tile<Scalar, V> tile;
-  tile.load(diagonal.column(column));
-  tile.subtract(diagonal.column(begin), diagonal.column(begin) + row, V * lanes<Scalar>, column - begin);
-  alignas(64) Scalar block[tile_columns * tile_columns];
-  tile.store(diagonal.column(column));
-  for (int c = 0; c < tile_columns; ++c)
-    for (int r = 0; r < tile_columns; ++r) block[c * tile_columns + r] = diagonal.column(column + c)[row + r];
-  if (!factorise_block(block, tile_columns)) return false;
-  tile.solve(block, tile_columns);
-  tile.store(diagonal.column(column));
-  for (int c = 0; c < tile_columns; ++c)
-    for (int r = c; r < tile_columns; ++r) diagonal.column(column + c)[row + r] = block[c * tile_columns + r];
-  return true;
-}
-
-template <int V, class Scalar>
-void subtract_times_of(const RowPanel<Scalar>& a, int columns, const Scalar* x, Scalar* y) {
-  auto* rows = reinterpret_cast<SimdVector<Scalar>*>(y);
-  const auto* column = reinterpret_cast<const SimdVector<Scalar>*>(a.data);
-  SimdVector<Scalar> sum[V];
-  for (int v = 0; v < V; ++v) sum[v] = rows[v];
-  for (int c = 0; c < columns; ++c, column += V)
-    for (int v = 0; v < V; ++v) sum[v] -= column[v] * x[c];
-  for (int v = 0; v < V; ++v) rows[v] = sum[v];
 }
 
 /// The sum of N scalars, a power of two, added by halves.
@@ -162,40 +121,60 @@ template <int V, class Scalar>
 
 template <class Scalar>
 void subtract_product(const RowPanel<Scalar>& a, const RowPanel<Scalar>& b, int begin, int end, Scalar* c) {
-  if (a.height == 3 * lanes<Scalar>)
-    subtract_product_of<3>(a, b, begin, end, c);
-  else if (a.height == 2 * lanes<Scalar>)
-    subtract_product_of<2>(a, b, begin, end, c);
-  else
-    subtract_product_of<1>(a, b, begin, end, c);
+  with_vectors(a, [&]<int V>() {
+    for (int row = 0; row < b.height; row += tile_columns, c += tile_columns * V * lanes<Scalar>) {
+      Tile<Scalar, V> tile;
+      tile.load(c);
+      tile.subtract(a.column(begin), b.column(begin) + row, b.height, end - begin);
+      tile.store(c);
+    }
+  });
 }
 
 template <class Scalar>
 void factorise_columns_below(const RowPanel<Scalar>& a, const RowPanel<Scalar>& diagonal, int row, int begin,
                              int column) {
-  if (a.height == 3 * lanes<Scalar>)
-    columns_below<3>(a, diagonal, row, begin, column);
-  else if (a.height == 2 * lanes<Scalar>)
-    columns_below<2>(a, diagonal, row, begin, column);
-  else
-    columns_below<1>(a, diagonal, row, begin, column);
+  with_vectors(a, [&]<int V>() {
+    Tile<Scalar, V> tile;
+    tile.load(a.column(column));
+    tile.subtract(a.column(begin), diagonal.column(begin) + row, diagonal.height, column - begin);
+    tile.solve(diagonal.column(column) + row, diagonal.height);
+    tile.store(a.column(column));
+  });
 }
 
 template <class Scalar>
 bool factorise_columns_diagonal(const RowPanel<Scalar>& diagonal, int row, int begin, int column) {
-  if (diagonal.height == 3 * lanes<Scalar>) return diagonal_columns<3>(diagonal, row, begin, column);
-  if (diagonal.height == 2 * lanes<Scalar>) return diagonal_columns<2>(diagonal, row, begin, column);
-  return diagonal_columns<1>(diagonal, row, begin, column);
+  return with_vectors(diagonal, [&]<int V>() {
+    Tile<Scalar, V> tile;
+    tile.load(diagonal.column(column));
+    tile.subtract(diagonal.column(begin), diagonal.column(begin) + row, V * lanes<Scalar>, column - begin);
+    alignas(64) Scalar block[tile_columns * tile_columns];
+    tile.store(diagonal.column(column));
+    for (int c = 0; c < tile_columns; ++c)
+      for (int r = 0; r < tile_columns; ++r)
+        block[c * tile_columns + r] = diagonal.column(column + c)[row + r];
+    if (!factorise_block(block, tile_columns)) return false;
+    tile.solve(block, tile_columns);
+    tile.store(diagonal.column(column));
+    for (int c = 0; c < tile_columns; ++c)
+      for (int r = c; r < tile_columns; ++r)
+        diagonal.column(column + c)[row + r] = block[c * tile_columns + r];
+    return true;
+  });
 }
 
 template <class Scalar>
 void subtract_times(const RowPanel<Scalar>& a, int columns, const Scalar* x, Scalar* y) {
-  if (a.height == 3 * lanes<Scalar>)
-    subtract_times_of<3>(a, columns, x, y);
-  else if (a.height == 2 * lanes<Scalar>)
-    subtract_times_of<2>(a, columns, x, y);
-  else
-    subtract_times_of<1>(a, columns, x, y);
+  with_vectors(a, [&]<int V>() {
+    auto* rows = reinterpret_cast<SimdVector<Scalar>*>(y);
+    const auto* column = reinterpret_cast<const SimdVector<Scalar>*>(a.data);
+    SimdVector<Scalar> sum[V];
+    for (int v = 0; v < V; ++v) sum[v] = rows[v];
+    for (int c = 0; c < columns; ++c, column += V)
+      for (int v = 0; v < V; ++v) sum[v] -= column[v] * x[c];
+    for (int v = 0; v < V; ++v) rows[v] = sum[v];
+  });
 }
 
 template <class Scalar>
