@@ -132,8 +132,7 @@ void Commands::require_command(const std::string& word) const {
 int Commands::run(int argc, char** argv) {
   for (CLI::App* command : with_plugins_)
     add_option(*command, "--plugin FILE", plugin_files_,
-               "source of a plugin, one C++ file, to be compiled and loaded; may be repeated")
-        ->allow_extra_args(false);
+               "source of a plugin, one C++ file, to be compiled and loaded; may be repeated");
   std::vector<std::string> words = command_words(argc, argv);
   if (words.empty()) {
     std::cerr << app_.help();

@@ -35,11 +35,12 @@ class Commands {
   std::function<int()> chosen_;
 };
 
-/// Adds an option as help pages show it, "-o,--out FOLDER".
+/// Adds an option as help pages show it, "-o,--out FOLDER". It takes one word each time it is given.
 template <class Value>
 CLI::Option* add_option(CLI::App& command, const std::string& shown, Value& value, const std::string& help) {
   const std::size_t space = shown.find(' ');
-  return command.add_option(shown.substr(0, space), value, help)->type_name(shown.substr(space + 1));
+  CLI::Option* option = command.add_option(shown.substr(0, space), value, help);
+  return option->type_name(shown.substr(space + 1))->allow_extra_args(false);
 }
 
 void add_new_command(Commands& commands);

@@ -9,19 +9,29 @@
 #include "core/app/scene/scene_summary.h"
 #include "core/kernel/files/message_text.h"
 #include "core/kernel/files/number_text.h"
+#include "core/kernel/files/string_utils.h"
 #include "core/kernel/plugin/config_node.h"
 
 namespace drape {
 
-OptionCheck integer_between(int least, int most, const std::string& what) {
+OptionCheck must_be(const std::string& what, const std::function<bool(const std::string&)>& holds) {
   return [=](const std::string& text) {
+    return holds(text) ? "" : "must be " + what + ", not " + excerpt(text);
+  };
+}
+
+OptionCheck one_of(const std::vector<std::string>& words) {
+  return must_be(joined(words, ", ", " or "),
+                 [=](const std::string& text) { return is_one_of(text, words); });
+}
+
+OptionCheck integer_between(int least, int most, const std::string& what) {
+  return must_be(what, [=](const std::string& text) {
     const std::optional<int> number = parse_integer(text);
     const std::size_t first = text.find_first_not_of("+-");
     const bool is_octal = first != text.npos && first + 1 < text.size() && text[first] == '0';  // to CLI11
-    return number && !is_octal && *number >= least && *number <= most
-               ? ""
-               : "must be " + what + ", not " + excerpt(text);
-  };
+    return number && !is_octal && *number >= least && *number <= most;
+  });
 }
 
 OptionCheck positive_integer() {
@@ -36,12 +46,10 @@ OptionCheck positive_integer() {
 }
 
 OptionCheck number_of_at_least(double least) {
-  return [least](const std::string& text) {
+  return must_be("a number of at least " + three_digits(least), [least](const std::string& text) {
     const std::optional<double> number = number_of(text);
-    return number && *number >= least
-               ? ""
-               : "must be a number of at least " + three_digits(least) + ", not " + excerpt(text);
-  };
+    return number && *number >= least;
+  });
 }
 
 namespace {
@@ -74,8 +82,7 @@ void warn_of(const std::vector<std::string>& lines) {
 CLI::Option* ConfigArguments::add_overrides_to(CLI::App& command) {
   CLI::Option* file = command.add_option("experiment", config, "experiment file (YAML)")->required();
   add_option(command, "--set KEY=VALUE", sets,
-             "override one value, as in newton.step_size=0.1; may be repeated")
-      ->allow_extra_args(false);
+             "override one value, as in newton.step_size=0.1; may be repeated");
   add_option(command, "--levels N", levels, "number of levels, in place of the experiment's")
       ->check(positive_integer());
   command.add_flag("--allow-memory", allow_memory,

@@ -14,7 +14,10 @@ namespace drape {
 
 /// Checks of options: an error text, or "".
 using OptionCheck = std::function<std::string(const std::string&)>;
-/// A check for an integer in a range; its error is "must be WHAT, not …".
+/// A check of a text; its error is "must be WHAT, not …".
+OptionCheck must_be(const std::string& what, const std::function<bool(const std::string&)>& holds);
+OptionCheck one_of(const std::vector<std::string>& words);
+/// A check for an integer in a range.
 OptionCheck integer_between(int least, int most, const std::string& what);
 OptionCheck positive_integer();
 OptionCheck number_of_at_least(double least);

@@ -198,13 +198,11 @@ void add_fit_command(Commands& commands) {
   r.add_overrides_to(command);
   add_option(command, "--to NUMBER", r.target, "the value to be met")
       ->required()
-      ->check([](const std::string& text) {
-        return number_of(text).value_or(0) != 0 ? "" : "must be a number other than 0, not " + excerpt(text);
-      });
+      ->check(must_be("a number other than 0",
+                      [](const std::string& text) { return number_of(text).value_or(0) != 0; }));
   add_option(command, "--by KEY", r.by,
              "a number to be scaled, as material.warp_bending; material.bending is every number of the "
              "material with bending in its name. May be repeated: one factor scales all")
-      ->allow_extra_args(false)
       ->required();
   add_option(command, "--metric NAME", r.setup.metric,
              "column of a metric, on the finest level (default: the first of the experiment's metrics)");

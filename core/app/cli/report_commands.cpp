@@ -198,9 +198,8 @@ void add_export_command(Commands& commands) {
       .add_option_function<std::string>(
           "--view", [o = o.get()](const std::string& text) { o->picture.direction = direction_of(text); },
           "with .png: direction towards the camera (default: that of the report's pictures)")
-      ->check([](const std::string& text) {
-        return direction_of(text) ? "" : "must be a direction, as in 1,-1,0.5, not " + excerpt(text);
-      })
+      ->check(must_be("a direction, as in 1,-1,0.5",
+                      [](const std::string& text) { return direction_of(text).has_value(); }))
       ->type_name("X,Y,Z");
   command.add_flag("--outline", o->picture.outline,
                    "with .png: draw the outline of the method's coarsest state over the picture");
@@ -209,11 +208,7 @@ void add_export_command(Commands& commands) {
       command, "--uv-unit UNIT", o->uv_unit,
       ".obj, .ply: unit of the texture coordinates of flat pieces: mm, cm, m, inch or normalised, 0 to 1 "
       "(default: as they came)")
-      ->check([](const std::string& unit) {
-        return is_one_of(unit, {"mm", "cm", "m", "inch", "normalised"})
-                   ? ""
-                   : "must be mm, cm, m, inch or normalised, not " + excerpt(unit);
-      });
+      ->check(one_of({"mm", "cm", "m", "inch", "normalised"}));
   command.add_flag("--as-read", o->as_read,
                    "with .obj and .ply: in the unit and axes of the cloth's file, the level of its mesh with "
                    "its vertices");
@@ -279,8 +274,7 @@ void add_report_commands(Commands& commands) {
                    [o] { return print_comparison(o->folders, o->bounds); });
   compare_command.add_option("runs", o->folders, "the former and the new one")->required()->expected(2);
   add_option(compare_command, "--bound KEY=RATIO", o->bounds,
-             "exit with 1 if a quantity exceeds RATIO times its former value; may be repeated")
-      ->allow_extra_args(false);
+             "exit with 1 if a quantity exceeds RATIO times its former value; may be repeated");
 
   CLI::App& table_command = commands.add(
       "table", "print a table of runs and sweeps, one row per method; exits with 1 unless all pass",
@@ -289,12 +283,9 @@ void add_report_commands(Commands& commands) {
   table_command.add_option("folder", o->folders, "folders of runs or sweeps, or one that has them in it")
       ->required();
   add_option(table_command, "--format NAME", o->format, "md (default), csv or json")
-      ->check([](const std::string& name) {
-        return formats.contains(name) ? "" : "must be md, csv or json, not " + excerpt(name);
-      });
+      ->check(one_of({"md", "csv", "json"}));
   add_option(table_command, "--columns A,B", o->columns, "columns, as in run,status,energy_released")
-      ->delimiter(',')
-      ->allow_extra_args(false);
+      ->delimiter(',');
 }
 
 }  // namespace drape

@@ -181,8 +181,7 @@ void add_run_command(Commands& commands) {
   add_option(command, "-o,--out FOLDER", r.out, "results folder (default: results/NAME)");
   add_option(command, "--method A,B", r.methods,
              "methods to run, or all (default: pcs, or the experiment's only method)")
-      ->delimiter(',')
-      ->allow_extra_args(false);
+      ->delimiter(',');
   add_option(command, "-j,--threads N", r.threads, "threads (default: one per core that the process may use)")
       ->check(positive_integer());
   command.add_flag("--overwrite", r.overwrite, "replace the results of an earlier run in the folder");

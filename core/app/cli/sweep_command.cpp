@@ -163,9 +163,7 @@ void add_sweep_commands(Commands& commands) {
   add_option(sweep, "-o,--out FOLDER", r.folder, "the sweep's folder (default: results/NAME)");
   add_option(sweep, "--engine NAME", r.engine,
              "local: processes on this machine; slurm: a job array on a cluster")
-      ->check([](const std::string& name) {
-        return name == "local" || name == "slurm" ? "" : "must be local or slurm, not " + excerpt(name);
-      });
+      ->check(one_of({"local", "slurm"}));
   add_option(sweep, "-j,--workers N", r.workers,
              "concurrent runs (default: as many as the cores allow with --threads)")
       ->check(positive_integer());
@@ -185,8 +183,7 @@ void add_sweep_commands(Commands& commands) {
   sweep.add_flag("--wait", r.wait, "with slurm: wait for the jobs and list the runs");
   sweep.add_flag("--cancel", r.cancel, "with slurm: cancel the sweep's jobs");
   add_option(sweep, "--sbatch OPTION", r.sbatch,
-             "with slurm: a further option of sbatch, as --sbatch=--partition=long; may be repeated")
-      ->allow_extra_args(false);
+             "with slurm: a further option of sbatch, as --sbatch=--partition=long; may be repeated");
 
   CLI::App& job = commands.add("sweep-job", "executed by a sweep's jobs on a cluster", "",
                                [request] { return run_job(*request); });
