@@ -8,7 +8,6 @@
 
 #include "core/kernel/files/message_text.h"
 #include "core/numerics/linear_algebra/cholmod_context.h"
-#include "core/numerics/linear_algebra/cholmod_factor.h"
 #include "core/numerics/linear_algebra/supernodal_factor.h"
 
 namespace drape {

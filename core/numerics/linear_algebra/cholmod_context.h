@@ -2,8 +2,11 @@
 
 #include <cholmod.h>
 
+#include <memory>
 #include <stdexcept>
 #include <string>
+
+#include "core/numerics/linear_algebra/numeric_factor.h"
 
 namespace drape {
 
@@ -31,5 +34,11 @@ struct CholmodContext {
                                "; -2 means out of memory, -3 too large for 32-bit indices)");
   }
 };
+
+/// CHOLMOD's supernodal LLᵀ of the matrix' scalars (Chen, Davis, Hager and Rajamanickam 2008).
+///
+/// Speed and bits depend on the BLAS that CHOLMOD loads; set_thread_count bounds neither its threads nor
+/// CHOLMOD's. With Debian's reference BLAS every run has the same bits; OpenBLAS does not promise that.
+std::unique_ptr<NumericFactor> make_cholmod_factor();
 
 }  // namespace drape

@@ -1,5 +1,3 @@
-#include "core/numerics/linear_algebra/cholmod_factor.h"
-
 #include <algorithm>
 
 #include "core/kernel/interfaces/topology.h"
