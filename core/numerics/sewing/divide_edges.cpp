@@ -1,5 +1,3 @@
-#include "core/numerics/sewing/divide_edges.h"
-
 #include <algorithm>
 #include <cmath>
 #include <iterator>
@@ -7,6 +5,7 @@
 #include <utility>
 
 #include "core/kernel/files/message_text.h"
+#include "core/numerics/sewing/panel_meshes.h"
 
 namespace drape {
 

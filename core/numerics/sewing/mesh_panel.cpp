@@ -1,5 +1,3 @@
-#include "core/numerics/sewing/mesh_panel.h"
-
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
@@ -9,6 +7,7 @@
 #include <utility>
 
 #include "core/numerics/patterns/delaunay.h"
+#include "core/numerics/sewing/panel_meshes.h"
 
 namespace drape {
 

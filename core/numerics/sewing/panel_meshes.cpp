@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "core/numerics/patterns/delaunay.h"
-#include "core/numerics/sewing/mesh_panel.h"
 
 namespace drape {
 

@@ -5,10 +5,31 @@
 #include <utility>
 #include <vector>
 
-#include "core/kernel/interfaces/triangle_mesh.h"
-#include "core/numerics/sewing/divide_edges.h"
+#include "core/numerics/patterns/generate.h"
+#include "core/numerics/sewing/pattern.h"
 
 namespace drape {
+
+/// Where an edge of a panel is divided: lengths along it, its two ends included.
+struct EdgeDivision {
+  std::vector<double> lengths;  ///< ascending [m]
+  std::vector<int> stitches;    ///< of each, the stitch that joins it to another edge's; -1 without one
+};
+
+/// The division of every edge, `[panel][edge]`, at about `edge_length`. The two sides of a seam have the same
+/// stitches, numbered over the whole pattern, as close as the longer side needs them; a chain of edges is
+/// divided where an edge of the other chain ends. Appends the faults of seams that cannot be sewn: an edge
+/// that is in two of them, and sides whose lengths differ by more than the seam's ease.
+std::vector<std::vector<EdgeDivision>> divide_edges(const Pattern& pattern, double edge_length,
+                                                    ConfigErrors& errors);
+
+/// Meshes the region within loops of points with triangles of about `edge_length` [m]: the loops' points are
+/// the first vertices, in their order, and no vertex is added between them. No two sides of the loops may
+/// meet but at their ends, and every hole lies in the first loop. A mirrored region has a mirrored mesh.
+TriangleMesh mesh_panel(const std::vector<Polygon>& loops, double edge_length);
+
+/// Whether a point lies in the loop, by the parity of its sides on one side of the point.
+bool is_inside(const Polygon& loop, const Eigen::Vector2d& point);
 
 /// A panel in its plane (z = 0), meshed; its first vertices are on its loops.
 struct PanelMesh {

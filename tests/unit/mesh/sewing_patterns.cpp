@@ -9,7 +9,7 @@
 #include "core/numerics/mesh/area_vectors.h"
 #include "core/numerics/mesh/check.h"
 #include "core/numerics/mesh/seams.h"
-#include "core/numerics/sewing/mesh_panel.h"
+#include "core/numerics/sewing/panel_meshes.h"
 #include "core/numerics/sewing/sew_pattern.h"
 #include "tests/support/command.h"
 #include "tests/support/sewn.h"
