@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 #include "core/app/scene/boundary_conditions.h"
 #include "core/app/scene/scene_summary.h"
@@ -23,16 +24,8 @@ constexpr double largest_obstacle = 100;                        // diagonal [m]
 constexpr double largest_ratio = 50;                            // of that to the cloth's
 constexpr double largest_stretch = 2;                           // of the start, or its inverse
 
-class Warnings {
- public:
-  Warnings(const Experiment& e, ConfigErrors& all) : e_(e), all_(all) {}
-  void add(const std::string& key, const std::string& message) { add(e_.location_of(key), message); }
-  void add(const Location& where, const std::string& message) { all_.push_back({where, message}); }
-
- private:
-  const Experiment& e_;
-  ConfigErrors& all_;
-};
+/// Warns of the value at a key.
+using Warn = std::function<void(const std::string& key, const std::string& message)>;
 
 /// Whether a cloth's shape comes from another program or from a list of points.
 bool is_drawn(const ClothParameters& cloth) { return cloth.shape == "file" || cloth.shape == "polygon"; }
@@ -62,7 +55,7 @@ std::string other_units(const ClothParameters& cloth, double longest) {
   return text;
 }
 
-void check_size(const ExperimentParameters& p, const SceneSummary& s, Warnings& warnings) {
+void check_size(const ExperimentParameters& p, const SceneSummary& s, const Warn& warn) {
   const double size = s.size.norm();
   if (size >= smallest_cloth && size <= largest_cloth) return;
   std::string remedy = size > largest_cloth ? other_units(p.cloth, s.size.maxCoeff()) : "";
@@ -70,112 +63,108 @@ void check_size(const ExperimentParameters& p, const SceneSummary& s, Warnings& 
     remedy = p.cloth.shape == "file" ? "choose the file's \"unit\" or \"scale\""
              : size > largest_cloth  ? "choose a smaller size"
                                      : "choose a larger size";
-  warnings.add("cloth", "the cloth is " + size_text(s.size) +
-                            "; fabric is usually between 0.05 and 10 m wide, and lengths are in metres; " +
-                            remedy);
+  warn("cloth", "the cloth is " + size_text(s.size) +
+                    "; fabric is usually between 0.05 and 10 m wide, and lengths are in metres; " + remedy);
 }
 
-void check_material(const ExperimentParameters& p, const SceneSummary& s, Warnings& warnings) {
+void check_material(const ExperimentParameters& p, const SceneSummary& s, const Warn& warn) {
   const double weight = p.material.area_density();
   if (weight < least_weight || weight > largest_weight)
-    warnings.add("material", "a square metre of the cloth has " + rounded_text(weight, 2) +
-                                 " kg (density × thickness); fabric usually has 0.02 to 2 kg; density is in "
-                                 "kg/m³, and thickness in metres: 0.3 mm is 3e-4");
+    warn("material", "a square metre of the cloth has " + rounded_text(weight, 2) +
+                         " kg (density × thickness); fabric usually has 0.02 to 2 kg; density is in "
+                         "kg/m³, and thickness in metres: 0.3 mm is 3e-4");
   if (!s.bending_length) return;
   const double length = *s.bending_length, edges = length / s.median_edge;
   const std::string on = " of level " + std::to_string(s.level);
   const std::string moduli = "\"bending_modulus\" (in Pa) and \"thickness\" (in metres, to the third power)";
   if (length < shortest_bending || length > longest_bending)
-    warnings.add("material", "weight bends this cloth over a length of " + length_text(length) +
-                                 "; the bending length of fabric is usually 5 to 100 mm; check " + moduli);
+    warn("material", "weight bends this cloth over a length of " + length_text(length) +
+                         "; the bending length of fabric is usually 5 to 100 mm; check " + moduli);
   else if (edges > most_edges)
-    warnings.add("material", "the bending length of " + length_text(length) + " is " +
-                                 rounded_text(edges, 2) + " edges" + on +
-                                 "; 2 to 20 are usual; take fewer vertices or levels, or check " + moduli);
+    warn("material", "the bending length of " + length_text(length) + " is " + rounded_text(edges, 2) +
+                         " edges" + on + "; 2 to 20 are usual; take fewer vertices or levels, or check " +
+                         moduli);
   else if (edges < (is_drawn(p.cloth) ? fewest_of_outline : fewest_edges) && s.size.norm() <= largest_cloth)
-    warnings.add(
-        "cloth",
-        "the bending length of " + length_text(length) + " is " + rounded_text(edges, 2) + " edges" + on +
-            ", so no fold of the cloth can form; 2 to 20 are usual; take more vertices or "
-            "levels, or check " +
-            moduli + (is_drawn(p.cloth) ? "; \"edge_length\" in cloth meshes flat pieces anew" : ""));
+    warn("cloth",
+         "the bending length of " + length_text(length) + " is " + rounded_text(edges, 2) + " edges" + on +
+             ", so no fold of the cloth can form; 2 to 20 are usual; take more vertices or "
+             "levels, or check " +
+             moduli + (is_drawn(p.cloth) ? "; \"edge_length\" in cloth meshes flat pieces anew" : ""));
 }
 
 /// Obstacles that the cloth will hardly meet, or not as they should lie.
-void check_obstacles(const Experiment& e, const SceneSummary& s, Warnings& warnings) {
+void check_obstacles(const Experiment& e, const SceneSummary& s, const Warn& warn) {
   const auto moves = [](const ScheduleKey& key) {
     return key.section != "material" && key.section != "energies";
   };
   if (s.obstacles.empty() || std::ranges::any_of(e.parameters.schedule.keys, moves)) return;
   const ObstacleGap& nearest = s.nearest()->gap;
   if (const double length = s.size.maxCoeff(); nearest.gap > length)
-    warnings.add("start", "the cloth starts " + length_text(nearest.gap) + " from the nearest obstacle, " +
-                              nearest.obstacle + ", farther than it is long (" + length_text(length) +
-                              "); move one of them by \"translate\", or check \"unit\" and \"up\" of their "
-                              "files");
+    warn("start", "the cloth starts " + length_text(nearest.gap) + " from the nearest obstacle, " +
+                      nearest.obstacle + ", farther than it is long (" + length_text(length) +
+                      "); move one of them by \"translate\", or check \"unit\" and \"up\" of their "
+                      "files");
   for (const auto& [gap, size, drop] : s.obstacles) {
     const double length = size.head<2>().maxCoeff(), height = size.z();
     // A plate lies as it should; what would not reach up to the cloth need not stand.
     if (height < 0.05 * length || length < 2 * height || drop < height || drop + height > 1.25 * length)
       continue;
-    warnings.add("obstacles", "the obstacle " + gap.obstacle + " is " + length_text(length) + " long and " +
-                                  length_text(height) + " high, and the cloth starts " + length_text(drop) +
-                                  " above it: does it lie on its side? Then add \"up: y\", or turn it by "
-                                  "\"rotate\"");
+    warn("obstacles", "the obstacle " + gap.obstacle + " is " + length_text(length) + " long and " +
+                          length_text(height) + " high, and the cloth starts " + length_text(drop) +
+                          " above it: does it lie on its side? Then add \"up: y\", or turn it by "
+                          "\"rotate\"");
   }
 }
 
-void check_contact(const SceneSummary& s, Warnings& warnings) {
+void check_contact(const SceneSummary& s, const Warn& warn) {
   if (s.dhat > largest_dhat * s.median_edge)
-    warnings.add("contact", "the contact distance dhat of " + length_text(s.dhat) +
-                                " is longer than most edges of level " + std::to_string(s.level) + " (" +
-                                length_text(s.median_edge) +
-                                "); a tenth to a half of an edge is usual; lower \"dhat\", or take fewer "
-                                "vertices or levels");
+    warn("contact", "the contact distance dhat of " + length_text(s.dhat) +
+                        " is longer than most edges of level " + std::to_string(s.level) + " (" +
+                        length_text(s.median_edge) +
+                        "); a tenth to a half of an edge is usual; lower \"dhat\", or take fewer "
+                        "vertices or levels");
   for (const auto& [gap, size, drop] : s.obstacles)
     if (size.norm() > largest_obstacle && size.norm() > largest_ratio * s.size.norm())
-      warnings.add("obstacles", "the obstacle " + gap.obstacle + " is " + size_text(size) +
-                                    " and the cloth " + size_text(s.size) +
-                                    "; lengths are in metres: if its file is in millimetres or centimetres, "
-                                    "add \"unit: mm\" or \"unit: cm\"");
+      warn("obstacles", "the obstacle " + gap.obstacle + " is " + size_text(size) + " and the cloth " +
+                            size_text(s.size) +
+                            "; lengths are in metres: if its file is in millimetres or centimetres, "
+                            "add \"unit: mm\" or \"unit: cm\"");
 }
 
-void check_membrane(const Experiment& e, Warnings& warnings) {
+void check_membrane(const Experiment& e, const Warn& warn) {
   const auto is_membrane = [](const NamedEnergy& named) {
     return named.energy->role() == EnergyRole::membrane;
   };
   if (std::ranges::none_of(e.energies, is_membrane))
-    warnings.add("energies",
-                 "no energy resists stretching, so that the cloth may stretch without end; add neo_hookean");
+    warn("energies",
+         "no energy resists stretching, so that the cloth may stretch without end; add neo_hookean");
 }
 
-void check_start(const Experiment& e, const SceneSummary& s, Warnings& warnings) {
+void check_start(const Experiment& e, const SceneSummary& s, const Warn& warn) {
   if (e.parameters.dress.is_asked()) {  // whose seams start long
     if (e.parameters.pins.empty() && e.parameters.friction == 0)
-      warnings.add(
-          "dress",
-          "no pin and no friction holds the garment: it stays only where the body's shape carries it, "
-          "and falls elsewhere; set \"friction\", or pin a piece, as in {region: piece, piece: NAME}");
+      warn("dress",
+           "no pin and no friction holds the garment: it stays only where the body's shape carries it, "
+           "and falls elsewhere; set \"friction\", or pin a piece, as in {region: piece, piece: NAME}");
     return;
   }
   if (!s.enclosing.empty())
-    warnings.add("start", "the cloth starts inside the obstacle " + s.enclosing +
-                              "; if it should lie on it, move it by \"translate\"");
+    warn("start", "the cloth starts inside the obstacle " + s.enclosing +
+                      "; if it should lie on it, move it by \"translate\"");
   const double stretch = s.start_stretch;
   if (stretch <= largest_stretch && stretch >= 1 / largest_stretch) return;
   const StartParameters& start = e.parameters.start;
-  warnings.add("start",
-               "the start has " + rounded_text(stretch, 2) +
-                   " times the lengths of the rest shape, so the cloth begins strained; 1 is usual; " +
-                   (start.file.empty() ? "\"scale\" of a mesh file belongs to cloth, which scales the "
-                                         "rest shape too"
-                                       : "give the \"unit\" of the start's file, or its \"scale\""));
+  warn("start", "the start has " + rounded_text(stretch, 2) +
+                    " times the lengths of the rest shape, so the cloth begins strained; 1 is usual; " +
+                    (start.file.empty() ? "\"scale\" of a mesh file belongs to cloth, which scales the "
+                                          "rest shape too"
+                                        : "give the \"unit\" of the start's file, or its \"scale\""));
 }
 
 /// A pin or handle "nearest" to a point that lies far from the cloth's rest shape.
 template <class Selections>
 void check_nearest(const Experiment& e, const std::string& key, const Selections& selections,
-                   const Level& coarsest, double edge, Warnings& warnings) {
+                   const Level& coarsest, double edge, ConfigErrors& warnings) {
   const VertexSearch search(coarsest, coarsest, selections.size());
   for (std::size_t k = 0; k < selections.size(); ++k) {
     const VertexSelection& selection = selections[k];
@@ -184,42 +173,43 @@ void check_nearest(const Experiment& e, const std::string& key, const Selections
     const Eigen::Vector3d at = coarsest.rest.vertices.row(v);
     const double distance = (at - selection.point).norm();
     if (distance > 2 * edge)
-      warnings.add(e.source.find(key)->items[k].where,
-                   "the vertex nearest to \"point\" is " + length_text(distance) + " away from it, at " +
-                       point_text(at) + " of the rest shape; points of " + key +
-                       " are those of the cloth as it is made, before \"start\" places it");
+      warnings.push_back({e.source.find(key)->items[k].where,
+                          "the vertex nearest to \"point\" is " + length_text(distance) +
+                              " away from it, at " + point_text(at) + " of the rest shape; points of " + key +
+                              " are those of the cloth as it is made, before \"start\" places it"});
   }
 }
 
 /// Panels of a file that nothing joins.
-void check_joined(const Experiment& e, const Level& cloth, Warnings& warnings) {
-  if (const std::string unwelded = unwelded_fault(e, cloth); !unwelded.empty())
-    warnings.add("cloth", unwelded);
+void check_joined(const Experiment& e, const Level& cloth, const Warn& warn) {
+  if (const std::string unwelded = unwelded_fault(e, cloth); !unwelded.empty()) warn("cloth", unwelded);
   const int lines = e.parameters.cloth.shape == "file" ? line_elements_in(e.parameters.cloth.file) : 0;
   if (lines > 0)
-    warnings.add("cloth", std::to_string(lines) + (lines == 1 ? " line" : " lines") +
-                              " between vertices (`l` in an OBJ file, `edge` in a PLY) " +
-                              (lines == 1 ? "is" : "are") +
-                              " ignored: drape sews nothing; to join panels, have "
-                              "them share the vertices of the seam");
+    warn("cloth", std::to_string(lines) + (lines == 1 ? " line" : " lines") +
+                      " between vertices (`l` in an OBJ file, `edge` in a PLY) " +
+                      (lines == 1 ? "is" : "are") +
+                      " ignored: drape sews nothing; to join panels, have "
+                      "them share the vertices of the seam");
 }
 
 }  // namespace
 
 ConfigErrors plausibility_warnings(const Experiment& e, const Scene& scene, const SceneSummary& s) {
   ConfigErrors all;
-  Warnings warnings(e, all);
-  check_size(e.parameters, s, warnings);
+  const Warn warn = [&](const std::string& key, const std::string& message) {
+    all.push_back({e.location_of(key), message});
+  };
+  check_size(e.parameters, s, warn);
   const double coarse_edge = std::ldexp(s.median_edge, s.level);
-  check_joined(e, scene.hierarchy.levels[scene.hierarchy.cloth], warnings);
-  check_material(e.parameters, s, warnings);
-  check_membrane(e, warnings);
+  check_joined(e, scene.hierarchy.levels[scene.hierarchy.cloth], warn);
+  check_material(e.parameters, s, warn);
+  check_membrane(e, warn);
   for (ConfigError& warning : unread_measures(e, s.median_edge)) all.push_back(std::move(warning));
-  check_nearest(e, "pins", e.parameters.pins, scene.hierarchy.levels[0], coarse_edge, warnings);
-  check_nearest(e, "handles", e.parameters.handles, scene.hierarchy.levels[0], coarse_edge, warnings);
-  check_start(e, s, warnings);
-  check_contact(s, warnings);
-  check_obstacles(e, s, warnings);
+  check_nearest(e, "pins", e.parameters.pins, scene.hierarchy.levels[0], coarse_edge, all);
+  check_nearest(e, "handles", e.parameters.handles, scene.hierarchy.levels[0], coarse_edge, all);
+  check_start(e, s, warn);
+  check_contact(s, warn);
+  check_obstacles(e, s, warn);
   return all;
 }
 
