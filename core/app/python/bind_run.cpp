@@ -147,6 +147,14 @@ void resume(const fs::path& folder, const py::object& on_iteration, const py::ob
   });
 }
 
+/// A number or word of a level's stability test, or None.
+template <class Of>
+auto of_stability(const Of& of) {
+  return [of](const MethodLevelResult& r) {
+    return r.stability ? std::optional(of(*r.stability)) : std::nullopt;
+  };
+}
+
 /// With the measures that runs have left.
 RunCollection measured(const fs::path& folder) {
   std::vector<std::string> warnings;
@@ -244,23 +252,13 @@ void bind_run(py::module_& m) {
       .def_readonly("seconds_by_phase", &MethodLevelResult::seconds_by_phase)
       .def_readonly("force_residual", &MethodLevelResult::force_residual, "Of the objective [1].")
       .def_property_readonly(
-          "stability",
-          [](const MethodLevelResult& r) {
-            return r.stability ? std::optional(std::string(to_string(r.stability->verdict))) : std::nullopt;
-          },
+          "stability", of_stability([](const auto& s) { return std::string(to_string(s.verdict)); }),
           "stable, marginal or unstable; None if the level did not end at an equilibrium that was tested.")
-      .def_property_readonly(
-          "lowest_eigenvalue",
-          [](const MethodLevelResult& r) {
-            return r.stability ? std::optional(r.stability->lowest_eigenvalue) : std::nullopt;
-          },
-          "Of M⁻¹H [1/s²].")
-      .def_property_readonly(
-          "curvature_ratio",
-          [](const MethodLevelResult& r) {
-            return r.stability ? std::optional(r.stability->curvature_ratio) : std::nullopt;
-          },
-          "The least vᵀHv / vᵀH⁺v [1].")
+      .def_property_readonly("lowest_eigenvalue",
+                             of_stability([](const auto& s) { return s.lowest_eigenvalue; }),
+                             "Of M⁻¹H [1/s²].")
+      .def_property_readonly("curvature_ratio", of_stability([](const auto& s) { return s.curvature_ratio; }),
+                             "The least vᵀHv / vᵀH⁺v [1].")
       .def_readonly("saddles_left", &MethodLevelResult::saddles_left,
                     "Unstable equilibria from which the level went on.")
       .def_readonly("smallest_gap", &MethodLevelResult::smallest_gap, "[m]; None without a contact model.")
