@@ -6,7 +6,6 @@
 #include <limits>
 
 #include "core/app/cli/commands.h"
-#include "core/app/scene/scene_summary.h"
 #include "core/kernel/files/message_text.h"
 #include "core/kernel/files/number_text.h"
 #include "core/kernel/files/string_utils.h"

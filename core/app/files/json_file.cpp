@@ -2,7 +2,6 @@
 
 #include <cmath>
 #include <limits>
-#include <string_view>
 #include <type_traits>
 
 #include "core/kernel/files/file.h"

@@ -11,7 +11,6 @@
 #include "core/kernel/files/message_text.h"
 #include "core/kernel/files/number_text.h"
 #include "core/kernel/files/string_utils.h"
-#include "core/kernel/plugin/config_node.h"
 
 namespace drape {
 namespace {

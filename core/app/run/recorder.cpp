@@ -4,8 +4,6 @@
 #include <utility>
 
 #include "core/app/experiment/declared_metrics.h"
-#include "core/app/files/json_file.h"
-#include "core/app/files/machine.h"
 #include "core/app/report/run_data.h"
 #include "core/app/run/recorder_files.h"
 #include "core/app/scene/garment_place.h"

@@ -10,7 +10,6 @@
 #include "core/app/run/errors.h"
 #include "core/app/run/run_folder.h"
 #include "core/app/scene/scene.h"
-#include "core/numerics/mesh_files/io.h"
 
 namespace drape {
 

@@ -9,7 +9,6 @@
 #include "core/app/report/run_data.h"
 #include "core/app/run/recorder_files.h"
 #include "core/app/run/run_observer.h"
-#include "core/app/scene/scene.h"
 #include "core/app/view/live_view.h"
 #include "core/kernel/files/file.h"
 #include "core/kernel/files/message_text.h"

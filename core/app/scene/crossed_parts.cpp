@@ -2,8 +2,6 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <cmath>
-#include <limits>
 
 #include "core/app/scene/scene.h"
 #include "core/numerics/collision_detection/components.h"

@@ -2,7 +2,6 @@
 #include <cmath>
 #include <functional>
 
-#include "core/app/scene/boundary_conditions.h"
 #include "core/app/scene/scene_summary.h"
 #include "core/app/scene/vertex_search.h"
 #include "core/numerics/mesh_files/io.h"

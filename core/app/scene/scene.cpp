@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/app/experiment/cloth.h"
 #include "core/app/experiment/sewn_cloth.h"
 #include "core/app/scene/boundary_conditions.h"
 #include "core/app/scene/dressing.h"

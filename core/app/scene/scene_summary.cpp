@@ -1,10 +1,8 @@
 #include "core/app/scene/scene_summary.h"
 
-#include <algorithm>
 #include <cmath>
 
 #include "core/kernel/files/number_text.h"
-#include "core/kernel/interfaces/contact_model.h"
 #include "core/numerics/collision_detection/components.h"
 #include "core/numerics/mesh/seams.h"
 #include "core/numerics/model/required.h"

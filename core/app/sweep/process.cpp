@@ -14,7 +14,6 @@
 #include <fstream>
 #include <stdexcept>
 #include <utility>
-#include <vector>
 
 #include "core/kernel/files/file.h"
 

@@ -5,10 +5,8 @@
 #include <cstring>
 #include <iterator>
 
-#include "core/app/experiment/exit_codes.h"
 #include "core/app/experiment/experiment.h"
 #include "core/app/files/file_lock.h"
-#include "core/app/files/json_file.h"
 #include "core/app/report/run_data.h"
 #include "core/app/run/checkpoint.h"
 #include "core/kernel/files/file.h"

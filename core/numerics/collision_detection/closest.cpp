@@ -1,7 +1,6 @@
 #include "core/numerics/collision_detection/closest.h"
 
 #include <Eigen/Geometry>
-#include <algorithm>
 #include <limits>
 
 namespace drape {

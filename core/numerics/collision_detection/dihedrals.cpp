@@ -1,7 +1,6 @@
 #include "core/numerics/collision_detection/dihedrals.h"
 
 #include <Eigen/Geometry>
-#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <utility>
 
-#include "core/kernel/interfaces/contact_model.h"
 #include "core/kernel/threads/parallel.h"
 
 namespace drape {

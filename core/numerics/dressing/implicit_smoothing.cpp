@@ -3,7 +3,6 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <stdexcept>
-#include <vector>
 
 #include "core/kernel/interfaces/topology.h"
 #include "core/numerics/linear_algebra/block_cholesky.h"

@@ -1,6 +1,5 @@
 #include "core/numerics/elements/orthotropic_stiffness.h"
 
-#include <cmath>
 #include <sstream>
 #include <stdexcept>
 

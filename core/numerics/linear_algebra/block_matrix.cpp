@@ -1,10 +1,7 @@
 #include "core/numerics/linear_algebra/block_matrix.h"
 
-#include <algorithm>
 #include <stdexcept>
 #include <string>
-
-#include "core/kernel/threads/parallel.h"
 
 namespace drape {
 namespace {

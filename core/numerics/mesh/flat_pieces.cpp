@@ -2,10 +2,8 @@
 
 #include <Eigen/Geometry>
 #include <Eigen/LU>
-#include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <numeric>
 
 #include "core/numerics/mesh/disjoint_sets.h"
 #include "core/numerics/mesh/seams.h"

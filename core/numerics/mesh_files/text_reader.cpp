@@ -4,7 +4,6 @@
 #include <cmath>
 #include <limits>
 #include <stdexcept>
-#include <utility>
 
 #include "core/kernel/files/file.h"
 #include "core/kernel/files/message_text.h"

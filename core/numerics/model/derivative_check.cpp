@@ -1,10 +1,8 @@
 #include "core/numerics/model/derivative_check.h"
 
-#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <stdexcept>
-#include <string>
 
 #include "core/kernel/files/number_text.h"
 #include "core/numerics/model/hessian_assembler.h"

@@ -1,8 +1,5 @@
 #include <algorithm>
 #include <cmath>
-#include <iterator>
-#include <string>
-#include <utility>
 
 #include "core/kernel/files/message_text.h"
 #include "core/numerics/sewing/panel_meshes.h"

@@ -1,10 +1,8 @@
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <numbers>
 #include <optional>
-#include <utility>
 
 #include "core/numerics/patterns/delaunay.h"
 #include "core/numerics/sewing/panel_meshes.h"

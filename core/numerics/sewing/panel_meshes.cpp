@@ -1,9 +1,7 @@
 #include "core/numerics/sewing/panel_meshes.h"
 
-#include <cmath>
 #include <optional>
 #include <string>
-#include <utility>
 
 #include "core/numerics/patterns/delaunay.h"
 

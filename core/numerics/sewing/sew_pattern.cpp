@@ -1,14 +1,10 @@
 #include "core/numerics/sewing/sew_pattern.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <map>
 #include <numbers>
 #include <set>
-#include <string>
 #include <utility>
-#include <vector>
 
 #include "core/kernel/files/message_text.h"
 #include "core/numerics/mesh/disjoint_sets.h"

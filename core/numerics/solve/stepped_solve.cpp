@@ -1,7 +1,6 @@
 #include "core/numerics/solve/stepped_solve.h"
 
 #include <stdexcept>
-#include <utility>
 
 namespace drape {
 
