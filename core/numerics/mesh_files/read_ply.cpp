@@ -1,14 +1,11 @@
 // PLY in: text, binary little endian and binary big endian.
-#include <algorithm>
 #include <cmath>
 
-#include "core/kernel/files/file.h"
-#include "core/kernel/files/message_text.h"
 #include "core/kernel/files/number_text.h"
 #include "core/numerics/mesh/mesh_builder.h"
 #include "core/numerics/mesh_files/io.h"
 #include "core/numerics/mesh_files/io_formats.h"
-#include "core/numerics/mesh_files/ply_body.h"
+#include "core/numerics/mesh_files/ply.h"
 
 namespace drape {
 namespace {

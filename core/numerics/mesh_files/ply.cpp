@@ -1,10 +1,6 @@
-#include "core/numerics/mesh_files/ply_header.h"
+#include "core/numerics/mesh_files/ply.h"
 
 #include <set>
-#include <string_view>
-#include <utility>
-
-#include "core/kernel/files/message_text.h"
 
 namespace drape {
 namespace {
