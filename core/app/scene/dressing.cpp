@@ -9,8 +9,8 @@
 #include "core/app/scene/load_schedule.h"
 #include "core/app/scene/scene_summary.h"
 #include "core/kernel/files/message_text.h"
+#include "core/numerics/dressing/garment_rest.h"
 #include "core/numerics/dressing/implicit_smoothing.h"
-#include "core/numerics/dressing/tightness.h"
 
 namespace drape {
 

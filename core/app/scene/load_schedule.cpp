@@ -4,7 +4,7 @@
 #include <stdexcept>
 
 #include "core/app/scene/boundary_conditions.h"
-#include "core/numerics/dressing/intermediate_rest.h"
+#include "core/numerics/dressing/garment_rest.h"
 #include "core/numerics/elements/scaled_energy.h"
 
 namespace drape {
