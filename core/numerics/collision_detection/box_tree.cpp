@@ -2,6 +2,7 @@
 
 #include <cassert>
 #include <numeric>
+#include <span>
 
 #include "core/kernel/threads/parallel.h"
 
@@ -10,55 +11,37 @@ namespace {
 
 constexpr int groups_per_task = 512;
 
-/// Orders the boxes by median splits; every aligned run of 8, 64, 512, … boxes becomes compact.
-class MedianSplit {
- public:
-  explicit MedianSplit(const std::vector<Box>& boxes) : items_(boxes.size()) {
-    for (std::size_t i = 0; i < boxes.size(); ++i) {
-      items_[i].index = static_cast<int>(i);
-      for (int k = 0; k < 3; ++k) items_[i].centre[k] = 0.5F * (boxes[i].lower[k] + boxes[i].upper[k]);
-    }
-    sort(0, static_cast<int>(items_.size()));
-  }
-
-  int index(int i) const { return items_[i].index; }
-
- private:
-  struct Item {
-    float centre[3];
-    int index;
-  };
-
-  void sort(int begin, int end) {
-    const int size = end - begin;
-    if (size <= 8) return;
-    int run = 8;
-    while (size > 8LL * run) run *= 8;
-    const int middle = begin + ((size + run - 1) / run + 1) / 2 * run;
-    const int axis = longest_axis(begin, end);
-    std::nth_element(items_.begin() + begin, items_.begin() + middle, items_.begin() + end,
-                     [axis](const Item& a, const Item& b) {
-                       return a.centre[axis] != b.centre[axis] ? a.centre[axis] < b.centre[axis]
-                                                               : a.index < b.index;
-                     });
-    sort(begin, middle);
-    sort(middle, end);
-  }
-
-  int longest_axis(int begin, int end) const {
-    const auto centre = [&](int i) { return Eigen::Array3f::Map(items_[i].centre); };
-    Eigen::Array3f low = centre(begin), high = low;
-    for (int i = begin + 1; i < end; ++i) {
-      low = low.min(centre(i));
-      high = high.max(centre(i));
-    }
-    int axis = 0;
-    (high - low).maxCoeff(&axis);
-    return axis;
-  }
-
-  std::vector<Item> items_;
+struct Centre {
+  float at[3];
+  int index;  ///< of its box
 };
+
+int longest_axis(std::span<const Centre> centres) {
+  const auto place = [](const Centre& centre) { return Eigen::Array3f::Map(centre.at); };
+  Eigen::Array3f low = place(centres[0]), high = low;
+  for (const Centre& centre : centres) {
+    low = low.min(place(centre));
+    high = high.max(place(centre));
+  }
+  int axis = 0;
+  (high - low).maxCoeff(&axis);
+  return axis;
+}
+
+/// Orders the boxes by median splits; every aligned run of 8, 64, 512, … boxes becomes compact.
+void sort_by_medians(std::span<Centre> centres) {
+  const int size = static_cast<int>(centres.size());
+  if (size <= 8) return;
+  int run = 8;
+  while (size > 8LL * run) run *= 8;
+  const int middle = ((size + run - 1) / run + 1) / 2 * run, axis = longest_axis(centres);
+  std::nth_element(centres.begin(), centres.begin() + middle, centres.end(),
+                   [axis](const Centre& a, const Centre& b) {
+                     return a.at[axis] != b.at[axis] ? a.at[axis] < b.at[axis] : a.index < b.index;
+                   });
+  sort_by_medians(centres.first(middle));
+  sort_by_medians(centres.subspan(middle));
+}
 
 }  // namespace
 
@@ -83,9 +66,14 @@ Box BoxGroup::bounds() const {
 }
 
 void BoxTree::build(const std::vector<Box>& boxes, const Stencils& vertices) {
-  const MedianSplit split(boxes);
   order_.resize(boxes.size());
-  for (int i = 0; i < size(); ++i) order_[i] = split.index(i);
+  std::vector<Centre> centres(boxes.size());
+  for (int i = 0; i < size(); ++i) {
+    centres[i].index = i;
+    for (int k = 0; k < 3; ++k) centres[i].at[k] = 0.5F * (boxes[i].lower[k] + boxes[i].upper[k]);
+  }
+  sort_by_medians(centres);
+  for (int i = 0; i < size(); ++i) order_[i] = centres[i].index;
   levels_.clear();
   for (int groups = leaf_groups(); groups > 0; groups = groups > 1 ? (groups + 7) / 8 : 0)
     levels_.emplace_back(groups);
