@@ -1,6 +1,7 @@
 #include "core/app/scene/scene.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "core/app/experiment/sewn_cloth.h"
@@ -23,27 +24,22 @@ namespace drape {
 namespace {
 
 /// Smooth noise with values about ±1, a sum of plane waves that depends on position and seed alone.
-class Noise {
- public:
-  Noise(double wavelength, int seed) {
-    Random random(static_cast<unsigned>(seed));
-    for (Wave& w : waves_) {
-      const double angle = 2 * M_PI * random.unit(),
-                   k = 2 * M_PI / (wavelength * (0.75 + 0.5 * random.unit()));
-      w = {k * std::cos(angle), k * std::sin(angle), 2 * M_PI * random.unit()};
-    }
-  }
-  double at(double x, double y) const {
-    double sum = 0;
-    for (const Wave& w : waves_) sum += std::sin(w.kx * x + w.ky * y + w.phase);
-    return sum / std::sqrt(8.0);  // 8 is the number of waves
-  }
-
- private:
+auto noise_of(double wavelength, int seed) {
   struct Wave {
     double kx, ky, phase;
-  } waves_[8];
-};
+  };
+  std::array<Wave, 8> waves;
+  Random random(static_cast<unsigned>(seed));
+  for (Wave& w : waves) {
+    const double angle = 2 * M_PI * random.unit(), k = 2 * M_PI / (wavelength * (0.75 + 0.5 * random.unit()));
+    w = {k * std::cos(angle), k * std::sin(angle), 2 * M_PI * random.unit()};
+  }
+  return [waves](double x, double y) {
+    double sum = 0;
+    for (const Wave& w : waves) sum += std::sin(w.kx * x + w.ky * y + w.phase);
+    return sum / std::sqrt(8.0);  // 8 is the number of waves
+  };
+}
 
 Positions read_start(const Experiment& e, const Level& cloth, ConfigErrors& errors) {
   const std::optional<TriangleMesh> mesh = start_mesh(e, errors);
@@ -79,10 +75,10 @@ std::vector<Positions> start_shapes(const Experiment& e, const Hierarchy& hierar
 /// The start of a level: its shape, transformed, with noise that depends on the rest positions.
 Positions make_start(const Positions& rest, const Positions& shape, const StartParameters& s,
                      double perturbation) {
-  const Noise noise(s.perturbation_wavelength, s.seed);
+  const auto noise = noise_of(s.perturbation_wavelength, s.seed);
   Positions x(rest.rows(), 3);
   for (Eigen::Index i = 0; i < rest.rows(); ++i) {
-    const double across = perturbation > 0 ? perturbation * noise.at(rest(i, 0), rest(i, 1)) : 0;
+    const double across = perturbation > 0 ? perturbation * noise(rest(i, 0), rest(i, 1)) : 0;
     x.row(i) = s.transformed(shape.row(i), across).transpose();
   }
   return x;
