@@ -12,31 +12,29 @@ namespace {
 /// The divided loops of a panel.
 struct DividedLoops {
   std::vector<Polygon> loops;
-  std::vector<int> edges;           ///< of each side
-  std::vector<int> stitches, ends;  ///< as PanelMesh's
-  std::set<std::pair<int, int>> sewn;
-  std::map<std::pair<int, int>, int> sides;
+  std::vector<int> edges;  ///< of each side
+  PanelMesh mesh;          ///< without triangles
 
   DividedLoops(const Panel& panel, const std::vector<EdgeDivision>& divisions) {
     for (const std::vector<int>& own : panel.loops) {
       Polygon& loop = loops.emplace_back();
-      const auto first = static_cast<int>(stitches.size());
+      const int first = mesh.border();
       int before = divisions[own.back()].stitches.back();
       for (const int e : own) {
         const EdgeDivision& division = divisions[e];
         for (std::size_t i = 0; i + 1 < division.lengths.size(); ++i) {
           loop.push_back(panel.edges[e].curve.at_length(division.lengths[i]));
           edges.push_back(e);
-          stitches.push_back(division.stitches[i]);
-          ends.push_back(i == 0 ? before : -1);
+          mesh.stitches.push_back(division.stitches[i]);
+          mesh.ends.push_back(i == 0 ? before : -1);
         }
         before = division.stitches.back();
       }
       const auto count = static_cast<int>(loop.size());
       for (int i = 0; i < count; ++i) {
         const std::pair<int, int> side = std::minmax(first + i, first + (i + 1) % count);
-        sides[side] = edges[first + i];
-        if (divisions[edges[first + i]].stitches[0] >= 0) sewn.insert(side);
+        mesh.sides[side] = edges[first + i];
+        if (divisions[edges[first + i]].stitches[0] >= 0) mesh.sewn.insert(side);
       }
     }
   }
@@ -82,8 +80,8 @@ std::vector<PanelMesh> mesh_panels(const Pattern& pattern, double edge_length,
       errors.push_back(std::move(*fault));
       continue;
     }
-    meshes.push_back({mesh_panel(divided.loops, edge_length), std::move(divided.stitches),
-                      std::move(divided.ends), std::move(divided.sewn), std::move(divided.sides)});
+    divided.mesh.flat = mesh_panel(divided.loops, edge_length);
+    meshes.push_back(std::move(divided.mesh));
   }
   return meshes;
 }
