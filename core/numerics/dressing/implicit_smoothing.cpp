@@ -60,12 +60,9 @@ class Laplacian {
 }  // namespace
 
 double surface_area(const TriangleMesh& mesh) {
+  const Positions twice = area_vectors(mesh);
   double area = 0;
-  for (const auto& t : mesh.triangles.rowwise()) {
-    const Eigen::Vector3d a = mesh.vertices.row(t[0]), b = mesh.vertices.row(t[1]),
-                          c = mesh.vertices.row(t[2]);
-    area += (b - a).cross(c - a).norm() / 2;
-  }
+  for (const auto& own : twice.rowwise()) area += own.norm() / 2;
   return area;
 }
 
