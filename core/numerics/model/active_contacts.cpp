@@ -19,7 +19,7 @@ constexpr double smallest_lag_fraction = 1.0 / 16;
 void ActiveContacts::build_candidates(const Positions& x0, const Positions& x1) {
   candidates_.clear();
   for (const auto& model : models_) candidates_.push_back(candidates_of(*model, x0, x1));
-  candidates_motion_ = std::make_shared<const PositionPair>(PositionPair{x0, x1});
+  candidates_motion_ = std::make_shared<const PositionPair>(x0, x1);
 }
 
 void ActiveContacts::build_collisions(const Positions& x) {
@@ -50,7 +50,7 @@ void ActiveContacts::replace(BoundContacts models) {
   models_ = std::move(models);
   if (state_.rows() == 0) return;
   const Positions x = std::exchange(state_, Positions());
-  build_candidates(candidates_motion_->begin, candidates_motion_->end);
+  build_candidates(candidates_motion_->first, candidates_motion_->second);
   build_collisions(x);
   if (reference_.rows() > 0) lag_friction(false);
 }
@@ -164,8 +164,8 @@ ContactMemory ActiveContacts::memory() const {
   if (models_.empty()) return {};
   return {reference_,
           tangential_displacements_,
-          collisions_motion_->begin,
-          collisions_motion_->end,
+          collisions_motion_->first,
+          collisions_motion_->second,
           seconds_building_,
           stiffness(),
           damping_};

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <utility>
 #include <vector>
 
 #include "core/kernel/interfaces/contact_model.h"
@@ -93,9 +94,7 @@ class ActiveContacts {
   double smallest_gap() const;  ///< there [m]; +∞ without a contact
 
  private:
-  struct PositionPair {
-    Positions begin, end;
-  };
+  using PositionPair = std::pair<Positions, Positions>;
   void build_candidates(const Positions& x0, const Positions& x1);
   void build_collisions(const Positions& x);
   /// Sets friction_ from the collisions. A step's lag is the damped one.
