@@ -1,4 +1,4 @@
-#include "core/numerics/sewing/edge_curve.h"
+#include "core/numerics/sewing/pattern.h"
 
 #include <algorithm>
 #include <cmath>
