@@ -20,7 +20,6 @@
 #include "core/kernel/plugin/make.h"
 #include "core/numerics/mesh/seams.h"
 #include "core/numerics/model/derivative_check.h"
-#include "core/numerics/model/smoothness_check.h"
 
 namespace drape {
 

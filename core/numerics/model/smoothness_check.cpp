@@ -1,5 +1,3 @@
-#include "core/numerics/model/smoothness_check.h"
-
 #include <algorithm>
 #include <cmath>
 #include <utility>
