@@ -6,7 +6,7 @@
 #include "core/app/experiment/declared_metrics.h"
 #include "core/app/report/run_data.h"
 #include "core/app/run/recorder_files.h"
-#include "core/app/scene/garment_place.h"
+#include "core/app/scene/dressing.h"
 #include "core/kernel/files/file.h"
 #include "core/kernel/files/number_text.h"
 #include "core/kernel/threads/parallel.h"

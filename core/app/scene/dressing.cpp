@@ -5,7 +5,6 @@
 #include <map>
 #include <set>
 
-#include "core/app/scene/garment_place.h"
 #include "core/app/scene/load_schedule.h"
 #include "core/app/scene/scene_summary.h"
 #include "core/kernel/files/message_text.h"

@@ -1,4 +1,4 @@
-#include "core/app/scene/garment_place.h"
+#include "core/app/scene/dressing.h"
 
 #include <Eigen/Geometry>
 #include <limits>
