@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/numerics/hierarchy/matched_folds.h"
-
 namespace drape {
 namespace {
 
