@@ -28,7 +28,7 @@ struct Experiment {
   /// The indices of each contact model's obstacles in the experiment's list, ascending. An experiment
   /// describes its obstacles once, in one list, and friction once. Contact models declare what they take of
   /// it (Parameter::from_experiment): `friction` goes to every model that declares it, an obstacle to the
-  /// first model that knows one of its keys (Parameter::identifies_item), such as `shape` or `mesh`. A plugin
+  /// model that knows one of its keys (Parameter::identifies_item), such as `shape` or `mesh`. A plugin
   /// sees a single struct of parameters and no experiment.
   std::vector<std::vector<std::size_t>> obstacles_of;
   std::vector<std::pair<std::string, std::shared_ptr<Solver>>> methods;

@@ -80,8 +80,8 @@ struct Table {
   Table(std::string name, const std::string& text) : file(std::move(name)) {
     for (CsvRow& row : csv_rows(file, utf8_text(file, text), ",;\t")) {
       for (std::string& cell : row.cells) boost::trim_if(cell, boost::is_any_of(" \t"));
+      if (row.cells == std::vector<std::string>{""}) continue;
       while (!row.cells.empty() && row.cells.back().empty()) row.cells.pop_back();
-      if (row.cells.empty()) continue;
       if (!header.empty() && row.cells.size() > header.size())
         refuse_path(file + ":" + std::to_string(row.line),
                     "has " + std::to_string(row.cells.size()) + " cells, and the first line names " +
@@ -139,8 +139,8 @@ const Table& own_table() {
 }
 
 /// The row's numbers by keys of `material`. Mass per area, tensile stiffness and bending rigidity are those
-/// of the row at any other thickness. Appends an error for a cell that is not a number, for a mass of 0 or
-/// less, and for a row without mass or bending.
+/// of the row at any other thickness. Appends an error for a cell that is not a number, for a mass or
+/// thickness of 0 or less, and for a row without mass or bending.
 ConfigNode material_of(const Table& table, std::size_t row, const std::string& name, const Location& where,
                        std::optional<double> thickness, ConfigErrors& errors) {
   const auto refuse = [&](const std::string& what) {

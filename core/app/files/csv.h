@@ -23,8 +23,8 @@ std::vector<CsvRow> csv_rows(const std::filesystem::path& file, std::string_view
 using OptionalNumber = std::optional<double>;
 
 /// A table of a run, with columns by the header's names. An incomplete last line of a killed run is ignored;
-/// a missing file is an empty table. Throws std::runtime_error for another one with not as many cells as the
-/// header.
+/// a missing file is an empty table. Throws std::runtime_error for any other line whose number of cells is
+/// not the header's.
 class Csv {
  public:
   Csv() = default;

@@ -91,8 +91,9 @@ py::list intersections(const ModelHandle& m, const State& state) {
   const Positions& x = state_of_model(m, state);
   py::list all;
   for (const auto& contact : m.model().contacts())
-    for (const auto& [first, second, at] : without_gil([&] { return contact->intersections(x); }))
-      all.append(py::make_tuple(first, second, py::make_tuple(at.x(), at.y(), at.z())));
+    for (const Intersection& pair : without_gil([&] { return contact->intersections(x); }))
+      all.append(py::make_tuple(pair.first, pair.second,
+                                py::make_tuple(pair.where.x(), pair.where.y(), pair.where.z())));
   return all;
 }
 

@@ -1,9 +1,8 @@
-#include "core/app/scene/dressing.h"
-
 #include <Eigen/Geometry>
 #include <limits>
 
 #include "core/app/experiment/pattern_file.h"
+#include "core/app/scene/dressing.h"
 #include "core/kernel/files/string_utils.h"
 
 namespace drape {

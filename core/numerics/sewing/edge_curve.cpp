@@ -1,9 +1,9 @@
-#include "core/numerics/sewing/pattern.h"
-
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <utility>
+
+#include "core/numerics/sewing/pattern.h"
 
 namespace drape {
 

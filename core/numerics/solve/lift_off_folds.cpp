@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <memory>
+#include <utility>
 #include <vector>
 
 #include "core/numerics/model/required.h"
@@ -43,7 +44,11 @@ struct Meetings {
   std::vector<std::array<int, 2>> layers;  // triangles of the cloth that intersect each other
   std::vector<Eigen::Vector3d> places;  // where it meets an obstacle, or, if it meets nothing, comes nearer
                                         // to something than a barrier can part
+  bool intersects = false;
   std::size_t count() const { return layers.size() + places.size(); }
+  bool is_fewer_than(const Meetings& other) const {
+    return std::pair(intersects, count()) < std::pair(other.intersects, other.count());
+  }
 
   Meetings(const LevelModel& model, const Positions& x) {
     constexpr double least_gap = 1e-3;  // in d̂
@@ -53,7 +58,8 @@ struct Meetings {
           layers.push_back(pair.triangles);
         else
           places.push_back(pair.where);
-    if (count() > 0) return;
+    intersects = count() > 0;
+    if (intersects) return;
     for (const auto& contact : model.contacts()) {
       const std::unique_ptr<Collisions> near = collisions_at(*contact, x);
       const Stencils stencils = near->stencils();
@@ -66,11 +72,11 @@ struct Meetings {
 };
 
 /// The state with these pairs of triangles, which intersect, drawn apart by up to `length` [m], in the
-/// direction in which the curves along which layers intersect grow shorter (Volino and Magnenat-Thalmann
-/// 2006).
+/// direction in which the curves along which layers intersect grow shorter: intersection contour minimisation
+/// (Volino and Magnenat-Thalmann 2006), of each pair on its own.
 Positions drawn_apart(const LevelModel& model, const std::vector<std::array<int, 2>>& pairs, double length,
                       Positions x) {
-  const Stencils& triangles = model.level().rest.triangles;
+  const auto& triangles = model.level().rest.triangles;
   Positions move = Positions::Zero(x.rows(), 3);
   Eigen::ArrayXd weights = Eigen::ArrayXd::Zero(x.rows());
   const auto corners = [&](int t) { return Eigen::Matrix3d(x(triangles.row(t), Eigen::all).transpose()); };
@@ -84,6 +90,9 @@ Positions drawn_apart(const LevelModel& model, const std::vector<std::array<int,
                           other_normal = (s.col(1) - s.col(0)).cross(s.col(2) - s.col(0));
     for (int k = 0; k < 3; ++k) {
       const int l = (k + 1) % 3;
+      const auto is_shared = triangles.row(pierced).array() == triangles(other, k) ||
+                             triangles.row(pierced).array() == triangles(other, l);
+      if (is_shared.any()) continue;
       const Eigen::Vector3d edge = s.col(l) - s.col(k);
       const double at = normal.dot(t.col(0) - s.col(k)) / normal.dot(edge);
       const Eigen::Matrix3d to = t.colwise() - s.col(k);
@@ -135,9 +144,9 @@ std::optional<Positions> lifted_off_folds(const LevelModel& model, const Positio
     const Positions drawn = drawn_apart(model, met.layers, step * edge, x);
     x = drawn + move;
     Meetings left(model, x);
-    if (left.count() >= met.count()) {
+    if (!met.places.empty() && !left.is_fewer_than(met)) {
       Positions inwards = drawn - move;
-      if (Meetings other(model, inwards); other.count() < left.count()) {
+      if (Meetings other(model, inwards); other.is_fewer_than(left)) {
         x = std::move(inwards);
         left = std::move(other);
       }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <stdexcept>
 #include <string>
 
 #include "core/numerics/collision_detection/signed_distance.h"
@@ -9,7 +10,8 @@ namespace drape::shapes {
 
 enum class SolidKind { sphere, box, capsule, cylinder, half_space };
 
-/// Calls the function for the form of a kind. A kind that has none of these forms is given another function.
+/// Calls the function for the form of a kind. For a kind of another form add a parameter: no use compiles
+/// then until it has a function for it.
 template <class RoundedBox, class Cylinder, class HalfSpace>
 auto by_form(SolidKind kind, const RoundedBox& rounded_box, const Cylinder& cylinder,
              const HalfSpace& half_space) {
@@ -21,9 +23,9 @@ auto by_form(SolidKind kind, const RoundedBox& rounded_box, const Cylinder& cyli
     case SolidKind::cylinder:
       return cylinder();
     case SolidKind::half_space:
-      break;
+      return half_space();
   }
-  return half_space();
+  throw std::logic_error("a solid of no kind");
 }
 
 /// A convex obstacle. A box, sphere or capsule is a core box, possibly degenerate, rounded by `radius`. The

@@ -1,7 +1,7 @@
 // Bodies that contract, starts that are smoothed, and rest shapes between two.
 
-#include "core/numerics/dressing/implicit_smoothing.h"
 #include "core/numerics/dressing/garment_rest.h"
+#include "core/numerics/dressing/implicit_smoothing.h"
 #include "core/numerics/elements/stretch.h"
 #include "core/numerics/patterns/generate.h"
 #include "tests/support/sewn.h"

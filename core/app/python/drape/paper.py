@@ -199,8 +199,8 @@ def main() -> int:
     except Exception as error:  # of pandas and matplotlib too: of names and numbers that no run writes
         cause = error
         while cause and not isinstance(cause, (RuntimeError, OSError)):  # others follow from it, as of a stream that a full disk cut
-            cause = cause.__context__
-        if isinstance(cause, OSError) and not cause.filename:
+            cause = cause.__cause__ if cause.__suppress_context__ else cause.__context__
+        if isinstance(cause, OSError) and cause.strerror and not cause.filename:
             cause = f"a file cannot be written: {cause.strerror}"
         print("error: " + _printable(cause or f"the results are not as drape writes them ({type(error).__name__}: {error})"), file=sys.stderr)
         return 3 if isinstance(error, _core.RunAborted) else 2
