@@ -8,7 +8,7 @@
 namespace drape {
 
 std::vector<CsvRow> csv_rows(const std::filesystem::path& file, std::string_view text,
-                             const std::string& separators) {
+                             const std::string& separators, bool may_be_cut) {
   const std::size_t first = text.find_first_of(separators);
   const char separator = first == std::string_view::npos ? separators[0] : text[first];
   std::vector<CsvRow> rows(1, {{""}});
@@ -35,22 +35,29 @@ std::vector<CsvRow> csv_rows(const std::filesystem::path& file, std::string_view
       begun = begun || (c != ' ' && c != '\t');
     }
   }
-  if (quote > 0) refuse_path(file.string() + ":" + std::to_string(quote), "a quote (\") has no end");
-  if (rows.back().cells == std::vector<std::string>{""}) rows.pop_back();  // behind the last line's end
+  const bool is_cut = may_be_cut && quote == line;
+  if (quote > 0 && !is_cut)
+    refuse_path(file.string() + ":" + std::to_string(quote), "a quote (\") has no end");
+  if (is_cut || rows.back().cells == std::vector<std::string>{""})
+    rows.pop_back();  // behind the last line's end
   return rows;
 }
 
 Csv::Csv(const std::filesystem::path& path) {
   if (!std::filesystem::is_regular_file(path)) return;
   std::size_t incomplete = 0;
-  for (CsvRow& row : csv_rows(path, read_file(path))) {
-    if (incomplete > 0)
-      refuse_path(path.string() + ":" + std::to_string(incomplete),
-                  "has not as many cells as the header; run the experiment again");
+  const auto refuse = [&](std::size_t line, const std::string& how_many) {
+    refuse_path(path.string() + ":" + std::to_string(line),
+                how_many + " cells than the header has; run the experiment again");
+  };
+  for (CsvRow& row : csv_rows(path, read_file(path), ",", true)) {
+    if (incomplete > 0) refuse(incomplete, "fewer");
     if (names_.empty())
       names_ = std::move(row.cells);
     else if (row.cells.size() == names_.size())
       rows_.push_back(std::move(row.cells));
+    else if (row.cells.size() > names_.size())
+      refuse(row.line, "more");
     else
       incomplete = row.line;
   }

@@ -14,10 +14,11 @@ struct CsvRow {
 };
 
 /// The rows of a file of separated values (RFC 4180) with any system's line ends: in double quotes separators
-/// and line ends are text, and two quotes are one. Its separator is the first of these that it has. Throws
-/// std::runtime_error for a quote without its end.
+/// and line ends are text, and two quotes are one. Its separator is the first of these that it has. A last
+/// line that is cut within quotes is left out if the file `may_be_cut`. Throws std::runtime_error for another
+/// quote without its end.
 std::vector<CsvRow> csv_rows(const std::filesystem::path& file, std::string_view text,
-                             const std::string& separators = ",");
+                             const std::string& separators = ",", bool may_be_cut = false);
 
 /// A number of a run, absent if the run did not reach or measure it.
 using OptionalNumber = std::optional<double>;

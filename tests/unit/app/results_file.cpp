@@ -210,6 +210,15 @@ TEST_CASE("values within objects have their path as name") {
 TEST_CASE("a table of errors that is damaged before its end is refused") {
   CHECK_THAT(said_of_results(R"({"methods": {}})", "method,level,seconds\npcs,0,1\npcs,\npcs,0,1\n"),
              Contains("errors.csv:3: fewer cells than the header has" + again));
+  CHECK_THAT(said_of_results(R"({"methods": {}})", "method,level,seconds\npcs,0,1,2\n"),
+             Contains("errors.csv:2: more cells than the header has" + again));
+  CHECK_THAT(said_of_results(R"({"methods": {}})", "method,level,seconds\n\"pcs,0,1\npcs,0,1\n"),
+             Contains("errors.csv:2: a quote (\") has no end"));
+}
+
+TEST_CASE("the last line of a killed run's table is left out, within quotes too") {
+  for (const std::string line : {"pcs,1", "\"pcs, so"})
+    CHECK(said_of_results(R"({"methods": {}})", "method,level,seconds\npcs,0,1\n" + line) == "");
 }
 
 TEST_CASE("a metric's values are those that it declares, each in a place of its own") {

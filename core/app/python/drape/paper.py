@@ -197,12 +197,14 @@ def main() -> int:
         for file in figures(given.pop("results"), given.pop("out"), given.pop("overwrite"), **given):
             print(_printable(file))
     except Exception as error:  # of pandas and matplotlib too: of names and numbers that no run writes
-        cause = error
+        cause: BaseException | None = error
         while cause and not isinstance(cause, (RuntimeError, OSError)):  # others follow from it, as of a stream that a full disk cut
             cause = cause.__cause__ if cause.__suppress_context__ else cause.__context__
         if isinstance(cause, OSError) and cause.strerror and not cause.filename:
-            cause = f"a file cannot be written: {cause.strerror}"
-        print("error: " + _printable(cause or f"the results are not as drape writes them ({type(error).__name__}: {error})"), file=sys.stderr)
+            reason = f"a file cannot be written: {cause.strerror}"
+        else:
+            reason = str(cause or f"the results are not as drape writes them ({type(error).__name__}: {error})")
+        print("error: " + _printable(reason), file=sys.stderr)
         return 3 if isinstance(error, _core.RunAborted) else 2
     return 0
 
