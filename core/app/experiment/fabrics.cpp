@@ -172,13 +172,14 @@ ConfigNode material_of(const Table& table, std::size_t row, const std::string& n
       material.add(column.key,
                    ConfigNode::of(column.factor * *value * std::pow(ratio, column.thickness_power)));
   }
-  if (errors.size() > before) return {};  // what is left would be refused for what it lacks
   if (in_force != own && !material.find("membrane_modulus") && !material.find("warp_stiffness"))
     material.add("membrane_modulus", ConfigNode::of(Material().membrane_modulus * (own / in_force)));
   if (mass) material.add("density", ConfigNode::of(*mass / in_force));
-  if (!has_mass && !material.find("density")) refuse("lacks column \"mass\" [kg/m²]");
-  if (!material.find("warp_bending") && !material.find("bending_modulus"))
-    refuse("lacks column \"warp_bending\" [N m]");
+  if (errors.size() == before) {  // what a refused cell leaves would be refused for what it lacks
+    if (!has_mass && !material.find("density")) refuse("lacks column \"mass\" [kg/m²]");
+    if (!material.find("warp_bending") && !material.find("bending_modulus"))
+      refuse("lacks column \"warp_bending\" [N m]");
+  }
   if (errors.size() > before) return {};
   if (const std::string source = table.cell(row, "source"); !source.empty())
     material.add("source", ConfigNode::of(source));
