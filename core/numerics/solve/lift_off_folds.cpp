@@ -90,9 +90,8 @@ Positions drawn_apart(const LevelModel& model, const std::vector<std::array<int,
                           other_normal = (s.col(1) - s.col(0)).cross(s.col(2) - s.col(0));
     for (int k = 0; k < 3; ++k) {
       const int l = (k + 1) % 3;
-      const auto is_shared = triangles.row(pierced).array() == triangles(other, k) ||
-                             triangles.row(pierced).array() == triangles(other, l);
-      if (is_shared.any()) continue;
+      const auto own = triangles.row(pierced).array();
+      if ((own == triangles(other, k) || own == triangles(other, l)).any()) continue;  // they share a vertex
       const Eigen::Vector3d edge = s.col(l) - s.col(k);
       const double at = normal.dot(t.col(0) - s.col(k)) / normal.dot(edge);
       const Eigen::Matrix3d to = t.colwise() - s.col(k);
