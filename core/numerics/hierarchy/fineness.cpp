@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/numerics/hierarchy/matched_folds.h"
+
 namespace drape {
 namespace {
 

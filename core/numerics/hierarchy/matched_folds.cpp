@@ -1,9 +1,10 @@
+#include "core/numerics/hierarchy/matched_folds.h"
+
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 #include <vector>
 
-#include "core/numerics/hierarchy/fineness.h"
 #include "core/numerics/mesh/seams.h"
 
 namespace drape {
