@@ -20,6 +20,7 @@
 #include "core/kernel/plugin/make.h"
 #include "core/numerics/mesh/seams.h"
 #include "core/numerics/model/derivative_check.h"
+#include "core/numerics/model/smoothness_check.h"
 
 namespace drape {
 

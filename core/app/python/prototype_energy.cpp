@@ -18,6 +18,7 @@
 #include "core/numerics/model/derivative_check.h"
 #include "core/numerics/model/hessian_assembler.h"
 #include "core/numerics/model/required.h"
+#include "core/numerics/model/smoothness_check.h"
 
 namespace drape::python {
 

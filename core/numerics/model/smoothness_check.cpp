@@ -1,3 +1,5 @@
+#include "core/numerics/model/smoothness_check.h"
+
 #include <algorithm>
 #include <cmath>
 #include <utility>
