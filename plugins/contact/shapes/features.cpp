@@ -12,6 +12,10 @@ namespace {
 
 using Eigen::Vector2d, Eigen::Vector3d;
 
+// Insets of a rim's polygons, and the d̂ of the one with many sides, over d̂. With few sides the gap is thus
+// overestimated by at most a tenth where it is not small.
+constexpr double few_sides_inset = 5e-3, many_sides_inset = 5e-5, small_gap = 0.05;
+
 /// Corners of the core in local coordinates: 8 of a box, 2 of a capsule, 1 of a sphere.
 std::vector<Vector3d> core_corners(const Vector3d& half) {
   std::vector<Vector3d> corners{Vector3d::Zero()};
@@ -29,13 +33,27 @@ Vector3d on_circle(double radius, int k, int sides, double z) {
   return {radius * std::cos(angle), radius * std::sin(angle), z};
 }
 
-/// Calls visit(i) for the points or edges that may be within `radius` of `centre`, but for the ends of a
-/// cylinder's axis. Those of a cylinder are ordered in rings, bottom and top; element k of each ring begins
-/// at angle 2πk / sides.
+/// The rims of a cylinder as polygons nowhere more than `max_inset` [m] inside their circles.
+Features rims(const Solid& solid, double dhat, double max_inset) {
+  Features f;
+  f.dhat = dhat;
+  const double step = std::acos(1 - std::min(0.5, max_inset / solid.radius));
+  f.sides = std::max(16, static_cast<int>(std::ceil(M_PI / step)));
+  f.side = 2 * solid.radius * std::sin(M_PI / f.sides);
+  for (const int ring : {0, f.sides})
+    for (int k = 0; k < f.sides; ++k) {
+      f.points.push_back(on_circle(solid.radius, k, f.sides, ring ? solid.half.z() : -solid.half.z()));
+      f.edges.push_back({ring + k, ring + (k + 1) % f.sides});
+    }
+  return f;
+}
+
+/// Calls visit(i) for the points or edges that may be within `radius` of `centre`. Those of rims are ordered
+/// in rings, bottom and top; element k of each ring begins at angle 2πk / sides.
 template <class Visit>
 void visit_candidates(const Features& f, std::size_t size, const Solid& solid, const Vector3d& centre,
                       double radius, const Visit& visit) {
-  const int sides = f.sides, count = sides > 0 ? 2 * sides : static_cast<int>(size);
+  const int sides = f.sides, count = static_cast<int>(size);
   if (sides == 0) {
     for (int i = 0; i < count; ++i) visit(i);
     return;
@@ -109,31 +127,27 @@ TriangleMesh capsule_surface(const Solid& solid) {
 
 }  // namespace
 
-Features Features::of(const Solid& solid, double max_inset) {
-  Features f;
-  const auto of_box = [&] {
-    f.points = core_corners(solid.half);
-    f.offset = solid.radius;
-    const int count = static_cast<int>(f.points.size());
-    for (int i = 0; i < count; ++i)
-      for (int bit = 1; bit < count; bit *= 2)
-        if (!(i & bit)) f.edges.push_back({i, i | bit});
-  };
-  const auto of_cylinder = [&] {
-    const double step = std::acos(1 - std::min(0.5, max_inset / solid.radius));
-    const int sides = std::max(16, static_cast<int>(std::ceil(M_PI / step)));
-    f.sides = sides;
-    f.side = 2 * solid.radius * std::sin(M_PI / sides);
-    for (const int ring : {0, sides})
-      for (int k = 0; k < sides; ++k) {
-        f.points.push_back(on_circle(solid.radius, k, sides, ring ? solid.half.z() : -solid.half.z()));
-        f.edges.push_back({ring + k, ring + (k + 1) % sides});
-      }
-    for (const double end : {-1.0, 1.0}) f.points.push_back({0, 0, end * solid.half.z()});
-  };
-  by_form(solid.kind, of_box, of_cylinder, [] {});
-  for (Vector3d& point : f.points) point = solid.to_world(point);
-  return f;
+std::vector<Features> Features::of(const Solid& solid, double dhat) {
+  Features core;
+  core.dhat = dhat;
+  core.points = core_corners(solid.half);
+  core.offset = solid.radius;
+  const int corners = static_cast<int>(core.points.size());
+  for (int i = 0; i < corners; ++i)
+    for (int bit = 1; bit < corners; bit *= 2)
+      if (!(i & bit)) core.edges.push_back({i, i | bit});
+  std::vector<Features> all;
+  by_form(
+      solid.kind, [&] { all = {core}; },
+      [&] {
+        core.is_axis = true;
+        all = {core, rims(solid, dhat, few_sides_inset * dhat),
+               rims(solid, small_gap * dhat, many_sides_inset * dhat)};
+      },
+      [] {});
+  for (Features& f : all)
+    for (Vector3d& point : f.points) point = solid.to_world(point);
+  return all;
 }
 
 void Features::points_near(const Solid& solid, const Vector3d& centre, double radius,

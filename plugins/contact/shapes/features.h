@@ -10,17 +10,23 @@
 namespace drape::shapes {
 
 /// The corners and straight edges of a solid, rounded by `offset`, that the interior of a cloth edge or
-/// triangle can make contact with. Those of a cylinder are its rims, as polygons; the curved side is at the
-/// radius from its axis, the last two points.
+/// triangle can make contact with: those of a cylinder's rims as polygons, and of its curved side its axis.
 struct Features {
+  double dhat = 0;                        ///< d̂ of their contacts [m]
+  int first_point = 0;                    ///< index of the first point among those of all solids (ShapeScene)
   std::vector<Eigen::Vector3d> points;    ///< [m]
   std::vector<std::array<int, 2>> edges;  ///< indices of points
   double offset = 0;                      ///< [m]
   double side = 0;                        ///< side length of a rim's polygon [m]; 0 for other solids
   int sides = 0;                          ///< of a rim's polygon; 0 for other solids
+  bool is_axis = false;                   ///< of a cylinder, whose radius is the offset
 
-  /// A rim's polygon is nowhere more than `max_inset` [m] inside its circle.
-  static Features of(const Solid& solid, double max_inset);
+  /// The distance from points and edges within which contacts are [m].
+  double reach() const { return dhat + offset; }
+
+  /// Those of a solid for contacts within d̂. A cylinder has three: its axis, rims with few sides, and rims
+  /// with many sides for gaps so small that few would be too far inside the circle.
+  static std::vector<Features> of(const Solid& solid, double dhat);
 
   /// Appends the indices of points within `radius` of `centre`.
   void points_near(const Solid& solid, const Eigen::Vector3d& centre, double radius,

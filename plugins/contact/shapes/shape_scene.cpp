@@ -13,9 +13,8 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr int grain = 2048;     // triangles per task
-constexpr double inset = 5e-5;  // of a rim's polygon, over d̂
-constexpr double half = 0.5;    // weight factor of pairs of edges and of pairs with a triangle
+constexpr int grain = 2048;   // triangles per task
+constexpr double half = 0.5;  // weight factor of pairs of edges and of pairs with a triangle
 
 /// A bounding ball of an element's linear motion.
 struct Ball {
@@ -46,8 +45,7 @@ class Finder {
       : scene_(scene),
         solid_index_(solid),
         solid_(scene.solids[solid]),
-        features_(scene.features[solid]),
-        first_point_(static_cast<int>(x0.rows()) + scene.first_point[solid]),
+        cloth_size_(static_cast<int>(x0.rows())),
         x0_(x0),
         x1_(x1) {}
 
@@ -82,75 +80,91 @@ class Finder {
                          [&](int i) { return is_near(ball_of(&scene_.cloth.edges(i, 0), 2, x0_, x1_)); });
   }
 
-  /// Adds pairs of the solid's points and triangles.
-  void add_point_triangle(const std::vector<int>& triangles, std::vector<ContactPair>& pairs) const {
-    const double share = features_.edges.empty() ? 1 : half;  // a sphere has no other pairs
+  /// Which of the triangles may come within a d̂ that is smaller than the scene's.
+  std::vector<int> triangles_within(double dhat, std::vector<int> triangles) const {
+    std::erase_if(triangles, [&](int i) {
+      const Corners from = scene_.corners(i, x0_), to = scene_.corners(i, x1_);
+      double moved = 0;
+      for (int k = 0; k < 3; ++k) moved = std::max(moved, (to[k] - from[k]).norm());
+      return separate(solid_, from).separation > moved + dhat;
+    });
+    return triangles;
+  }
+
+  /// Adds pairs of the points and triangles.
+  void add_point_triangle(const Features& features, const std::vector<int>& triangles,
+                          std::vector<ContactPair>& pairs) const {
+    const double share = features.edges.empty() ? 1 : half;  // a sphere has no other pairs
     std::vector<int> found;
     for (const int i : triangles) {
       const Ball ball = ball_of(&scene_.cloth.triangles(i, 0), 3, x0_, x1_);
       found.clear();
-      features_.points_near(solid_, ball.centre, ball.radius + reach(), found);
+      features.points_near(solid_, ball.centre, ball.radius + features.reach(), found);
       const double area = scene_.cloth.triangle_area[i];
-      ContactPair pair = pair_of(PairKind::point_triangle, share * area * side_fraction(std::sqrt(2 * area)));
+      ContactPair pair = pair_of(features, PairKind::point_triangle,
+                                 share * area * side_fraction(features, std::sqrt(2 * area)));
       for (const int point : found) {
-        pair.vertices = {first_point_ + point, scene_.cloth.triangles(i, 0), scene_.cloth.triangles(i, 1),
-                         scene_.cloth.triangles(i, 2)};
+        pair.vertices = {vertex_of(features, point), scene_.cloth.triangles(i, 0),
+                         scene_.cloth.triangles(i, 1), scene_.cloth.triangles(i, 2)};
         pairs.push_back(pair);
       }
     }
   }
 
-  /// Adds pairs of the solid's and the cloth's edges.
-  void add_edge_edge(const std::vector<int>& edges, std::vector<ContactPair>& pairs) const {
+  /// Adds pairs of the features' and the cloth's edges.
+  void add_edge_edge(const Features& features, const std::vector<int>& edges,
+                     std::vector<ContactPair>& pairs) const {
     std::vector<int> found;
     for (const int i : edges) {
       const Ball ball = ball_of(&scene_.cloth.edges(i, 0), 2, x0_, x1_);
       found.clear();
-      features_.edges_near(solid_, ball.centre, ball.radius + reach(), found);
+      features.edges_near(solid_, ball.centre, ball.radius + features.reach(), found);
       const double length = std::sqrt(scene_.cloth.edge_length_squared[i]);
-      ContactPair pair =
-          pair_of(PairKind::edge_edge, half * scene_.cloth.edge_area[i] * side_fraction(length));
+      ContactPair pair = pair_of(features, PairKind::edge_edge,
+                                 half * scene_.cloth.edge_area[i] * side_fraction(features, length));
       for (const int edge : found) {
-        const auto [a, b] = features_.edges[edge];
-        pair.vertices = {scene_.cloth.edges(i, 0), scene_.cloth.edges(i, 1), first_point_ + a,
-                         first_point_ + b};
+        const auto [a, b] = features.edges[edge];
+        pair.vertices = {scene_.cloth.edges(i, 0), scene_.cloth.edges(i, 1), vertex_of(features, a),
+                         vertex_of(features, b)};
         pair.mollifier =
-            mollifier_threshold * length * length * (features_.points[b] - features_.points[a]).squaredNorm();
+            mollifier_threshold * length * length * (features.points[b] - features.points[a]).squaredNorm();
         pairs.push_back(pair);
       }
     }
   }
 
   /// Adds pairs of a cylinder's axis and the cloth's edges.
-  void add_curved_side(const std::vector<int>& edges, std::vector<ContactPair>& pairs) const {
-    const int bottom = 2 * features_.sides;
-    const double axis = (features_.points[bottom + 1] - features_.points[bottom]).squaredNorm();
+  void add_curved_side(const Features& axis, const std::vector<int>& edges,
+                       std::vector<ContactPair>& pairs) const {
+    const double length_squared = (axis.points[1] - axis.points[0]).squaredNorm();
     for (const int i : edges) {
-      ContactPair pair = pair_of(PairKind::edge_edge, half * scene_.cloth.edge_area[i]);
-      pair.offset = solid_.radius;
-      pair.mollifier = mollifier_threshold * scene_.cloth.edge_length_squared[i] * axis;
-      pair.vertices = {first_point_ + bottom, first_point_ + bottom + 1, scene_.cloth.edges(i, 0),
+      ContactPair pair = pair_of(axis, PairKind::edge_edge, half * scene_.cloth.edge_area[i]);
+      pair.mollifier = mollifier_threshold * scene_.cloth.edge_length_squared[i] * length_squared;
+      pair.vertices = {vertex_of(axis, 0), vertex_of(axis, 1), scene_.cloth.edges(i, 0),
                        scene_.cloth.edges(i, 1)};
       pairs.push_back(pair);
     }
   }
 
  private:
-  /// A pair of the solid, without its vertices.
-  ContactPair pair_of(PairKind kind, double weight) const {
-    ContactPair pair{{}, kind, solid_index_, weight, scene_.barrier.dhat, features_.offset};
+  /// A pair with one of the features, without its vertices.
+  ContactPair pair_of(const Features& features, PairKind kind, double weight) const {
+    ContactPair pair{{}, kind, solid_index_, weight, features.dhat, features.offset};
     pair.friction = solid_.friction;
     return pair;
   }
-  double reach() const { return scene_.barrier.dhat + features_.offset; }
+  /// The index of a feature's point in pairs.
+  int vertex_of(const Features& features, int point) const {
+    return cloth_size_ + features.first_point + point;
+  }
   bool is_near(const Ball& ball) const {
     return solid_.distance(ball.centre) - ball.radius < scene_.barrier.dhat;
   }
   /// The fraction of a cloth element of this length that one side of a rim's polygon covers. The sides
   /// of a rim that is thinner than the element share it.
-  double side_fraction(double length) const {
-    if (features_.sides == 0) return 1;
-    return std::clamp(features_.side / length, 1.0 / features_.sides, 1.0);
+  static double side_fraction(const Features& features, double length) {
+    if (features.sides == 0) return 1;
+    return std::clamp(features.side / length, 1.0 / features.sides, 1.0);
   }
 
   /// The triangles' vertices or edges that are near; ascending, each once.
@@ -169,8 +183,7 @@ class Finder {
   const ShapeScene& scene_;
   int solid_index_;
   const Solid& solid_;
-  const Features& features_;
-  int first_point_;  // index of the solid's first point in pairs
+  int cloth_size_;
   const Positions &x0_, &x1_;
 };
 
@@ -185,16 +198,16 @@ ShapeScene ShapeScene::of(const Level& level, const std::vector<Solid>& solids,
   s.solids = solids;
   s.barrier = barrier;
   s.min_gap_fraction = min_gap_fraction;
-  for (const Solid& solid : solids) s.features.push_back(Features::of(solid, inset * barrier.dhat));
-  // Cylinders come last: a larger one has more points, and contacts are identified by point indices.
-  s.first_point.resize(solids.size());
+  for (const Solid& solid : solids) s.features.push_back(Features::of(solid, barrier.dhat));
+  // Rims come last: a larger one has more points, and contacts are identified by point indices.
   std::vector<Vector3d> points;
-  for (const bool cylinders : {false, true})
-    for (std::size_t k = 0; k < solids.size(); ++k) {
-      if ((s.features[k].sides > 0) != cylinders) continue;
-      s.first_point[k] = static_cast<int>(points.size());
-      points.insert(points.end(), s.features[k].points.begin(), s.features[k].points.end());
-    }
+  for (const bool rims : {false, true})
+    for (std::vector<Features>& of_solid : s.features)
+      for (Features& features : of_solid) {
+        if ((features.sides > 0) != rims) continue;
+        features.first_point = static_cast<int>(points.size());
+        points.insert(points.end(), features.points.begin(), features.points.end());
+      }
   s.obstacle_points.resize(static_cast<Eigen::Index>(points.size()), 3);
   for (std::size_t i = 0; i < points.size(); ++i) s.obstacle_points.row(i) = points[i];
   return s;
@@ -246,18 +259,22 @@ CandidatePairs find_candidates(const ShapeScene& scene, const std::vector<SolidP
   CandidatePairs c;
   std::size_t next = 0;
   for (int k = 0; k < static_cast<int>(scene.solids.size()); ++k) {
-    const Features& features = scene.features[k];
     const Finder finder(scene, k, x0, x1);
     std::vector<int> triangles;
     for (; next < found.size() && found[next].solid == k; ++next) triangles.push_back(found[next].element);
     triangles = finder.triangles_near(triangles);
-    finder.add_point_triangle(triangles, c.pairs);
-    if (features.points.size() == 1) continue;  // a sphere
-    for (const int i : finder.vertices_of(triangles)) c.vertices.push_back({i, k});
-    if (features.edges.empty()) continue;  // a half-space
-    const std::vector<int> edges = finder.edges_of(triangles);
-    finder.add_edge_edge(edges, c.pairs);
-    if (features.sides > 0) finder.add_curved_side(edges, c.curved_sides);
+    if (scene.solids[k].kind != SolidKind::sphere)
+      for (const int i : finder.vertices_of(triangles)) c.vertices.push_back({i, k});
+    for (const Features& features : scene.features[k]) {
+      if (features.is_axis) {
+        finder.add_curved_side(features, finder.edges_of(triangles), c.curved_sides);
+        continue;
+      }
+      const std::vector<int> near =
+          features.dhat < scene.barrier.dhat ? finder.triangles_within(features.dhat, triangles) : triangles;
+      finder.add_point_triangle(features, near, c.pairs);
+      if (!features.edges.empty()) finder.add_edge_edge(features, finder.edges_of(near), c.pairs);
+    }
   }
   return c;
 }

@@ -20,9 +20,8 @@ struct ShapeScene {
   double diagonal = 0;          ///< of the rest shape's bounding box [m]
 
   std::vector<Solid> solids;
-  std::vector<Features> features;  ///< of each solid
-  std::vector<int> first_point;    ///< index of each solid's first point in obstacle_points
-  Positions obstacle_points;       ///< the points of all solids [m]
+  std::vector<std::vector<Features>> features;  ///< of each solid
+  Positions obstacle_points;                    ///< the points of all solids [m]
   BarrierParameters barrier;
   double min_gap_fraction = 0.1;
 

@@ -2,7 +2,9 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <boost/math/tools/toms748_solve.hpp>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 
 #include "core/numerics/mesh/rotation.h"
@@ -41,7 +43,7 @@ SignedDistance nearest_to_box(const Solid& s, const Vector3d& q) {
 
 SignedDistance nearest_to_cylinder(const Solid& s, const Vector3d& q) {
   SignedDistance n;
-  const double rho = std::hypot(q.x(), q.y()), out = rho - s.radius, up = std::abs(q.z()) - s.half.z();
+  const double rho = q.head<2>().norm(), out = rho - s.radius, up = std::abs(q.z()) - s.half.z();
   const Vector3d radial = rho > 0 ? Vector3d(q.x() / rho, q.y() / rho, 0) : Vector3d(1, 0, 0);
   const Vector3d axial(0, 0, q.z() < 0 ? -1 : 1);
   n.tangent = {-radial.y(), radial.x(), 0};
@@ -63,13 +65,12 @@ SignedDistance nearest_to_cylinder(const Solid& s, const Vector3d& q) {
 /// The root of a monotone function on [0, 1], clamped.
 template <class Slope>
 double monotone_root(const Slope& slope) {
-  double low = 0, high = 1;
-  if (slope(0.0) >= 0) return 0;
-  if (slope(1.0) <= 0) return 1;
-  for (int i = 0; i < 60 && low < high; ++i) {
-    const double middle = 0.5 * (low + high);
-    (slope(middle) < 0 ? low : high) = middle;
-  }
+  const double first = slope(0.0), last = slope(1.0);
+  if (first >= 0) return 0;
+  if (last <= 0) return 1;
+  std::uintmax_t evaluations = 60;
+  const auto [low, high] = boost::math::tools::toms748_solve(
+      slope, 0.0, 1.0, first, last, boost::math::tools::eps_tolerance<double>(50), evaluations);
   return 0.5 * (low + high);
 }
 
@@ -127,7 +128,7 @@ double Solid::distance(const Vector3d& p) const {
     return (length > 0 ? length : (q.cwiseAbs() - half).maxCoeff()) - radius;
   };
   const auto to_cylinder = [&] {
-    const double out = std::hypot(q.x(), q.y()) - radius, up = std::abs(q.z()) - half.z();
+    const double out = q.head<2>().norm() - radius, up = std::abs(q.z()) - half.z();
     return out > 0 && up > 0 ? std::hypot(out, up) : std::max(out, up);
   };
   return by_form(kind, to_box, to_cylinder, [&] { return q.z(); });
@@ -149,7 +150,7 @@ double Solid::nearest_on_edge(const Vector3d& a, const Vector3d& b) const {
   const Vector3d p = to_local(a), e = axes.transpose() * (b - a);
   const auto half_slope = [&](double t) {  // derivative of half the squared distance to a cylinder
     const Vector3d q = p + t * e;
-    const double rho = std::hypot(q.x(), q.y());
+    const double rho = q.head<2>().norm();
     const double out = std::max(0.0, 1 - radius / rho), up = std::abs(q.z()) - half.z();
     return out * (q.x() * e.x() + q.y() * e.y()) + (up > 0 ? std::copysign(up, q.z()) * e.z() : 0.0);
   };
