@@ -125,6 +125,20 @@ def scenes(study, columns):
     return table(["scene"] + columns, rows, right)
 
 
+def fine_meshes():
+    """A row a scene, on a random mesh: coarser levels under it beside a direct solve of it and regular levels on its outline."""
+    rows = []
+    for scene in dict.fromkeys(r["scene"] for r in read("fine_meshes.json")):
+        coarsened, cascadic, regular, direct = (finished("fine_meshes", method, scene, variant) for method, variant in (
+            ("pcs", "coarsened"), ("cascadic", "coarsened"), ("pcs", "regular"), ("newton", "direct")))
+        distances = [preview(records, "distance_rms") for records in (coarsened, cascadic, regular)]
+        finest = [figure(iterations(records)[-1]) for records in (coarsened, regular, direct)]
+        times = [figure(of(records, "cpu_seconds") / of(direct, "cpu_seconds"), 2) for records in (coarsened, regular)]
+        rows.append([scene, *(" / ".join(cells) for cells in (distances, finest, times))])
+    return table(["scene", "preview, RMS: pcs / cascadic / regular pcs", "finest level, iterations: pcs / regular pcs / direct",
+                  "CPU time, relative to direct: pcs / regular pcs"], rows, "llll")
+
+
 def best_in_table1():
     """For each scene, of the rows of curvature, of distance and of energy: how many, and on how many each method is best."""
     text = (RESULTS / "table1.md").read_text()
@@ -360,6 +374,7 @@ def scale():
 
 STUDIES = [
     ("[sphere to 98K](previews.md#the-sphere-to-98k-vertices)", "sphere.md"),
+    ("[whole command](speed.md#the-whole-command)", "whole_command.json"),
     ("[ratios](speed.md#ratios)", "ratios.json"),
     ("[changes](speed.md#changes-of-a-parameter)", "changes.json"),
     ("[linear solvers](speed.md#the-linear-solver)", "linear_solvers.json"),
@@ -370,6 +385,8 @@ STUDIES = [
     ("[scale](speed.md#scale)", "scale.json"),
     ("[six scenes to 5.9K](previews.md#six-scenes)", "previews.md"),
     ("[four levels](previews.md#four-levels)", "four_levels.md"),
+    ("[fine meshes](previews.md#fine-meshes)", "fine_meshes.md"),
+    ("[garments](previews.md#garments)", "garments.md"),
     ("[ablations](ablations.md#one-choice-at-a-time)", "ablations.md"),
     ("[hard cases](hard-cases.md)", "hard.md"),
     ("[remedies](ablations.md#newton)", "hard_remedies.md"),
@@ -443,6 +460,8 @@ BLOCKS = {
     "six scenes in full": lambda: scenes("previews", TOP),
     "four levels": lambda: scenes("four_levels", [
         TOP[0], "overlap", "finest level, iterations: pcs / cascadic", "total flops, relative to cascadic", TOP[-1]]),
+    "garments": lambda: scenes("garments", [TOP[0], "overlap", "finest level, iterations: pcs / cascadic", TOP[-1]]),
+    "fine meshes": fine_meshes,
     "table 1": table1,
     "remedies": remedies,
     "ablations": ablations,
@@ -467,6 +486,9 @@ VALUES = {
     "sphere.seen": lambda: median_seconds("pcs", "seconds_of_preview"),
     "sphere.finished": lambda: median_seconds("pcs", "seconds"),
     "sphere.cascadic": lambda: median_seconds("cascadic", "seconds"),
+    "whole command [s]": lambda: seconds_text([r["seconds"] for r in read("whole_command.json")["runs"]]),
+    **{f"whole command over its levels, {what}": lambda key=key: figure(
+        median([r[key] / r[f"{key}_of_levels"] for r in read("whole_command.json")["runs"]])) for what, key in (("time", "seconds"), ("CPU time", "cpu_seconds"))},
     "sphere.distance": lambda: figure(100 * distance_of_previews(finished("sphere", "pcs")), 2),
     "sphere.distance_ratio": lambda: figure(
         distance_of_previews(finished("sphere", "cascadic")) / distance_of_previews(finished("sphere", "pcs")), 2),

@@ -25,6 +25,13 @@ def previews(name, what, minutes, starts=3, timed=False, meshes=()):
             "gather": [["benchmarks/previews", name, "{out}"]], "records": [f"{name}.json", f"{name}.md"]}
 
 
+def dressed(name, what, minutes):
+    """Published patterns too where GARMENTCODE names a clone of GarmentCode."""
+    return previews(name, what, minutes) | {
+        "failures": True, "run": [["benchmarks/garments/dress", "{drape}", "{out}", "{workers}"]],
+        "gather": [["benchmarks/previews", name, "{out}/sweep"]]}
+
+
 def one_record(name, what, minutes, *command):
     """A timed study whose command writes the record."""
     file = "{out}/" + name + ".json"
@@ -48,6 +55,8 @@ HARD = ["closing", "contact", "dragged", "folded", "friction", "material", "mesh
 STUDIES = {
     "sphere": previews("sphere", "the sphere to 98K vertices, three methods", 30, timed=True),
     "ratios": program("ratios", "parts of an iteration against each other", 15),
+    "whole_command": one_record("whole_command", "the whole command beside its levels", 10, "benchmarks/whole_command", "{drape}", "{threads}") | {
+        "starts": 1},
     "changes": program("changes", "what a change of a parameter costs", 10),
     "linear_solvers": program("linear_solvers", "both linear solvers on the same matrices", 15) | {
         "check": ["sh", "-c", "/sbin/ldconfig -p | grep -q openblas || echo 'OpenBLAS: run third_party/setup compare' >&2"]},
@@ -66,6 +75,8 @@ STUDIES = {
                                   timed=True, meshes=["dragon.ply"]),
     "previews": previews("previews", "six scenes to 5.9K vertices", 35, meshes=MESHES),
     "four_levels": previews("four_levels", "six scenes with a fourth level", 50, meshes=MESHES),
+    "fine_meshes": previews("fine_meshes", "coarser levels under a given mesh", 75, meshes=MESHES),
+    "garments": dressed("garments", "garments on a body", 60),
     "ablations": previews("ablations", "one choice changed at a time", 20),
     "hard": {
         "what": "the hard cases", "minutes": 30, "timed": False, "starts": 1, "failures": True,
