@@ -48,6 +48,14 @@ std::optional<Eigen::Vector3d> direction_of(const std::string& text) {
   return direction;
 }
 
+/// The sRGB colour that "RRGGBB" spells; nothing for another text.
+std::optional<Eigen::Vector3f> colour_of(const std::string& text) {
+  if (text.size() != 6 || text.find_first_not_of("0123456789abcdefABCDEF") != std::string::npos) return {};
+  Eigen::Vector3f colour;
+  for (int k = 0; k < 3; ++k) colour[k] = std::stoi(text.substr(2 * k, 2), nullptr, 16) / 255.0f;
+  return colour;
+}
+
 void add_picture_width(CLI::App& command, std::optional<int>& width, const std::string& help) {
   add_option(command, "--width PIXELS", width, help)
       ->check(integer_between(
@@ -204,6 +212,14 @@ void add_export_command(Commands& commands) {
   command.add_flag("--outline", o->picture.outline,
                    "with .png: draw the outline of the method's coarsest state over the picture");
   command.add_flag("--xray", o->picture.xray, "with .png: let obstacles show faintly through the cloth");
+  command
+      .add_option_function<std::string>(
+          "--colour", [o = o.get()](const std::string& text) { o->picture.colours.cloth = colour_of(text); },
+          "with .png: colour of the cloth's front; the back is paler")
+      ->check(must_be("a colour of six hexadecimal digits, as in 3a7ca5",
+                      [](const std::string& text) { return colour_of(text).has_value(); }))
+      ->type_name("RRGGBB");
+  command.add_flag("--dark", o->picture.colours.dark, "with .png: before a dark backdrop");
   add_option(
       command, "--uv-unit UNIT", o->uv_unit,
       ".obj, .ply: unit of the texture coordinates of flat pieces: mm, cm, m, inch or normalised, 0 to 1 "

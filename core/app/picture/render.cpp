@@ -36,7 +36,8 @@ const Rgb key_light(0.98f, 0.92f, 0.83f), sky_light(0.40f, 0.44f, 0.50f), fill_l
 const Rgb front_colour = linear_of_srgb({0.86f, 0.79f, 0.69f}),
           back_colour = linear_of_srgb({0.62f, 0.70f, 0.77f}),
           obstacle_colour = linear_of_srgb({0.42f, 0.44f, 0.47f}),
-          backdrop = linear_of_srgb({0.985f, 0.985f, 0.985f});
+          light_backdrop = linear_of_srgb({0.985f, 0.985f, 0.985f}),
+          dark_backdrop = linear_of_srgb({0.09f, 0.105f, 0.13f});
 
 constexpr int split = 2;  // samples along the side of a pixel
 // Weights, along a row or a column, of the samples around a pixel's middle: a tent.
@@ -112,6 +113,10 @@ class Painting {
     const Eigen::Matrix3f to_world = camera.frame.transpose().cast<float>();
     key_ = (to_world * Eigen::Vector3f(-0.75f, 0.25f, 0.25f) + Eigen::Vector3f(0, 0, 0.62f)).normalized();
     fill_ = (to_world * Eigen::Vector3f(0.8f, 0.1f, 0.45f)).normalized();
+    const Colours& colours = drawing.colours;
+    front_ = colours.cloth ? linear_of_srgb(*colours.cloth) : front_colour;
+    back_ = colours.cloth ? Rgb(0.5f * (front_ + back_colour)) : back_colour;
+    backdrop_ = colours.dark ? dark_backdrop : light_backdrop;
   }
 
   void see(int column, int row) {
@@ -170,12 +175,10 @@ class Painting {
   /// From what a ray from the eye meets back to the eye; nothing and the lit floor are one backdrop.
   Rgb to_eye(const Sample& seen) const {
     const Arriving& arriving = seen.arriving;
-    if (seen.surface == Seen::Surface::nothing) return backdrop;
+    if (seen.surface == Seen::Surface::nothing) return backdrop_;
     if (seen.surface == Seen::Surface::floor)
-      return (floor_key_share * arriving[0] + (1 - floor_key_share) * arriving[1]) * backdrop;
-    const Rgb base = seen.surface == Seen::Surface::obstacle ? obstacle_colour
-                     : seen.front                            ? front_colour
-                                                             : back_colour;
+      return (floor_key_share * arriving[0] + (1 - floor_key_share) * arriving[1]) * backdrop_;
+    const Rgb base = seen.surface == Seen::Surface::obstacle ? obstacle_colour : seen.front ? front_ : back_;
     const float key = std::max(seen.normal.dot(key_), 0.0f), side = std::max(seen.normal.dot(fill_), 0.0f);
     // A faint sheen where cloth turns away separates a fold from what lies behind it.
     const float grazing = 1 - seen.facing;
@@ -223,6 +226,7 @@ class Painting {
   // Towards a warm key light of some width from the upper left of the picture, and a faint fill light from
   // the right. The sky is brighter above than below.
   Eigen::Vector3f key_, fill_;
+  Rgb front_, back_, backdrop_;
   Grid<Sample> samples_;
 };
 

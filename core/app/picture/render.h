@@ -33,6 +33,12 @@ struct Camera {
                        double aspect);
 };
 
+/// Colours of a picture.
+struct Colours {
+  std::optional<Eigen::Vector3f> cloth = {};  ///< of its front, sRGB in [0, 1]; the back is paler
+  bool dark = false;                          ///< the backdrop
+};
+
 /// Contents of a picture. Triangles with a vertex that is not finite are skipped.
 struct Drawing {
   const TriangleMesh& mesh;
@@ -43,6 +49,7 @@ struct Drawing {
   bool xray = false;                                ///< cloth in front of an obstacle lets it show faintly
   std::vector<const TriangleMesh*> obstacles = {};  ///< dark
   std::optional<double> floor = {};                 ///< height of a floor that shows shadows only [m]
+  Colours colours = {};
 };
 
 /// `render` was cancelled before its picture was finished.

@@ -104,7 +104,8 @@ Image PictureScene::draw(const TriangleMesh& cloth) const {
   Drawing drawing{.mesh = cloth,
                   .edges = options_.edges && cloth.vertices.rows() <= most_vertices_with_edges,
                   .xray = options_.xray,
-                  .floor = floor_};
+                  .floor = floor_,
+                  .colours = options_.colours};
   if (const auto seams = seams_.find(cloth.triangles.rows()); seams != seams_.end())
     drawing.seams = seams->second;
   for (const TriangleMesh& obstacle : obstacles_) drawing.obstacles.push_back(&obstacle);

@@ -22,6 +22,7 @@ struct PictureOptions {
   bool outline = false;  ///< draw the outline of the method's coarsest state: for exports
   bool xray = false;     ///< let obstacles show faintly through the cloth
   bool edges = true;     ///< of coarse meshes
+  Colours colours = {};
 };
 
 /// What a run's pictures have in common: its final states and obstacles, the floor, and one camera around

@@ -244,8 +244,10 @@ void check_options(const fs::path& file, const ExportOptions& options) {
   if (!options.uv_unit.empty() && (!of_mesh || options.as_read))
     throw std::runtime_error("--uv-unit is of a .obj or .ply without --as-read");
   const PictureOptions& picture = options.picture;
-  if (extension != ".png" && (picture.width || picture.direction || picture.outline || picture.xray))
-    throw std::runtime_error("--width, --view, --outline and --xray are of pictures; take .png");
+  if (extension != ".png" && (picture.width || picture.direction || picture.outline || picture.xray ||
+                              picture.colours.cloth || picture.colours.dark))
+    throw std::runtime_error(
+        "--width, --view, --outline, --xray, --colour and --dark are of pictures; take .png");
 }
 
 }  // namespace

@@ -179,6 +179,17 @@ TEST_CASE("an obstacle shows through cloth under X-rays alone") {
   CHECK(std::abs(taken(false, {0.5, 0.5, 0.3})) <= 2);
 }
 
+TEST_CASE("a cloth has its colour before a light or a dark backdrop") {
+  const TriangleMesh cloth = dome(12);
+  const Camera camera = above(cloth);
+  const Image blue =
+      render({.mesh = cloth, .colours = {Eigen::Vector3f(0.2f, 0.3f, 0.8f), true}}, camera, 80, 80);
+  const Eigen::Vector3i top = colour_at(blue, pixel_of({0.5, 0.5, 0.3}, camera, blue));
+  CHECK(top[2] > 1.5 * top[0]);
+  CHECK(brightness(blue, {0, 0}) < 150);
+  CHECK(brightness(render({.mesh = cloth}, camera, 80, 80), {0, 0}) > 700);
+}
+
 TEST_CASE("edges are drawn where asked for") {
   const TriangleMesh sheet = unit_sheet();
   const Camera camera = above(sheet);
