@@ -97,6 +97,10 @@ struct BlockMatrix {
   const double* block(int b) const { return values.data() + 9 * static_cast<std::size_t>(b); }
   /// y = A x for n×3 x and y.
   void multiply(const Positions& x, Positions& y) const;
+
+ private:
+  /// Adds to rows [begin, end) of y, zero before, those of A x.
+  void multiply_rows(int begin, int end, const Positions& x, Positions& y) const;
 };
 
 /// The whole matrix (3n×3n), for small ones.

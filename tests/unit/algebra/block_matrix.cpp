@@ -5,6 +5,7 @@
 #include <set>
 
 #include "core/numerics/linear_algebra/galerkin.h"
+#include "tests/support/any_threads.h"
 #include "tests/support/evaluate.h"
 #include "tests/support/random_block_matrix.h"
 
@@ -47,6 +48,18 @@ TEST_CASE("A block matrix is multiplied as a dense one is, in place too") {
   CHECK(x == y);
   matrix.set_zero();
   CHECK(dense(matrix).norm() == 0);
+}
+
+TEST_CASE("A block matrix multiplies with the same bits on any number of threads") {
+  const int n = 4000;
+  const BlockMatrix matrix = random_matrix(n, tangle(n, 6000, 4), 6);
+  REQUIRE(matrix.pattern->blocks() > 30000);
+  const Positions x = Positions::Random(n, 3);
+  same_with_any_threads([&] {
+    Positions y;
+    matrix.multiply(x, y);
+    return y;
+  });
 }
 
 TEST_CASE("Misuse of block matrices is named") {
