@@ -36,6 +36,15 @@ const otherRuns = {
 const garmentRuns = Object.fromEntries(['tshirt', 'shirt', 'skirt', 'trousers'].map(name => [name, [path.join(runs, `my_${name}.yaml`)]]));
 const heldAtWaist = ['skirt', 'trousers'];
 
+/// Of the cloth, in pictures that are drawn before a light and a dark backdrop.
+const colours = {
+  tablecloth: 'a63d40', bunny_shawl: '3f8f8b', armadillo: 'c98a2b', cube: '3a6ea5', materials_6: '8e5572', pinned_square: '6f8f5a',
+  ribbon: 'c23b3b', cusick: 'b9b4a8', handkerchief: 'e3e0d8', curtain: 'c7a94f', tshirt: 'd9734e', shirt: '86a8cf', skirt: '7d4a78',
+  trousers: '44546f',
+};
+const backdrops = [{suffix: '', options: [], page: '#fbfbfb', text: '#1b2027'},
+  {suffix: '_dark', options: ['--dark'], page: '#171b21', text: '#e6e9ee'}];
+
 const build = execFileSync(path.join(process.env.DRAPE_BIN, 'drape'), ['--version'], {encoding: 'utf8'}).match(/\((.*)\)/)[1];
 
 function hasRun(results) {
@@ -88,12 +97,19 @@ async function still(results, name, width, ...options) {
   execFileSync('cwebp', ['-quiet', '-q', '92', '-resize', String(width), '0', file, '-o', path.join(here, `${name}.webp`)]);
 }
 
+/// Before both backdrops, in a scene's own colour.
+async function coloured(scene, name, width, ...options) {
+  for (const backdrop of backdrops)
+    await still(resultsOf(scene), name + backdrop.suffix, width, '--colour', colours[scene], ...backdrop.options, ...options);
+}
+
 /// The finest states of the gallery, some from a side that shows more than the report's.
 async function gallery() {
   const views = {bunny_shawl: '--view=-0.5,-1,0.6', ribbon: '--view=0.3,-1,0.5'};
-  for (const name of Object.keys(galleryRuns))
-    await still(resultsOf(name), name, name === 'bunny_shawl' ? 640 : 480, ...(views[name] ? [views[name]] : []));
-  await still(resultsOf('bunny_shawl'), 'bunny_shawl_l0', 640, views.bunny_shawl, '--level', '0');
+  for (const name of Object.keys(galleryRuns).filter(name => name !== 'folded'))
+    await coloured(name, name, name === 'bunny_shawl' ? 640 : 480, ...(views[name] ? [views[name]] : []));
+  await still(resultsOf('folded'), 'folded', 480);
+  await coloured('bunny_shawl', 'bunny_shawl_l0', 640, views.bunny_shawl, '--level', '0');
 }
 
 /// Levels beside each other in pages: the coarsest and the finest of the sphere, all of the locking's, previews at lone pins and their end.
@@ -108,7 +124,7 @@ async function levels() {
 }
 
 async function garments() {
-  for (const name of Object.keys(garmentRuns)) await still(resultsOf(name), name, name === 'tshirt' ? 640 : 480);
+  for (const name of Object.keys(garmentRuns)) await coloured(name, name, name === 'tshirt' ? 640 : 480);
 }
 
 const seconds = s => s < 9.95 ? s.toFixed(1) : s.toFixed(0);
@@ -117,9 +133,14 @@ const thousands = n => (n / 1000).toFixed(n < 9950 ? 1 : 0);
 /// The snapshots of the tablecloth as an animation that rests at the end of every level. Each frame has its clock and its number of
 /// vertices, and the last one those of all levels.
 async function progression() {
+  for (const backdrop of backdrops) await animation(backdrop);
+}
+
+async function animation(backdrop) {
   const results = resultsOf('tablecloth');
   const all = JSON.parse(fs.readFileSync(path.join(results, 'results.json'), 'utf8')).methods.pcs.levels;
-  await run(folder, 'export', results, '--to', 'frame.png', '--frames', '--width', '1280', '--view=0.5,-1,0.5');
+  await run(folder, 'export', results, '--to', 'frame.png', '--frames', '--width', '1280', '--view=0.5,-1,0.5',
+    '--colour', colours.tablecloth, '--overwrite', ...backdrop.options);
   const names = fs.readdirSync(folder).filter(name => /^frame_.*png$/.test(name)).sort();
   const page = await newPage({viewport: {width: 640, height: 700}});
   const frames = [], ends = [];
@@ -131,17 +152,17 @@ async function progression() {
       const name = names.shift();
       const label = end && ends.length === all.length ? ends.join(' … ') + ' vertices' : `${clock}, ${count} vertices`;
       fs.writeFileSync(path.join(folder, 'frame.html'), `<!DOCTYPE html><meta charset="utf-8"><style>
-        body { margin: 0; background: #fbfbfb; }
+        body { margin: 0; background: ${backdrop.page}; }
         main { position: relative; width: 640px; height: 498px; overflow: hidden; }
         img { display: block; width: 640px; }
-        p { position: absolute; left: 14px; top: 8px; margin: 0; color: #1b2027; font: 600 22px "Noto Sans", "DejaVu Sans", sans-serif; }
+        p { position: absolute; left: 14px; top: 8px; margin: 0; color: ${backdrop.text}; font: 600 22px "Noto Sans", "DejaVu Sans", sans-serif; }
         </style><main><img src="${name}"><p>${label}</p></main>`);
       await page.goto('file://' + path.join(folder, 'frame.html'));
       await page.locator('main').screenshot({path: path.join(folder, `drawn_${name}`)});
       frames.push('-d', String(end ? (ends.length === all.length ? 4000 : 1500) : 200), `drawn_${name}`);
     }
   }
-  execFileSync('img2webp', ['-loop', '0', '-lossy', '-q', '74', '-m', '6', ...frames, '-o', path.join(here, 'tablecloth.webp')],
+  execFileSync('img2webp', ['-loop', '0', '-lossy', '-q', '74', '-m', '6', ...frames, '-o', path.join(here, `tablecloth${backdrop.suffix}.webp`)],
     {cwd: folder, stdio: 'pipe'});
 }
 

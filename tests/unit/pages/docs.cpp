@@ -95,7 +95,8 @@ TEST_CASE("the pages have every exit code, and speak of messages that there are"
 TEST_CASE("every link between the pages leads somewhere") {
   int links = 0, fragments = 0;
   for (const fs::path& page : pages_and_readmes())
-    for (const auto& link : matches_in(pages::text_of(page), "\\]\\(([^)#]*)(#([^)]*))?\\)")) {
+    for (const auto& link :
+         matches_in(pages::text_of(page), "(?:\\]\\(|src(?:set)?=\")([^)#\"]*)(#([^)]*))?[)\"]")) {
       const std::string &target = link[1], &fragment = link[3];
       if (target.starts_with("http")) continue;
       const fs::path file = target.empty() ? page : page.parent_path() / target;
@@ -137,8 +138,9 @@ TEST_CASE("docs/README.md is the map of every page, and a page shows every pictu
     const std::string name = fs::relative(file, folders::source() / "docs").generic_string();
     INFO(name);
     if (name == "README.md") continue;
-    const bool found = file.extension() == ".md" ? map.find("](" + name + ")") != map.npos
-                                                 : all.find(name + ")") != all.npos;
+    const bool found = file.extension() == ".md"
+                           ? map.find("](" + name + ")") != map.npos
+                           : all.find(name + ")") != all.npos || all.find(name + "\"") != all.npos;
     CHECK(found);
   }
 }
