@@ -10,12 +10,14 @@ import sys
 import tempfile
 
 import numpy
+import pandas
 import pytest
 
 import drape
 from conftest import SMALL_FILE, command
 
 pytest.importorskip("matplotlib")
+from drape import paper_sweep  # noqa: E402
 from drape.paper import _cell  # noqa: E402
 
 SWEEP = f"name: two\nbase: {SMALL_FILE}\nseeds: [1, 2]\nmethods: [pcs, newton]\n"
@@ -194,6 +196,23 @@ def test_scenes_are_not_joined_and_stand_in_the_order_of_the_file(written, swept
     assert [row["refiner"] for row in rows] == ["midpoint", "loop"] * 2
     reference = [row for row in rows if row["method"] == "newton"]
     assert all(row["reference"] == "2" and row["median"] == "" for row in reference) and ">reference<" in files["error_rms_by_refiner.svg"].read_text()
+
+
+def test_only_an_error_is_absent_because_its_method_is_the_reference():
+    row = {"scene": "square", "method": "newton", "starts": 3, "converged": "3 of 3", "reference": 1, "smallest_gap": None, "error_rms": None}
+    summary, look = pandas.DataFrame([row]), {"newton": {"color": "black", "marker": "o", "linestyle": "-"}}
+    for measure, why in (("error_rms", "reference"), ("smallest_gap", "--")):
+        figure, _ = paper_sweep.measure_figure(summary, measure, measure, "scene", paper_sweep.Keys({"scene": ""}), look)
+        assert [text.get_text() for text in figure.axes[0].texts] == [why]
+
+
+def test_numbers_are_written_where_there_is_room_and_the_reference_is_named(written, swept):
+    files = written(swept("ablation: {grid: {refiner: [midpoint, loop]}}"))
+    numbers = {paper_sweep.digits(float(row["median"])) for row in rows_of(files["iterations_by_refiner.csv"])}
+    assert all(f">{number}<" in files["iterations_by_refiner.svg"].read_text() for number in numbers)
+    for cost in ("seconds", "iterations"):
+        assert ">reference: newton in 2 of 2<" in files[f"distance_over_{cost}.svg"].read_text()
+    assert re.search(r">0\.\d+K vertices, [\d.e-]+ CPU s<", files["pictures.svg"].read_text())
 
 
 def test_a_sweep_from_python_is_that_of_the_command_and_runs_what_is_missing(tmp_path):

@@ -22,19 +22,17 @@ from .result import read_run, read_sweep
 COLUMNS = {"preview_seconds": "preview [s]", "seconds": "end [s]", "cpu_seconds": "CPU time [s]", "iterations": "Newton iterations",
            "preview_rms": "preview error [diagonal]", "error_rms": "error [diagonal]",
            "energy_released": "energy released [J]", "intersections": "intersections"}
+TOLD = ("energy_released", "intersections")  # by the table alone: methods differ in digits that no plot shows
 ESCAPES = str.maketrans({c: "\\" + c for c in "&%$#_{}"} | {"\\": r"\textbackslash{}", "~": r"\textasciitilde{}", "^": r"\textasciicircum{}"})
 
 
 def _digits(value: float) -> str:
-    text = f"{value:.3g}"
-    if "e" not in text:
-        return text
-    digits, power = text.split("e")
-    return rf"${digits}\cdot10^{{{int(power)}}}$"
+    text, *power = paper_sweep.digits(value).split("e")
+    return rf"${text}\cdot10^{{{int(power[0])}}}$" if power else text
 
 
 def _latex_cell(name: str, row) -> str:
-    spread, reference = row[name], row["reference"] if name.startswith("error_") else 0
+    spread, reference = row[name], row["reference"] if paper_sweep.is_error(name) else 0
     if not isinstance(spread, dict):
         return "reference" if reference else "--"
     median, low, high = (_digits(spread[part]) for part in ("median", "low", "high"))
@@ -114,9 +112,9 @@ def _sweep_figures(folder: pathlib.Path, table: dict, out: pathlib.Path, measure
     files, keys = [], _varied(table)
     names = paper_sweep.Keys({key: table["units"].get(key, "") for key in keys}, table["summary"])
     summary = pandas.DataFrame(row for row in table["summary"] if row["method"] and (not methods or row["method"] in methods))
-    styles, order = paper_sweep.styles_of(summary), list(dict.fromkeys(summary["method"]))
+    styles = paper_sweep.styles_of(summary)
     busy = any(row.get("machine") == "busy" for row in table["rows"])
-    columns = measures or [name for name in COLUMNS if name in summary and summary[name].notna().any()]
+    columns = measures or [name for name in COLUMNS if name not in TOLD and name in summary and summary[name].notna().any()]
     for name in columns:
         title = COLUMNS.get(name, name.replace("_", " ")) + (", on a busy machine" if busy and name in ("seconds", "preview_seconds") else "")
         for key in keys:
@@ -127,10 +125,12 @@ def _sweep_figures(folder: pathlib.Path, table: dict, out: pathlib.Path, measure
     for run in json.loads((folder / "sweep.json").read_text(encoding="utf-8"))["runs"]:
         if (folder / run["folder"] / "results.json").exists() and run["name"] in titles:
             runs.setdefault(titles[run["name"]], []).append(read_run(folder / run["folder"]))
-    drawn: dict = {f"distance_over_{cost}": paper_sweep.distance_figure(runs, cost, order, styles, width, busy) for cost in ("seconds", "iterations")}
-    drawn["pictures"] = paper_sweep.pictures_figure(runs, order, width)
-    for name, pair in drawn.items():
-        files += _save(pair[0], pair[1], out / name) if pair else []
+    references = {title: ", ".join(f"{row['method']} in {row['reference']} of {row['starts']}" for _, row in summary.iterrows()
+                                   if row["variation"] == variation and row["reference"]) for variation, title in titles.items()}
+    drawn = paper_sweep.draw_states(runs, list(styles), width)
+    for name, pair in (*((f"distance_over_{cost}", paper_sweep.distance_figure(runs, cost, styles, references, drawn, width, busy))
+                         for cost in ("seconds", "iterations")), ("pictures", paper_sweep.pictures_figure(drawn, styles, width))):
+        files += _save(*pair, out / name) if pair else []
     return files
 
 

@@ -12,9 +12,9 @@ LINES = ("-", "--", ":", "-.")
 COSTS = {"seconds": "time [s]", "iterations": "Newton iterations", "flops": "floating-point operations"}
 
 
-# What a page of a journal asks for: small type that stays type, thin lines, no frame, vectors. A style of the reader's own counts
+# What a page of a journal asks for: small type that is the text's and stays type, thin lines, no frame, vectors. A style of the reader's own counts
 # first, whether from matplotlib's matplotlibrc or by --style.
-STYLE = {"font.size": 8, "axes.titlesize": 8, "axes.labelsize": 8, "xtick.labelsize": 7, "ytick.labelsize": 7, "legend.fontsize": 8,
+STYLE = {"font.family": ["STIXGeneral", "DejaVu Sans"], "mathtext.fontset": "stix", "font.size": 8, "axes.titlesize": 8, "axes.labelsize": 8, "xtick.labelsize": 7, "ytick.labelsize": 7, "legend.fontsize": 8,
          "axes.spines.top": False, "axes.spines.right": False, "axes.linewidth": 0.6, "lines.linewidth": 1.2, "grid.linewidth": 0.4,
          "grid.color": "#d9d9d9", "axes.grid": True, "axes.axisbelow": True, "legend.frameon": False, "figure.dpi": 150, "savefig.dpi": 300,
          "pdf.fonttype": 42, "svg.fonttype": "none", "svg.hashsalt": "drape", "figure.constrained_layout.use": True}
@@ -55,6 +55,13 @@ def _look(result, method: str) -> dict:
     return style_of({name: result[name].solver for name in result.methods}, method)
 
 
+def error_title(column: str) -> str:
+    """What a column of errors.csv is, with its unit."""
+    target, measure = column.split("_", 1)
+    words = {"rms": "RMS distance", "hausdorff": "Hausdorff distance"}.get(measure, measure.replace("_", " "))
+    return words + (" from its own end" if target == "own" else " from the reference") + (" [diagonal]" if words.endswith("distance") else "")
+
+
 def measures_of(errors, target: str) -> list[str]:
     """The measures in which a run's errors.csv has errors against the target, "own" or "reference"."""
     names = [name for name in errors if name.startswith(target + "_")]
@@ -82,7 +89,7 @@ def plot_errors(result, measure: str = "", target: str = "reference", cost: str 
     for method in result.methods:
         rows = table[(table["method"] == method) & (table["level"] >= first.get(method, 0))]
         axes.plot(rows[cost], rows[column], markersize=4, label=method, **_look(result, method))
-    axes.set(xlabel=COSTS[cost], ylabel=column, xscale="log", yscale="log")
+    axes.set(xlabel=COSTS[cost], ylabel=error_title(column), xscale="log", yscale="log")
     axes.legend()
     return axes
 
