@@ -20,7 +20,7 @@ const withUnit = ({name, label, unit}) => (label || name) + (unit && unit !== '1
 export function describe(name, {measures = [], metrics = {}} = {}) {
   const metric = ['state', 'pair'].flatMap(scope => metricColumns(metrics, scope)).find(column => column.name === name);
   const measure = measures.find(m => name === 'preview_' + m.name || name === 'error_' + m.name || name === m.name && m.name === 'energy_gap');
-  const text = titles[name] || (measure ? (name.startsWith('preview_') ? 'preview error: ' : 'error: ') + measure.label : metric ? withUnit(metric) : name);
+  const text = titles[name] || (measure ? (name.startsWith('preview_') ? 'preview from its own end: ' : 'end from the reference: ') + measure.label : metric ? withUnit(metric) : name);
   return {text, ofReference: !!measure && !name.startsWith('preview_'), title: titles[name] || (!measure && !metric) ? text : formula(text)};
 }
 

@@ -95,15 +95,16 @@ function table(all) {
   all.redraw.push(draw);
   return h('section', {id: 'summary'}, h('h2', {}, 'All runs'), all.seeds.length > 1 ? h('p', {class: 'note', id: 'bold'}, all.table.bold) : null, references(all),
     explained('A row per method and variation: the median over all starts that converged, with the range; n where it is not all of them; or a row per method and run. ' +
-    'Time counts the levels that the end builds on. Times and energies of different physics do not compare. Its keys in the ' +
+    'Distances are in diagonals of the cloth’s rest shape. Time counts the levels that the end builds on. Times and energies of different physics do not compare. Its keys in the ' +
     `experiment are ${all.model_keys.join(', ')}; the start’s noise is not part of it.`),
     all.seeds.length > 1 ? h('p', {class: 'controls'}, tick('medians over starts', true, on => { Object.assign(state, {medians: on, table: {}}); draw(); }, 'medians')) : null, frame);
 }
 
 function references(all) {
-  const own = unique(all.runs.map(run => run.reference).filter(name => name)).map(name =>
-    `${name} in ${all.runs.filter(run => run.reference === name).length} of ${counted(all.runs.length, 'run')}`);
-  return own.length ? h('p', {class: 'note', id: 'references'}, `The reference of errors is the end of ${own.join(', ')}.`) : null;
+  const own = unique(all.runs.map(run => run.reference?.method).filter(name => name)).map(name =>
+    `${name} in ${all.runs.filter(run => run.reference?.method === name).length} of ${counted(all.runs.length, 'run')}`);
+  const lowest = all.runs.some(run => run.reference?.chosen === 'lowest') ? ', of each run the one of lowest energy' : '';
+  return own.length ? h('p', {class: 'note', id: 'references'}, `The reference is the end of ${own.join(', ')}${lowest}.`) : null;
 }
 
 function failures(all) {
@@ -130,7 +131,7 @@ export function sweepPage(data) {
   all.keyText = (key, value) => typeof value === 'string' && ['run', 'sweep', 'experiment'].includes(key) ? value : `${plain(key)} ${written(value, units[key])}`;
   all.keyNames = Object.fromEntries(all.keys.map(key => [key, all.keyTitle(key)]));
   const numeric = columns.filter(name => !varied.includes(name) && name !== 'seed' && all.rows.some(row => typeof row[name] === 'number'));
-  all.quantity = numeric.includes('seconds') ? 'seconds' : numeric[0];
+  all.quantity = [all.rows.some(row => row.machine === 'busy') ? 'cpu_seconds' : 'seconds', numeric[0]].find(name => numeric.includes(name));
   all.chooser = choice('value', Object.fromEntries(numeric.map(name => [name, describe(name, all.of).text])), all.quantity, value => {
     all.quantity = value;
     all.redraw.forEach(draw => draw());

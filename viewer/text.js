@@ -26,7 +26,7 @@ export function number(value) {
   if (value === null || value === undefined || !isFinite(value)) return '–';
   if (value === 0) return '0';
   const [digits, power] = value.toExponential(2).split('e').map(Number), places = Math.max(0, 2 - power);
-  return power < -2 || power > 3 ? digits.toFixed(2) + 'e' + power : Number(value.toPrecision(3)).toFixed(places);
+  return power < -3 || power > 3 ? digits.toFixed(2) + 'e' + power : Number(value.toPrecision(3)).toFixed(places);
 }
 export const count = value => value === null || value === undefined ? '–' : Math.round(value).toLocaleString('en').replace(/,/g, '\u202f');
 /// "3.8 s", for reading.

@@ -102,10 +102,9 @@ Json run_json(const RunRecord& run, const fs::path& from) {
       {"errors", csv_json(run.data ? run.data->errors : Csv())},
       {"first_levels", Json::object()}};
   if (!run.data) return entry;
-  entry["reference"] = run.data->reference;
   for (const MethodRecord& method : run.data->methods)
     entry["first_levels"][method.name] = method.first_level();
-  for (const char* about : {"version", "commit", "machine", "ended"})
+  for (const char* about : {"version", "commit", "machine", "ended", "reference"})
     entry[about] = member_of(run.data->results, about);
   return entry;
 }

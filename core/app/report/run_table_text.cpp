@@ -128,7 +128,7 @@ std::string number_text(const OptionalNumber& value) {
   const std::string text = scientific_text(*value, 2);
   const std::size_t e = text.find('e');
   const int exponent = std::stoi(text.substr(e + 1));
-  if (exponent < -2 || exponent > 3) return text.substr(0, e) + "e" + std::to_string(exponent);
+  if (exponent < -3 || exponent > 3) return text.substr(0, e) + "e" + std::to_string(exponent);
   return fixed_text(parse_number(text).value(), std::max(0, 2 - exponent));
 }
 
