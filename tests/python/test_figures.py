@@ -50,11 +50,12 @@ def written(tmp_path):
 
 def check_latex(text):
     """The subset of LaTeX with booktabs that a table may be made of: what is checked here compiles."""
-    assert set(re.findall(r"\\[a-zA-Z]+", text)) <= {r"\begin", r"\end", r"\toprule", r"\midrule", r"\bottomrule", r"\textbf", r"\par", r"\smallskip", r"\footnotesize", r"\cdot"}
+    assert set(re.findall(r"\\[a-zA-Z]+", text)) <= {r"\begin", r"\end", r"\toprule", r"\midrule", r"\bottomrule", r"\textbf", r"\par", r"\smallskip", r"\footnotesize",
+                                                   r"\scriptsize", r"\shortstack", r"\addlinespace", r"\cdot"}
     columns, body = re.search(r"\\begin{tabular}{([lr]+)}\n(.*)\n\\end{tabular}\n", text, re.DOTALL).groups()
-    rows = [line for line in body.split("\n") if not line.endswith("rule")]
+    rows = [line for line in body.split("\n") if not line.startswith("\\") or line.startswith(r"\shortstack")]
     assert len(rows) > 1 and all(line.endswith(r" \\") and len(re.findall(r"(?<!\\)&", line)) == len(columns) - 1 for line in rows)
-    plain = re.sub(r"\\[&%$#_{}]", "", text)
+    plain = re.sub(r"\\[\\&%$#_{}]", "", text)
     assert plain.count("{") == plain.count("}") and plain.count("$") % 2 == 0
     assert not re.search(r"[%#_^]", re.sub(r"\$[^$]*\$", "", plain))
     if shutil.which("kpsewhich") and not subprocess.run(["kpsewhich", "booktabs.sty"], stdout=subprocess.DEVNULL).returncode:
@@ -144,6 +145,8 @@ def test_a_sweep_is_one_table_and_has_figures(written, swept):
             "distance_over_seconds.pdf", "distance_over_iterations.csv"} <= set(files)
     drawn = rows_of(files["seconds_by_step_growth.csv"])
     assert len(drawn) == 4 and all(float(row["low"]) <= float(row["median"]) <= float(row["high"]) and row["count"] == "2" for row in drawn)
+    captions = files["figures.tex"].read_text()
+    assert set(re.findall(r"{([^{}]+\.pdf)}", captions)) == {name for name in files if name.endswith(".pdf")} and "Measured by drape " in captions
     assert "Bold: " in files["table.tex"].read_text() or r"\textbf" not in files["table.tex"].read_text()
     rows = rows_of(files["table.csv"])
     assert len(rows) == 8 and {float(row["newton.step_growth"]) for row in rows} == {1.5, 3}

@@ -11,18 +11,19 @@ import pathlib
 import re
 import sys
 import tempfile
+import textwrap
 
 import pandas
 
 from . import _core, paper_sweep
-from .plots import measures_of, use_style
+from .plots import COSTS, measures_of, use_style
 from .result import read_run, read_sweep
 
 # Columns of the LaTeX table and figures, beside what tells their rows apart, in order, as far as the runs have them.
-COLUMNS = {"preview_seconds": "preview [s]", "seconds": "end [s]", "cpu_seconds": "CPU time [s]", "iterations": "Newton iterations",
-           "preview_rms": "preview error [diagonal]", "error_rms": "error [diagonal]",
+COLUMNS = {"vertices": "vertices", "preview_seconds": "preview [s]", "seconds": "end [s]", "cpu_seconds": "CPU time [s]", "iterations": "Newton iterations",
+           "preview_rms": "preview from its end [diagonal]", "error_rms": "end from the reference [diagonal]",
            "energy_released": "energy released [J]", "intersections": "intersections"}
-TOLD = ("energy_released", "intersections")  # by the table alone: methods differ in digits that no plot shows
+TOLD = ("vertices", "energy_released", "intersections")  # by the table alone: methods differ in digits that no plot shows
 ESCAPES = str.maketrans({c: "\\" + c for c in "&%$#_{}"} | {"\\": r"\textbackslash{}", "~": r"\textasciitilde{}", "^": r"\textasciicircum{}"})
 
 
@@ -31,15 +32,20 @@ def _digits(value: float) -> str:
     return rf"${text}\cdot10^{{{int(power[0])}}}$" if power else text
 
 
-def _latex_cell(name: str, row) -> str:
-    spread, reference = row[name], row["reference"] if paper_sweep.is_error(name) else 0
+def _latex_cell(name: str, row) -> tuple[str, str]:
+    """The median, and what stands below it."""
+    spread = row[name]
     if not isinstance(spread, dict):
-        return "reference" if reference else "--"
+        return "reference" if paper_sweep.is_error(name) and row["reference"] else "--", ""
     median, low, high = (_digits(spread[part]) for part in ("median", "low", "high"))
-    text = median if low == high else f"{median} ({low} -- {high})"
-    text = rf"\textbf{{{text}}}" if name in row["best"] else text
-    notes = [f"$n={spread['count']}$"] * (spread["count"] < row["starts"]) + [f"reference in {reference}"] * bool(reference)
-    return ", ".join([text, *notes])
+    parts = [median, f"{low}--{high}" if low != high else ""]
+    notes = [f"$n={spread['count']}$"] * (spread["count"] < row["starts"])
+    median, spread = (rf"\textbf{{{part}}}" if part and name in row["best"] else part for part in parts)
+    return median, rf"{{\scriptsize {', '.join(filter(None, [spread, *notes]))}}}" if spread or notes else ""
+
+
+def _title(measure: str) -> str:
+    return COLUMNS.get(measure, measure.replace("_", " "))
 
 
 def _varied(table: dict) -> list[str]:
@@ -49,21 +55,29 @@ def _varied(table: dict) -> list[str]:
     return keys or (["variation"] if summary["variation"].nunique() > 1 else [])
 
 
-def latex_table(table: dict) -> str:
-    """Medians over the starts that converged, with ranges, for the package booktabs; what is bold is the pages' choice."""
+def latex_table(table: dict, measures=(), machine: str = "") -> str:
+    """Medians over the starts that converged, with ranges below, for the package booktabs; what is bold is the pages' choice."""
     summary, keys = pandas.DataFrame(table["summary"]), _varied(table)
     names = paper_sweep.Keys({key: table["units"].get(key, "") for key in keys}, table["summary"])
-    columns = {name: title for name, title in COLUMNS.items() if name in summary and summary[name].notna().any()}
-    head = [*(names.title(key) for key in keys), "method", "converged", *columns.values()]
-    lines = [rf"\begin{{tabular}}{{{'l' * (len(keys) + 1)}{'r' * (len(columns) + 1)}}}", r"\toprule",
-             " & ".join(name.translate(ESCAPES) for name in head) + r" \\", r"\midrule"]
+    columns = {name: _title(name) for name in measures or COLUMNS if name in summary and summary[name].notna().any()}
+    has_reference = bool(summary["reference"].any())
+    head = [*(names.title(key) for key in keys), "method", "converged", *["reference"] * has_reference, *columns.values()]
+    stacked = [rf"\shortstack[r]{{{textwrap.fill(title, 14)}}}".replace("\n", r"\\{}") if len(title) > 14 else title for title in (each.translate(ESCAPES) for each in head)]
+    lines = [rf"\begin{{tabular}}{{{'l' * (len(keys) + 1)}{'r' * (len(head) - len(keys) - 1)}}}", r"\toprule", " & ".join(stacked) + r" \\"]
+    former: list = []
     for _, row in summary.iterrows():
-        cells = [names.value(key, row[key]).translate(ESCAPES) for key in keys] + [row["method"].translate(ESCAPES) or "--", row["converged"]]
-        lines.append(" & ".join(cells + [_latex_cell(name, row) for name in columns]) + r" \\")
+        where = [names.value(key, row[key]).translate(ESCAPES) for key in keys]
+        lines.append(r"\midrule" if where[:1] != former[:1] or not former else r"\addlinespace")
+        said = [word if where[:k + 1] != former[:k + 1] else "" for k, word in enumerate(where)]
+        medians, below = zip(*(_latex_cell(name, row) for name in columns)) if columns else ((), ())
+        lines.append(" & ".join([*said, row["method"].translate(ESCAPES) or "--", row["converged"], *([f"{row['reference']} of {row['starts']}"] * has_reference), *medians]) + r" \\")
+        lines += [" & ".join([""] * (len(head) - len(columns)) + list(below)) + r" \\"] if any(below) else []
+        former = where
     timed = [row for row in table["rows"] if row["method"]]
     busy = sum(row["machine"] == "busy" for row in timed)
     notes = ["Medians over the starts that converged, with ranges; $n$ where it is not all of them."]
     notes += [table["bold"].translate(ESCAPES)] if any(summary["best"].map(len)) else []
+    notes += [machine.translate(ESCAPES)] if machine else []
     notes += [f"The machine was busy during {busy} of {len(timed)} timings."] if busy else []
     return "\n".join([*lines, r"\bottomrule", r"\end{tabular}", r"\par\smallskip{\footnotesize " + " ".join(notes) + "}", ""])
 
@@ -107,30 +121,53 @@ def _run_figures(folder: pathlib.Path, out: pathlib.Path) -> list[pathlib.Path]:
     return files
 
 
-def _sweep_figures(folder: pathlib.Path, table: dict, out: pathlib.Path, measures, methods, width, log) -> list[pathlib.Path]:
-    """Each measure against each varied key; distance against time and iterations; previews and ends side by side."""
-    files, keys = [], _varied(table)
+def _measured_by(folders) -> str:
+    """The program and the machines of runs, as results.json has them, in a sentence for tables and captions."""
+    said = []
+    for folder in folders:
+        record = json.loads((folder / "results.json").read_text(encoding="utf-8"))
+        machine = record.get("machine") or {}
+        parts = (f"{record.get('version', 'drape')} ({str(record.get('commit', ''))[:8]})", machine.get("cpu"), f"{machine.get('threads')} thread" + "s" * (machine.get("threads") != 1))
+        said.append(", ".join(map(str, filter(None, parts))))
+    return f"Measured by {'; '.join(dict.fromkeys(said))}."
+
+
+def _sweep_figures(table: dict, run_folders: dict, out: pathlib.Path, measures, methods, width, log, machine: str) -> list[pathlib.Path]:
+    """Each measure against each varied key; distance against time and iterations; previews and ends side by side; and, in
+    figures.tex, all of them with their captions."""
+    files, captions, keys = [], [], _varied(table)
     names = paper_sweep.Keys({key: table["units"].get(key, "") for key in keys}, table["summary"])
     summary = pandas.DataFrame(row for row in table["summary"] if row["method"] and (not methods or row["method"] in methods))
     styles = paper_sweep.styles_of(summary)
     busy = any(row.get("machine") == "busy" for row in table["rows"])
-    columns = measures or [name for name in COLUMNS if name not in TOLD and name in summary and summary[name].notna().any()]
-    for name in columns:
-        title = COLUMNS.get(name, name.replace("_", " ")) + (", on a busy machine" if busy and name in ("seconds", "preview_seconds") else "")
+
+    def save(made, name: str, caption: str) -> None:
+        figure, rows = made
+        files.extend(_save(figure, rows, _file(out, name)))
+        captions.append(rf"\begin{{figure}}\centering\includegraphics[width={figure.get_figwidth() / paper_sweep.MILLIMETRE:.0f}mm]{{{_file(out, name).name}.pdf}}"
+                        rf"\caption{{{(caption + ' ' + machine).translate(ESCAPES)}}}\end{{figure}}")
+
+    for name in measures or [name for name in COLUMNS if name not in TOLD and name in summary and summary[name].notna().any()]:
+        title = _title(name) + (", on a busy machine" if busy and name in ("seconds", "preview_seconds") else "")
         for key in keys:
-            figure, rows = paper_sweep.measure_figure(summary, name, title, key, names, styles, width, log)
-            files += _save(figure, rows, _file(out, f"{name}_by_{names.short(key)}"))
+            save(paper_sweep.measure_figure(summary, name, title, key, names, styles, width, log), f"{name}_by_{names.short(key)}",
+                 f"{title[0].upper() + title[1:]}, by {names.title(key)}: medians over the starts that converged, with ranges; n where it is not all of them.")
     titles = {row["variation"]: ", ".join(names.text(key, row[key]) for key in keys) or row["variation"] for _, row in summary.iterrows()}
     runs: dict = {}
-    for run in json.loads((folder / "sweep.json").read_text(encoding="utf-8"))["runs"]:
-        if (folder / run["folder"] / "results.json").exists() and run["name"] in titles:
-            runs.setdefault(titles[run["name"]], []).append(read_run(folder / run["folder"]))
+    for run, variation in run_folders.items():
+        if variation in titles:
+            runs.setdefault(titles[variation], []).append(read_run(run))
     references = {title: ", ".join(f"{row['method']} in {row['reference']} of {row['starts']}" for _, row in summary.iterrows()
                                    if row["variation"] == variation and row["reference"]) for variation, title in titles.items()}
     drawn = paper_sweep.draw_states(runs, list(styles), width)
-    for name, pair in (*((f"distance_over_{cost}", paper_sweep.distance_figure(runs, cost, styles, references, drawn, width, busy))
-                         for cost in ("seconds", "iterations")), ("pictures", paper_sweep.pictures_figure(drawn, styles, width))):
-        files += _save(*pair, out / name) if pair else []
+    for cost in ("seconds", "iterations"):
+        if made := paper_sweep.distance_figure(runs, cost, styles, references, drawn, width, busy):
+            save(made, f"distance_over_{cost}", f"Distance of each method's states against {COSTS[cost]}: medians over the starts, with bands from the lowest to the "
+                 "highest. Where a method's own end is the reference, its line falls to nothing. Pictures: the end from the first start.")
+    if made := paper_sweep.pictures_figure(drawn, styles, width):
+        save(made, "pictures", "Preview and end of each method from the first start, by one camera, with vertices and CPU time up to that state.")
+    files.append(out / "figures.tex")
+    files[-1].write_text("\n\n".join(captions) + "\n", encoding="utf-8")
     return files
 
 
@@ -164,9 +201,12 @@ def figures(results, out, overwrite: bool = False, *, measures=(), methods=(), w
         use_style(style, width)
         files = [pathlib.Path(made, "table.csv"), pathlib.Path(made, "table.tex")]
         rows.apply(lambda column: column.map(_cell)).to_csv(files[0], index=False)
-        files[1].write_text(latex_table(table), encoding="utf-8")
         of_run = (folder / "results.json").exists()
-        files += _run_figures(folder, pathlib.Path(made)) if of_run else _sweep_figures(folder, table, pathlib.Path(made), measures, methods, width, log)
+        runs = {folder: ""} if of_run else {folder / run["folder"]: run["name"] for run in json.loads((folder / "sweep.json").read_text(encoding="utf-8"))["runs"]
+                                            if (folder / run["folder"] / "results.json").exists()}
+        machine = _measured_by(runs)
+        files[1].write_text(latex_table(table, measures, machine), encoding="utf-8")
+        files += _run_figures(folder, pathlib.Path(made)) if of_run else _sweep_figures(table, runs, pathlib.Path(made), measures, methods, width, log, machine)
         written = [out / file.name for file in files]
         for target in written:
             _core._refuse_target(target, overwrite)
