@@ -62,15 +62,17 @@ def latex_table(table: dict, measures=(), machine: str = "") -> str:
     columns = {name: _title(name) for name in measures or COLUMNS if name in summary and summary[name].notna().any()}
     has_reference = bool(summary["reference"].any())
     head = [*(names.title(key) for key in keys), "method", "converged", *["reference"] * has_reference, *columns.values()]
-    stacked = [rf"\shortstack[r]{{{textwrap.fill(title, 14)}}}".replace("\n", r"\\{}") if len(title) > 14 else title for title in (each.translate(ESCAPES) for each in head)]
+    stacked = [textwrap.fill(title.translate(ESCAPES), 14).replace("\n", r"\\{}") for title in head]
+    stacked = [rf"\shortstack[r]{{{title}}}" if r"\\" in title else title for title in stacked]
     lines = [rf"\begin{{tabular}}{{{'l' * (len(keys) + 1)}{'r' * (len(head) - len(keys) - 1)}}}", r"\toprule", " & ".join(stacked) + r" \\"]
-    former: list = []
+    former: list | None = None
     for _, row in summary.iterrows():
         where = [names.value(key, row[key]).translate(ESCAPES) for key in keys]
-        lines.append(r"\midrule" if where[:1] != former[:1] or not former else r"\addlinespace")
-        said = [word if where[:k + 1] != former[:k + 1] else "" for k, word in enumerate(where)]
+        lines.append(r"\midrule" if former is None or where[:1] != former[:1] else r"\addlinespace")
+        said = [word if former is None or where[:k + 1] != former[:k + 1] else "" for k, word in enumerate(where)]
         medians, below = zip(*(_latex_cell(name, row) for name in columns)) if columns else ((), ())
-        lines.append(" & ".join([*said, row["method"].translate(ESCAPES) or "--", row["converged"], *([f"{row['reference']} of {row['starts']}"] * has_reference), *medians]) + r" \\")
+        said += [row["method"].translate(ESCAPES) or "--", row["converged"], *[f"{row['reference']} of {row['starts']}"] * has_reference]
+        lines.append(" & ".join([*said, *medians]) + r" \\")
         lines += [" & ".join([""] * (len(head) - len(columns)) + list(below)) + r" \\"] if any(below) else []
         former = where
     timed = [row for row in table["rows"] if row["method"]]
@@ -127,8 +129,9 @@ def _measured_by(folders) -> str:
     for folder in folders:
         record = json.loads((folder / "results.json").read_text(encoding="utf-8"))
         machine = record.get("machine") or {}
-        parts = (f"{record.get('version', 'drape')} ({str(record.get('commit', ''))[:8]})", machine.get("cpu"), f"{machine.get('threads')} thread" + "s" * (machine.get("threads") != 1))
-        said.append(", ".join(map(str, filter(None, parts))))
+        threads = machine.get("threads", 1)
+        parts = (f"{record.get('version', 'drape')} ({str(record.get('commit', ''))[:8]})", machine.get("cpu"), f"{threads} thread" + "s" * (threads != 1))
+        said.append(", ".join(filter(None, parts)))
     return f"Measured by {'; '.join(dict.fromkeys(said))}."
 
 
@@ -144,8 +147,8 @@ def _sweep_figures(table: dict, run_folders: dict, out: pathlib.Path, measures, 
     def save(made, name: str, caption: str) -> None:
         figure, rows = made
         files.extend(_save(figure, rows, _file(out, name)))
-        captions.append(rf"\begin{{figure}}\centering\includegraphics[width={figure.get_figwidth() / paper_sweep.MILLIMETRE:.0f}mm]{{{_file(out, name).name}.pdf}}"
-                        rf"\caption{{{(caption + ' ' + machine).translate(ESCAPES)}}}\end{{figure}}")
+        wide, text = figure.get_figwidth() / paper_sweep.MILLIMETRE, f"{caption} {machine}".translate(ESCAPES)
+        captions.append(rf"\begin{{figure}}\centering\includegraphics[width={wide:.0f}mm]{{{files[-1].stem}.pdf}}\caption{{{text}}}\end{{figure}}")
 
     for name in measures or [name for name in COLUMNS if name not in TOLD and name in summary and summary[name].notna().any()]:
         title = _title(name) + (", on a busy machine" if busy and name in ("seconds", "preview_seconds") else "")
@@ -179,7 +182,7 @@ def figures(results, out, overwrite: bool = False, *, measures=(), methods=(), w
     """Writes the figures of a run or a sweep to a folder, which is made, and returns the files. Raises RuntimeError for a
     folder without results, for a file that exists, and for a measure or a method that the results do not have.
 
-    measures, methods: of a sweep's figures, by their names in `drape table`; all of COLUMNS, and all methods, by default.
+    measures, methods: of a sweep's figures and of table.tex, by their names in `drape table`; COLUMNS, and all methods, by default.
     width: of a figure in mm; by default 84, and 174 of one with several panels. log: logarithmic measures.
     style: a matplotlib style, by its name or file.
     """

@@ -32,7 +32,8 @@ def written(value) -> str:
 
 def digits(value: float) -> str:
     """A measured number with three digits, as on the pages."""
-    return f"{value:.0f}" if abs(value) >= 100 or value == round(value) else f"{value:#.3g}"
+    whole = abs(value) >= 100 or float(value).is_integer()
+    return f"{value:.2e}" if abs(value) >= 1e5 else f"{value:.0f}" if whole else f"{value:#.3g}"
 
 
 class Keys:
@@ -253,7 +254,7 @@ def draw_states(runs: dict, methods, width=None) -> dict:
                 levels = [level for level in results[0][method].levels if vars(level).get("mesh")]
                 cost = 0.0
                 for level in levels:
-                    cost = (0 if level.from_initial_state else cost) + (vars(level).get("cpu_seconds") or math.nan)
+                    cost = (0 if vars(level).get("from_initial_state") else cost) + (vars(level).get("cpu_seconds") or math.nan)
                     if level in (levels[0], levels[-1]):
                         _core._draw(results[0].folder, file, method, level=level.level, width=pixels, edges=False)
                         words = f"{level.vertices / 1000:.2g}K vertices" + (f", {cost:.2g} CPU s" if cost > 0 else "")

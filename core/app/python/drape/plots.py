@@ -12,9 +12,10 @@ LINES = ("-", "--", ":", "-.")
 COSTS = {"seconds": "time [s]", "iterations": "Newton iterations", "flops": "floating-point operations"}
 
 
-# What a page of a journal asks for: small type that is the text's and stays type, thin lines, no frame, vectors. A style of the reader's own counts
-# first, whether from matplotlib's matplotlibrc or by --style.
-STYLE = {"font.family": ["STIXGeneral", "DejaVu Sans"], "mathtext.fontset": "stix", "font.size": 8, "axes.titlesize": 8, "axes.labelsize": 8, "xtick.labelsize": 7, "ytick.labelsize": 7, "legend.fontsize": 8,
+# What a page of a journal asks for: small type like its text that stays type, thin lines, no frame, vectors. A style of the
+# reader's own counts first, whether from matplotlib's matplotlibrc or by --style.
+STYLE = {"font.family": ["STIXGeneral", "DejaVu Sans"], "mathtext.fontset": "stix",
+         "font.size": 8, "axes.titlesize": 8, "axes.labelsize": 8, "xtick.labelsize": 7, "ytick.labelsize": 7, "legend.fontsize": 8,
          "axes.spines.top": False, "axes.spines.right": False, "axes.linewidth": 0.6, "lines.linewidth": 1.2, "grid.linewidth": 0.4,
          "grid.color": "#d9d9d9", "axes.grid": True, "axes.axisbelow": True, "legend.frameon": False, "figure.dpi": 150, "savefig.dpi": 300,
          "pdf.fonttype": 42, "svg.fonttype": "none", "svg.hashsalt": "drape", "figure.constrained_layout.use": True}
