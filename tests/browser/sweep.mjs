@@ -60,7 +60,7 @@ test('a page alone says what is better beyond starts, what the reference was and
   assert.match(await textOf(page, '#references'), /newton in 24 of 24 runs/);
   await page.locator('#filter').fill('refiner=loop levels=2 step_growth=3');
   const cell = method => page.locator(`#table tr:has(td:text-is("${method}"))`);
-  assert.equal(await cell('newton').locator('[data-name^="error"]').textContent(), 'reference');
+  assert.equal(await cell('newton').locator('[data-name^="end from the reference"]').textContent(), 'reference');
   const fast = await cell('pcs').locator('[data-name="time [s]"]').textContent();
   assert.match(fast, /^4\.00e-52\.00e-5 … 6\.00e-5$/);
   assert.equal(await page.locator('#table [data-name="time [s]"] strong').count(), 1);

@@ -114,8 +114,7 @@ def measure_figure(summary: pandas.DataFrame, measure: str, title: str, key: str
     values = list(dict.fromkeys(map(_hashable, summary[key])))
     numeric = all(isinstance(value, (int, float)) and not isinstance(value, bool) and not math.isnan(value) for value in values)
     logarithmic = numeric and min(values) > 0 and max(values) > 20 * min(values)
-    to, back = (math.log, math.exp) if logarithmic else (float, float)
-    places = [to(value) for value in values] if numeric else list(range(len(values)))
+    places = [math.log(value) if logarithmic else float(value) for value in (values if numeric else range(len(values)))]
     gap = min(numpy.diff(sorted(places)), default=1.0)
     methods = list(dict.fromkeys(summary["method"]))
     figure, panels, room = _panels([", ".join(keys.text(name, value) for name, value in zip(others, where)) for where, _ in groups], width, 52)
@@ -129,7 +128,7 @@ def measure_figure(summary: pandas.DataFrame, measure: str, title: str, key: str
             for _, row in group[group["method"] == method].iterrows():
                 spread, value = row[measure], _hashable(row[key])
                 x = places[values.index(value)] + (m - (len(methods) - 1) / 2) * apart
-                x = back(x) if numeric else x
+                x = math.exp(x) if logarithmic else x
                 cells = spread if isinstance(spread, dict) else {}
                 rows.append({**{name: row[name] for name in [*others, key]}, "method": method, "starts": row["starts"],
                              "reference": row["reference"], **{part: cells.get(part) for part in ("median", "low", "high", "count")}})
@@ -184,7 +183,7 @@ def _median_curve(curves, cost: str, column: str) -> pandas.DataFrame:
     if not curves:
         return pandas.DataFrame(columns=[cost, "median", "low", "high", "count"])
     begin, end = max(curve[cost].iloc[0] for curve in curves), max(curve[cost].iloc[-1] for curve in curves)
-    costs = (numpy.linspace if cost == "iterations" else numpy.geomspace)(begin, end, 60) if begin < end else numpy.array([end])
+    costs = numpy.array([end]) if begin == end else numpy.linspace(begin, end, 60) if cost == "iterations" else numpy.geomspace(begin, end, 60)
     values = numpy.array([[curve[curve[cost] <= at * (1 + 1e-12)][column].iloc[-1] for at in costs] for curve in curves])
     return pandas.DataFrame({cost: costs, "median": numpy.median(values, axis=0), "low": values.min(axis=0), "high": values.max(axis=0),
                              "count": len(curves)})
