@@ -230,9 +230,10 @@ TEST_CASE("names in a report cannot break the page or leave its folder, and have
 }
 
 TEST_CASE("figures in a table have three digits") {
-  const std::pair<double, const char*> cases[] = {
-      {0, "0"},         {403.4, "403"},     {9999, "1.00e4"},   {1234, "1230"},    {0.02134, "0.0213"},
-      {0.9996, "1.00"}, {7.21e5, "7.21e5"}, {-1.2345, "-1.23"}, {4e-4, "4.00e-4"}, {4e-3, "0.00400"}, {99.96, "100"}};
+  const std::pair<double, const char*> cases[] = {{0, "0"},           {403.4, "403"},      {9999, "1.00e4"},
+                                                  {1234, "1230"},     {0.02134, "0.0213"}, {0.9996, "1.00"},
+                                                  {7.21e5, "7.21e5"}, {-1.2345, "-1.23"},  {4e-4, "4.00e-4"},
+                                                  {4e-3, "0.00400"},  {99.96, "100"}};
   for (const auto& [value, text] : cases) CHECK(number_text(value) == text);
   CHECK(number_text({}) == "–");
 }
