@@ -52,7 +52,7 @@ function matrix(all) {
 /// A value against a varied key: medians, with ranges over starts. Only numbers are joined by lines.
 function against(all) {
   const chosen = {key: all.keys.reduce((a, b) => all.values(b).length > all.values(a).length ? b : a)};
-  const chart = new Chart('parameter', 'Medians over the starts that converged, with the range as a line.');
+  const chart = new Chart('parameter', 'Medians over the starts that converged and have the value (a reference has no distance from itself), with the range as a line.');
   const draw = () => {
     const values = all.values(chosen.key), numeric = values.every(known), rest = all.keys.filter(key => key !== chosen.key);
     const variant = row => rest.map(key => all.keyText(key, row[key] ?? row.variation)).join(', '), variants = unique(all.shownSummary.map(variant));
@@ -94,9 +94,9 @@ function table(all) {
   };
   all.redraw.push(draw);
   return h('section', {id: 'summary'}, h('h2', {}, 'All runs'), all.seeds.length > 1 ? h('p', {class: 'note', id: 'bold'}, all.table.bold) : null, references(all),
-    explained('A row per method and variation: the median over all starts that converged, with the range; n where it is not all of them; or a row per method and run. ' +
-    'Distances are in diagonals of the cloth’s rest shape. Time counts the levels that the end builds on. Times and energies of different physics do not compare. Its keys in the ' +
-    `experiment are ${all.model_keys.join(', ')}; the start’s noise is not part of it.`),
+    explained('A row per method and variation: the median over all starts that converged, with the range; n where it is not all of them, as where a method is itself the reference; or a row per ' +
+    'method and run. A start is a seed of the noise. The preview is the end of the coarsest level; more energy released is a lower end. Distances are in diagonals of the cloth’s rest shape. Time ' +
+    `counts the levels that the end builds on. Times and energies compare only between runs that share ${all.model_keys.join(', ')}.`),
     all.seeds.length > 1 ? h('p', {class: 'controls'}, tick('medians over starts', true, on => { Object.assign(state, {medians: on, table: {}}); draw(); }, 'medians')) : null, frame);
 }
 

@@ -64,7 +64,7 @@ export const written = (value, unit) => (typeof value !== 'number' ? String(valu
 /// A warning where the system had other work while methods were timed.
 export function busyWarning(rows) {
   const busy = rows.filter(row => row.machine === 'busy').length;
-  return busy ? h('p', {class: 'poor', id: 'busy'}, `The machine was busy during ${busy} of ${counted(rows.length, 'timing')}: compare iterations and CPU time, not wall time.`) : null;
+  return busy ? h('p', {class: 'poor', id: 'busy'}, `The machine was busy during ${busy} of ${counted(rows.length, 'timing')}: compare CPU time, or iterations of one method, not wall time.`) : null;
 }
 
 /// "2026-03-01" of seconds since 1970.
