@@ -16,6 +16,7 @@
 #include <utility>
 
 #include "core/kernel/files/file.h"
+#include "core/kernel/threads/held_signals.h"
 
 namespace drape {
 
@@ -24,14 +25,14 @@ namespace {
 /// In the child, between fork and exec, with all signals blocked: nothing here may allocate. Handlers are
 /// this program's, which would take a signal and not end the other one.
 [[noreturn]] void become(char* const* words, const char* out, const char* err, pid_t parent,
-                         const sigset_t& unblocked) {
+                         const HeldSignals& held) {
   setpgid(0, 0);
   for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
     struct sigaction action = {};
     if (sigaction(signal, nullptr, &action) == 0 && action.sa_handler != SIG_IGN)
       std::signal(signal, SIG_DFL);
   }
-  sigprocmask(SIG_SETMASK, &unblocked, nullptr);
+  held.release();
   prctl(PR_SET_PDEATHSIG, SIGKILL);
   const auto redirect = [](const char* file, int flags, int to) {
     const int from = open(file, flags | O_NOFOLLOW | O_CLOEXEC, 0644);
@@ -77,12 +78,9 @@ Process::Process(const std::vector<std::string>& words, const std::filesystem::p
   for (const std::string& word : words) arguments.push_back(const_cast<char*>(word.c_str()));
   arguments.push_back(nullptr);
   const pid_t parent = getpid();
-  sigset_t all, unblocked;
-  sigfillset(&all);
-  pthread_sigmask(SIG_BLOCK, &all, &unblocked);
+  const HeldSignals held;
   pid_ = fork();
-  if (pid_ == 0) become(arguments.data(), out.c_str(), err.c_str(), parent, unblocked);
-  pthread_sigmask(SIG_SETMASK, &unblocked, nullptr);
+  if (pid_ == 0) become(arguments.data(), out.c_str(), err.c_str(), parent, held);
   if (pid_ < 0) throw std::runtime_error(words[0] + ": cannot be started (" + std::strerror(errno) + ")");
   setpgid(pid_, pid_);  // parent or child, whichever is first
 }

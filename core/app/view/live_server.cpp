@@ -20,6 +20,8 @@
 #include <thread>
 #include <vector>
 
+#include "core/kernel/threads/held_signals.h"
+
 namespace drape {
 
 namespace {
@@ -210,6 +212,7 @@ LiveServer::LiveServer(int port, const LiveAnswers& answers, double patience)
   ::listen(listening, SOMAXCONN);
   impl_->port = bound;
   url_ = "http://127.0.0.1:" + std::to_string(bound) + base;
+  const HeldSignals held;
   impl_->thread = std::thread([this] {
     impl_->server.listen_after_bind();
     impl_->ended = true;

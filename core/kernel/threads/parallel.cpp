@@ -12,6 +12,8 @@
 #include <thread>
 #include <vector>
 
+#include "core/kernel/threads/held_signals.h"
+
 namespace drape {
 namespace {
 
@@ -39,6 +41,7 @@ class Pool {
     if (!lock) return false;
     while (static_cast<int>(started_) < threads - 1) {
       try {
+        const HeldSignals held;
         std::thread([this, index = started_] {
           std::fesetenv(FE_DFL_ENV);  // not that of the caller, who may flush denormals just now
           help(index);

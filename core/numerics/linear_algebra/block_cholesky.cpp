@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "core/kernel/files/message_text.h"
+#include "core/kernel/threads/held_signals.h"
 #include "core/numerics/linear_algebra/cholmod_context.h"
 #include "core/numerics/linear_algebra/supernodal_factor.h"
 
@@ -30,8 +31,13 @@ struct SymbolicAnalysis : CholmodContext {
       // ordering, and with it their last bits.
       static std::mutex one_at_a_time;
       const std::lock_guard lock(one_at_a_time);
+      // A SIGTERM would end it in the middle, and be lost; it gives back a handler that serves once.
+      const HeldSignals held;
+      struct sigaction before;
+      sigaction(SIGTERM, nullptr, &before);
       common.method[0].ordering = CHOLMOD_METIS;
       factor = cholmod_analyze(graph, &common);
+      sigaction(SIGTERM, &before, nullptr);
     } else {
       common.method[0].ordering = CHOLMOD_GIVEN;
       factor = cholmod_analyze_p(graph, ordering.data(), nullptr, 0, &common);

@@ -2,6 +2,8 @@
 
 #include <stdexcept>
 
+#include "core/kernel/threads/held_signals.h"
+
 namespace drape {
 
 SteppedSolve::SteppedSolve(const Solver& solver, const Problem& problem, MethodState from)
@@ -29,6 +31,7 @@ SteppedSolve::~SteppedSolve() {
 
 bool SteppedSolve::advance() {
   if (ended_) return false;
+  const HeldSignals held;  // as its solver's thread, which may be within METIS
   if (thread_.joinable())
     solvers_turn_.release();
   else

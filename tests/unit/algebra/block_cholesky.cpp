@@ -1,8 +1,12 @@
 #include "core/numerics/linear_algebra/block_cholesky.h"
 
+#include <unistd.h>
+
 #include <Eigen/Cholesky>
 #include <atomic>
 #include <catch2/catch.hpp>
+#include <chrono>
+#include <csignal>
 #include <limits>
 #include <thread>
 
@@ -37,6 +41,16 @@ BlockCholesky analysed(LinearSolver solver, const BlockMatrix& a, const std::vec
   BlockCholesky cholesky(solver);
   cholesky.analyse(a.pattern, fixed_among(a.pattern->rows(), fixed));
   return cholesky;
+}
+
+std::shared_ptr<const BlockPattern> shell_pattern(int side) {
+  return BlockPattern::of(side * side, {shell(side, side)});
+}
+
+std::vector<int> ordering_of(const std::shared_ptr<const BlockPattern>& pattern) {
+  BlockCholesky cholesky;
+  cholesky.analyse(pattern, fixed_among(pattern->rows()));
+  return cholesky.analysis().ordering;
 }
 
 /// The solution of (A + shift) x = b, for which the factor must serve.
@@ -227,22 +241,42 @@ TEST_CASE("The work of a full matrix is a third of the cube of its size") {
 }
 
 TEST_CASE("Analyses side by side give the ordering that each gives alone") {
-  const int side = 25, n = side * side;
-  const auto pattern = BlockPattern::of(n, {shell(side, side)});
-  const auto ordering = [&] {
-    BlockCholesky cholesky;
-    cholesky.analyse(pattern, fixed_among(n));
-    return cholesky.analysis().ordering;
-  };
-  const std::vector<int> alone = ordering();
+  const auto pattern = shell_pattern(25);
+  const std::vector<int> alone = ordering_of(pattern);
   std::atomic<int> others = 0;
   const auto repeat = [&] {
-    for (int k = 0; k < 100; ++k) others += ordering() != alone;
+    for (int k = 0; k < 100; ++k) others += ordering_of(pattern) != alone;
   };
   std::thread other(repeat);
   repeat();
   other.join();
   CHECK(others == 0);
+}
+
+TEST_CASE("A signal to stop that comes within an analysis is kept for its end, on any number of threads") {
+  static std::atomic<int> received;
+  received = 0;
+  const auto before = std::signal(SIGTERM, [](int) { ++received; });
+  parallel_for(100, 1, [](int, int) {});  // starts the threads, to which the system may give a signal
+  const auto pattern = shell_pattern(50);
+  const std::vector<int> alone = ordering_of(pattern);
+  std::atomic<bool> done = false;
+  std::thread sender([&] {
+    sigset_t all;
+    sigfillset(&all);
+    pthread_sigmask(SIG_BLOCK, &all, nullptr);
+    while (!done) {
+      kill(getpid(), SIGTERM);
+      std::this_thread::sleep_for(std::chrono::microseconds(200));
+    }
+  });
+  int same = 0;
+  for (int k = 0; k < 10; ++k) same += ordering_of(pattern) == alone;
+  done = true;
+  sender.join();
+  std::signal(SIGTERM, before);
+  CHECK(same == 10);
+  CHECK(received > 10);
 }
 
 TEST_CASE("An analysis is that of every solver, and restored goes on bit for bit, as far as the BLAS does") {
