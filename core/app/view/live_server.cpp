@@ -28,13 +28,14 @@ namespace {
 
 using httplib::Request, httplib::Response;
 
-/// Through a content provider: the library would compress a plain body slowly.
+/// Through a content provider: the library would compress a plain body slowly. It asks for all of a range,
+/// whether or not the body is so long.
 void send(Response& response, const std::shared_ptr<const std::string>& body, const char* type) {
   const std::size_t size = body->size();
-  response.set_content_provider(size, type,
-                                [body](std::size_t offset, std::size_t length, httplib::DataSink& sink) {
-                                  return sink.write(body->data() + offset, length);
-                                });
+  response.set_content_provider(
+      size, type, [body](std::size_t offset, std::size_t length, httplib::DataSink& sink) {
+        return offset + length <= body->size() && sink.write(body->data() + offset, length);
+      });
 }
 
 void refuse(Response& response, int status, const std::string& why) {

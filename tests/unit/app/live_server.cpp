@@ -2,6 +2,7 @@
 
 #include "core/app/view/live_server.h"
 
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <filesystem>
 #include <iterator>
@@ -93,6 +94,23 @@ TEST_CASE("a request that does not arrive in time is given up") {
   const LiveClient idle(served.address.port);
   CHECK(idle.answer() == "");
   CHECK(watch.seconds() > 0.5);
+}
+
+TEST_CASE("a range reaches no byte behind an answer") {
+  const Served served(5);
+  const auto part = [&](const std::string& range) {
+    const std::string text = served.answer(
+        served.address.request("GET", served.address.path + "block/b", "Range: bytes=" + range + "\r\n"));
+    return text.substr(std::min(text.find("\r\n\r\n"), text.size() - 4) + 4);
+  };
+  CHECK(part("9-11") == "ppp");
+  for (const std::string range : {"0-99999999", "99999-100009", "200000-200009", "200000-", "99999999999-"}) {
+    CAPTURE(range);
+    CHECK(part(range).find_first_not_of('p') == std::string::npos);
+    CHECK(part(range).size() <= served.body.size());
+  }
+  CHECK(part("0-0,100000-100009").find('\0') == std::string::npos);
+  CHECK(served.serves_page());
 }
 
 TEST_CASE("a body that is announced as very long is not waited for") {
