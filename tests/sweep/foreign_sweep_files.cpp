@@ -92,6 +92,33 @@ TEST_CASE("a folder's name becomes no line of a job's script, and no pattern of 
   CHECK(std::distance(fs::directory_iterator(folder.path), fs::directory_iterator()) == 2);
 }
 
+TEST_CASE("what sbatch answers is a job's number, or nothing was submitted") {
+  const SmallSweep folder;
+  folder.write("sbatch", "#!/bin/sh\nprintf '%b\\n' \"$ANSWER\"\n");
+  fs::permissions(folder / "sbatch", fs::perms::owner_all);
+  const auto said = [&](const std::string& answer) {
+    fs::remove_all(folder / "out");
+    return drape_with("sweep s.yaml --engine slurm --out out", folder.path,
+                      "PATH=" + folder.path.string() + ":$PATH ANSWER='" + answer + "'");
+  };
+  for (const std::string answer : {"", "slurm-wlm 22.05", "--all", "12 13", "\\033[31m12"}) {
+    CAPTURE(answer);
+    const Ended ended = said(answer);
+    CHECK(ended.exit_code == 3);
+    CHECK_THAT(ended.out, !Contains("submitted"));
+    CHECK_THAT(ended.err, Contains("no job's number; take out what of --sbatch") && !Contains("\033"));
+    CHECK_FALSE(fs::exists(folder / "out/slurm/jobs.json"));
+  }
+  CHECK_THAT(said("12;cluster").out, Contains("submitted: 1 runs as job array 12, collected by job 12;"));
+}
+
+TEST_CASE("a folder without a sweep is said to be one") {
+  const Scratch folder;
+  for (const std::string options : {"", " --task 0"})
+    CHECK(refused_by("sweep-job ." + options, folder.path) ==
+          "error: .: has no sweep.json; is it a sweep's folder?\n");
+}
+
 TEST_CASE("what is cancelled is a job's number") {
   const SmallSweep folder;
   folder.sweep();

@@ -42,6 +42,29 @@ TEST_CASE("the shape of an ablation") {
   refuses("ablation: {grid: {" + grid + "}}\n", "3:18: the grid has more than 10000 variations; ");
 }
 
+TEST_CASE("a sweep of very many runs is refused, and a long list is one in memory") {
+  const auto tenths = [](int count) {
+    std::string list = "[0.1";
+    for (int k = 1; k < count; ++k) list += ", 0." + std::to_string(10'000'000 + k);
+    return list + "]";
+  };
+  refuses(
+      "repeats: 10000\nablation: {grid: {newton.step_size: " + tenths(100) + "}}\n",
+      "3:10: the sweep has 1000000 runs, and may have 100000; take fewer seeds, variations or experiments");
+  const Scratch folder(small_experiment());
+  folder.write("s.yaml",
+               "name: s\nbase: e.yaml\nablation: {grid: {newton.step_size: " + tenths(4000) + "}}\n");
+  CHECK(Command("ulimit -v 2000000; exec " + drape_command + " sweep s.yaml --dry-run", folder.path)
+            .wait()
+            .exit_code == 0);
+}
+
+TEST_CASE("a base that is no text has one fault") {
+  const Scratch folder(small_experiment());
+  folder.write("s.yaml", "name: s\nbase: [e.yaml]\n");
+  CHECK(refused_by("sweep s.yaml", folder.path) == "error: s.yaml:2:7: \"base\" must be text, not a list\n");
+}
+
 TEST_CASE("two equal variations") {
   const std::string same = R"(variations "a" and "b" come to the same experiment; take one of them out)";
   refuses("ablation: [{name: a}, {name: b, levels: 2}]\n", "3:30: " + same);

@@ -161,7 +161,7 @@ double FitSample::median() const {
 FitRuns::FitRuns(const FitSetup& setup, const SweepFolder& folder, const SweepOptions& options,
                  const Registry& registry)
     : setup_(setup), folder_(folder), options_(options), registry_(registry) {
-  const Json before = folder.read();
+  const Json before = folder.find();
   if (before.is_null() || before["sweep"] != setup.name) return;
   for (const auto& run : before["runs"]) {
     const std::string name = run["name"];

@@ -45,6 +45,8 @@ std::string directives(const std::vector<std::string>& options) {
   return text;
 }
 
+bool is_job(const std::string& id) { return id.find_first_not_of("0123456789") == id.npos; }
+
 std::string submit_script(const fs::path& script, std::vector<std::string> words) {
   words.insert(words.begin(), {"sbatch", "--parsable"});
   words.push_back(script.string());
@@ -54,7 +56,12 @@ std::string submit_script(const fs::path& script, std::vector<std::string> words
         "sbatch: not found; install Slurm's client (slurm-client), or use --engine local");
   if (said.exit.code != 0)
     throw std::runtime_error("sbatch refused " + script.string() + ": " + one_line(said.err));
-  return one_line(said.out.substr(0, said.out.find(';')));  // "id;cluster" with several clusters
+  const std::string id =
+      one_line(said.out.substr(0, said.out.find(';')));  // "id;cluster" with several clusters
+  if (id.empty() || !is_job(id))
+    throw std::runtime_error("sbatch answers \"" + excerpt(id) +
+                             "\", no job's number; take out what of --sbatch keeps it from submitting one");
+  return id;
 }
 
 /// Whether any of the jobs is queued, running or ending.
@@ -89,7 +96,7 @@ std::optional<SlurmJobs> submitted_jobs(const SweepFolder& folder) {
   SlurmJobs jobs{file.find<std::string>(json, "array").value_or(""),
                  file.find<std::string>(json, "collector").value_or("")};
   for (const std::string& id : {jobs.array, jobs.collector})  // others would be options of scancel
-    if (id.find_first_not_of("0123456789") != id.npos) file.refuse("a job is a number, not " + excerpt(id));
+    if (!is_job(id)) file.refuse("a job is a number, not " + excerpt(id));
   return jobs;
 }
 
@@ -188,7 +195,7 @@ void cancel_jobs(const SweepFolder& folder, const SweepOptions& options) {
 
 int run_task(const SweepFolder& folder, int index, const SweepOptions& options) {
   const Json sweep = folder.read();
-  if (sweep.is_null() || index < 0 || index >= int(sweep["runs"].size()))
+  if (index < 0 || index >= int(sweep["runs"].size()))
     refuse_path(folder.path(), "sweep.json has no run " + std::to_string(index));
   const RunFiles files = folder.files(sweep["runs"][index]["folder"]);
   // A node that Slurm considers dead may still execute the task that is restarted elsewhere.

@@ -1,5 +1,6 @@
 #include "core/app/sweep/sweep.h"
 
+#include <algorithm>
 #include <map>
 #include <set>
 
@@ -16,6 +17,8 @@ namespace drape {
 namespace {
 
 using NodeKind = ConfigNode::Kind;
+
+constexpr std::size_t most_runs = 100'000;
 
 /// Removes the methods that are not chosen from a resolved experiment, and the reference if it is one of
 /// them.
@@ -71,6 +74,12 @@ class Reader {
     const std::vector<Variation> variations = variations_of(p.ablation, errors_);
     const std::size_t before = errors_.size();
     const std::vector<ExperimentSource> experiments = experiment_sources(p, source_, errors_);
+    const std::size_t runs =
+        experiments.size() * variations.size() * std::max<std::size_t>(p.seeds.size(), 1);
+    if (runs > most_runs)
+      errors_.push_back({source_.where_of(p.repeats ? "repeats" : "seeds"),
+                         "the sweep has " + std::to_string(runs) + " runs, and may have " +
+                             std::to_string(most_runs) + "; take fewer seeds, variations or experiments"});
     if (errors_.size() > before) return sweep_;
     for (const ExperimentSource& experiment : experiments)
       for (const Variation& variation : variations)
@@ -173,19 +182,18 @@ class Reader {
         same_.push_back({variation.where, "variations \"" + other->second + "\" and \"" + run.name +
                                               "\" come to the same experiment; take one of them out"});
       sweep_.runs.push_back(run);
-      resolved_.push_back(resolved);
     }
+    resolved_.emplace(run.name, std::move(resolved));
   }
 
   /// Gives every run a value for each key that some variation sets.
   void complete_settings() {
     Json keys = Json::object();
     for (const SweepRun& run : sweep_.runs) keys.update(run.settings);
-    for (std::size_t k = 0; k < sweep_.runs.size(); ++k) {
-      Json& settings = sweep_.runs[k].settings;
+    for (SweepRun& run : sweep_.runs)
       for (const auto& [key, value] : keys.items())
-        if (key != "methods" && !settings.contains(key)) settings[key] = setting_at(resolved_[k], key);
-    }
+        if (key != "methods" && !run.settings.contains(key))
+          run.settings[key] = setting_at(resolved_.at(run.name), key);
   }
 
   void note(const ConfigError& fault, const std::string& variation) {
@@ -211,7 +219,7 @@ class Reader {
   ConfigErrors& errors_;
   std::optional<int> most_levels_;
   Sweep sweep_;
-  std::vector<ConfigNode> resolved_;  // of each run
+  std::map<std::string, ConfigNode> resolved_;  // of each variation
   ConfigNode source_;
   ConfigErrors faults_, same_;
   std::map<std::string, std::vector<std::string>> faulty_;

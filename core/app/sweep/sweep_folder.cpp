@@ -26,7 +26,7 @@ Expectation expectation_of(const Json& run) { return {run["expect"]["status"], r
 
 }  // namespace
 
-Json SweepFolder::read() const {
+Json SweepFolder::find() const {
   const fs::path file = path_ / "sweep.json";
   const std::string text = text_of_file(file);
   if (text.empty()) return nullptr;
@@ -48,6 +48,12 @@ Json SweepFolder::read() const {
   return json;
 }
 
+Json SweepFolder::read() const {
+  Json json = find();
+  if (json.is_null()) refuse_path(path_, "has no sweep.json; is it a sweep's folder?");
+  return json;
+}
+
 std::vector<RunStatus> SweepFolder::checked_statuses(const Sweep& sweep, int threads) const {
   const auto refuse_results = [&](const std::string& fault, const RunFiles& files) {
     refuse_path(path_, fault +
@@ -55,7 +61,7 @@ std::vector<RunStatus> SweepFolder::checked_statuses(const Sweep& sweep, int thr
                            "that run's files to run it again: " +
                            files.folder.string() + "*");
   };
-  Json before = read();
+  Json before = find();
   // Without it the runs' own files tell what there is.
   if (before.is_null()) before = {{"sweep", sweep.parameters.name}, {"runs", Json::array()}};
   if (const std::string other = before["sweep"]; other != sweep.parameters.name)

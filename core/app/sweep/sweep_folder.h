@@ -36,7 +36,8 @@ class SweepFolder {
   void finalize() const;
   /// sweep.json; null if there is none. Throws std::runtime_error, with file, key and remedy, if it has
   /// another form.
-  Json read() const;
+  Json find() const;
+  Json read() const;  ///< as find; refuses a folder without
 
  private:
   /// The runs' statuses by their results. Throws for other contents, as prepare does.

@@ -66,14 +66,15 @@ std::vector<Variation> product(const ConfigNode& grid, ConfigErrors& errors) {
   const std::vector<std::string> keys = short_keys(grid);
   std::vector<Variation> all(1);
   all[0].where = grid.where;
-  all[0].set = grid;
   for (std::size_t k = 0; k < keys.size(); ++k) {
+    const auto& [path, values] = grid.entries[k];
     std::vector<Variation> longer;
     for (const Variation& before : all)
-      for (const ConfigNode& value : grid.entries[k].second.items) {
+      for (const ConfigNode& value : values.items) {
         Variation& v = longer.emplace_back(before);
-        v.set.entries[k].second = value;
-        const auto place = &value - grid.entries[k].second.items.data() + 1;  // a map's, in the list
+        v.set.add(path, value);
+        v.set.key_locations.back() = grid.key_locations[k];
+        const auto place = &value - values.items.data() + 1;  // a map's, in the list
         v.name +=
             (k > 0 ? "," : "") + keys[k] + "=" + (value.is_scalar() ? value.scalar : std::to_string(place));
       }
@@ -224,10 +225,10 @@ std::vector<ExperimentSource> experiment_sources(const SweepParameters& p, const
     return all;
   }
   if (base) {
-    if (p.base.empty())
-      errors.push_back({base->where, "\"base\" is empty; name an experiment"});
-    else
+    if (!p.base.empty())
       read_one(p.base, "base", base->where, all, errors);
+    else if (base->is_scalar())
+      errors.push_back({base->where, "\"base\" is empty; name an experiment"});
     return all;
   }
   if (p.experiments.empty())
