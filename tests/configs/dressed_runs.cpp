@@ -337,4 +337,20 @@ TEST_CASE("What cannot be dressed is refused in a sentence") {
              Catch::Matches(".*no start is free of intersections: of all that were tried, the best "
                             "still has [0-9]+ pairs, most of piece front: .*place the pieces around "
                             "the body, not through it"));
+  const Scratch folder;
+  small_tube().write(folder, held);
+  const auto check = [&](const std::string& set) {
+    return refused_by("check e.yaml --set '" + set + "'", folder.path);
+  };
+  CHECK(
+      check("dress={growth: 5}") ==
+      "error: --set dress: \"dress\" needs the \"body\" that is dressed, or the \"obstacle\" that is one\n");
+  CHECK_THAT(check("obstacles=[{name: body, mesh: body.obj}]"),
+             Catch::StartsWith("error: e.yaml:6:8: \"body\" is also the name of obstacles[0]"));
+  drape_ends("run e.yaml --no-report -q -o run", folder);
+  const std::string resume = "run --no-report -q --resume run --out other --set ";
+  CHECK(refused_by(resume + "friction=0.2", folder.path).starts_with("error: run/config.yaml:"));
+  CHECK_THAT(refused_by(resume + "friction=0.2", folder.path),
+             Catch::Contains("\"dress\" begins from pieces as they are placed, and from no other state; "));
+  drape_ends(resume + "dress={}", folder);
 }

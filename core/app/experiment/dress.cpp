@@ -62,7 +62,7 @@ void apply_dress(ConfigNode& experiment, ConfigErrors& errors) {
         {other->where, "\"dress\" takes either a \"body\" or the \"obstacle\" that is one, not both"});
   ConfigNode body;
   body.where = file.where;
-  body.add("name", ConfigNode::of(body_name));
+  body.add("name", ConfigNode::of(body_name)).where = file.where;
   body.add("mesh", file);
   for (const char* key : placement_keys)
     if (const ConfigNode* own = dress.find(key)) {
@@ -84,17 +84,22 @@ void apply_dress(ConfigNode& experiment, ConfigErrors& errors) {
 void make_dressing_schedule(Experiment& e, ConfigErrors& errors) {
   ExperimentParameters& p = e.parameters;
   DressParameters& dress = p.dress;
-  if (!dress.is_asked()) return;
   const auto refuse = [&](const std::string& key, const std::string& why) {
     errors.push_back({e.location_of(key), "\"dress\" " + why});
   };
+  if (!dress.is_asked()) {
+    const Schema schema = schema_of<DressParameters>();
+    if (schema.write(&dress).one_line() != schema.write(schema.fresh().get()).one_line())
+      refuse("dress", "needs the \"body\" that is dressed, or the \"obstacle\" that is one");
+    return;
+  }
   if (p.cloth.rest != "uv" && p.cloth.shape != "pattern")
     refuse("cloth", "needs a cloth of flat pieces, as of \"rest: uv\"");
   if (!p.schedule.keys.empty())
-    refuse(
-        "schedule",
-        "makes the schedule itself; leave \"schedule\" out, and move what is dressed in a second experiment "
-        "that begins \"--from\" the first");
+    refuse("schedule",
+           "makes the schedule itself; leave \"schedule\" out, and move what is dressed in a second run: "
+           "drape run "
+           "--resume FOLDER --out OTHER --set dress={} --set schedule=…");
   if (!errors.empty()) return;
   const auto is_limit = [](const NamedEnergy& energy) { return energy.energy->role() == EnergyRole::limit; };
   dress.tightening = std::ranges::any_of(e.energies, is_limit) ? limit_increments : 0;
