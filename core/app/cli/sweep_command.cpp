@@ -79,7 +79,6 @@ int run_local(const Sweep& sweep, const SweepFolder& folder, SweepRequest r) {
   const std::vector<std::size_t> missing = folder.prepare(sweep, r.threads, r.retry_failed);
   return begun(folder, [&] {
     run_locally(sweep, folder, missing, r);
-    folder.refresh();
     if (!stop_signal()) return list_runs(folder);
     std::cout << printable_lines(list_of_runs(folder));
     std::cerr << "stopped on request; the same command runs what is missing\n";

@@ -29,8 +29,10 @@ class LocalEngine {
       if (options_.stop()) stop();
       start_what_fits();
       collect();
+      refresh();
       std::this_thread::sleep_for(std::chrono::milliseconds(5));
     }
+    folder_.refresh();
     if (replaced_)
       throw std::runtime_error(own_program().string() +
                                " or a library of it was replaced or removed while the sweep ran, so the "
@@ -67,6 +69,16 @@ class LocalEngine {
     return options_.memory > 0 ? std::min(left, options_.memory - promised) : left;
   }
 
+  /// Writes sweep.json, which takes time by the number of all runs: in at most a tenth of the sweep's.
+  void refresh() {
+    if (!changed_ || since_refresh_.seconds() < pause_) return;
+    const Stopwatch watch;
+    folder_.refresh();
+    changed_ = false;
+    pause_ = 9 * watch.seconds();
+    since_refresh_ = Stopwatch();
+  }
+
   void start_what_fits() {
     while (!waiting_.empty() && running_.size() < std::size_t(options_.workers)) {
       const SweepRun& run = sweep_.runs[waiting_.front()];
@@ -84,7 +96,7 @@ class LocalEngine {
           {run, needed,
            RunProcess(folder_.files(run.folder), options_, sweep_.parameters.time_limit.value_or(0))});
       waiting_.pop_front();
-      folder_.refresh();
+      changed_ = true;
       if (needed > left) return;
     }
   }
@@ -99,7 +111,7 @@ class LocalEngine {
       const RunStatus status = r->process.status();
       running_.erase(r++);
       if (status.has_results()) memory_.learn(run, folder_.files(run.folder));
-      folder_.refresh();
+      changed_ = true;
       tell(run, status);
     }
   }
@@ -127,11 +139,12 @@ class LocalEngine {
   const SweepFolder& folder_;
   const SweepOptions& options_;
   MemoryEstimate memory_;
-  Stopwatch clock_;
+  Stopwatch clock_, since_refresh_;
+  double pause_ = 0;  // until sweep.json may be written again [s]
   std::deque<std::size_t> waiting_;
   std::list<Running> running_;
   std::size_t had_ = 0, ended_ = 0, failed_ = 0;
-  bool stopping_ = false, replaced_ = false;
+  bool stopping_ = false, replaced_ = false, changed_ = false;
 };
 
 }  // namespace
