@@ -342,9 +342,11 @@ TEST_CASE("What cannot be dressed is refused in a sentence") {
   const auto check = [&](const std::string& set) {
     return refused_by("check e.yaml --set '" + set + "'", folder.path);
   };
+  CHECK(check("dress={growth: 5}") ==
+        "error: --set dress: \"growth\" in dress needs \"obstacle\"; here \"obstacle\" is not given\n");
   CHECK(
-      check("dress={growth: 5}") ==
-      "error: --set dress: \"dress\" needs the \"body\" that is dressed, or the \"obstacle\" that is one\n");
+      check("dress={obstacle: body, unit: mm}")
+          .starts_with("error: --set dress: \"unit\" in dress needs \"body\"; here \"body\" is not given\n"));
   CHECK_THAT(check("obstacles=[{name: body, mesh: body.obj}]"),
              Catch::StartsWith("error: e.yaml:6:8: \"body\" is also the name of obstacles[0]"));
   drape_ends("run e.yaml --no-report -q -o run", folder);

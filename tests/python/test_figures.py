@@ -229,6 +229,9 @@ def test_a_sweep_from_python_is_that_of_the_command_and_runs_what_is_missing(tmp
     assert (tmp_path / "sweep/runs/step_growth=1.5/seed_1/results.json").stat().st_mtime_ns == before
     with pytest.raises(RuntimeError, match="unknown key"):
         drape.sweep(experiment, {"newton.step_grwth": [1]}, 2, methods=["pcs"], out=tmp_path / "other", progress=False)
+    with pytest.raises(RuntimeError, match='"repeats" must be at most 10000'):
+        drape.sweep(experiment, starts=10**9, methods="pcs", out=tmp_path / "other", progress=False)
+    assert set(drape.sweep(experiment, methods="newton", out=tmp_path / "one", progress=False)["method"]) == {"newton"}
     assert drape.figures(tmp_path / "sweep", tmp_path / "figures")
 
 

@@ -33,19 +33,24 @@ void DressParameters::declare(Declaration<DressParameters>& d) {
   declare_file_coordinates(d);
   declare_scale(d);
   declare_placement(d);
+  for (Parameter& p : d.schema.parameters)
+    if (p.name != "body") ParameterHandle(p).only_with("body");
   d.add("obstacle", &DressParameters::obstacle,
         "instead of `body`: the name of the obstacle that is the body, for one with keys of its own");
   d.add("growth", &DressParameters::growth,
         "increments in which the body grows to its size inside the garment")
-      .between(1, 1000);
+      .between(1, 1000)
+      .only_with("obstacle");
   d.add("sewing", &DressParameters::sewing,
         "increments in which the pieces go from the shape that they were placed in to their own")
-      .between(1, 500);
+      .between(1, 500)
+      .only_with("obstacle");
   d.add("largest_stretch", &DressParameters::largest_stretch,
         "a garment is too tight, and refused, if more than a tenth of the area of one of its pieces is "
         "stretched beyond this once it is sewn; 0.5 is by half")
       .unit("1")
-      .between(0.01, 10);
+      .between(0.01, 10)
+      .only_with("obstacle");
 }
 
 void apply_dress(ConfigNode& experiment, ConfigErrors& errors) {
@@ -84,15 +89,10 @@ void apply_dress(ConfigNode& experiment, ConfigErrors& errors) {
 void make_dressing_schedule(Experiment& e, ConfigErrors& errors) {
   ExperimentParameters& p = e.parameters;
   DressParameters& dress = p.dress;
+  if (!dress.is_asked()) return;
   const auto refuse = [&](const std::string& key, const std::string& why) {
     errors.push_back({e.location_of(key), "\"dress\" " + why});
   };
-  if (!dress.is_asked()) {
-    const Schema schema = schema_of<DressParameters>();
-    if (schema.write(&dress).one_line() != schema.write(schema.fresh().get()).one_line())
-      refuse("dress", "needs the \"body\" that is dressed, or the \"obstacle\" that is one");
-    return;
-  }
   if (p.cloth.rest != "uv" && p.cloth.shape != "pattern")
     refuse("cloth", "needs a cloth of flat pieces, as of \"rest: uv\"");
   if (!p.schedule.keys.empty())

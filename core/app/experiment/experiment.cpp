@@ -63,8 +63,8 @@ void check_start_coordinates(const Experiment& e, ConfigErrors& errors) {
                         "or set it in cloth if the cloth is of a file"});
 }
 
-/// A number of the material that others hide or that has no meaning without them is refused, unless it is the
-/// default, which a saved config has. So is bending that is not positive definite.
+/// A number of the material that others hide is refused, unless it is the default, which a saved config has.
+/// So is bending that is not positive definite.
 void check_material(const Experiment& e, ConfigErrors& errors) {
   const Material &m = e.parameters.material, plain;
   const ConfigNode* material = e.source.find("material");
@@ -82,9 +82,6 @@ void check_material(const Experiment& e, ConfigErrors& errors) {
          "membrane_modulus", "is not read beside \"warp_stiffness\"; leave one out");
   refuse(m.warp_bending && is_set("bending_modulus", m.bending_modulus, plain.bending_modulus),
          "bending_modulus", "is not read beside \"warp_bending\"; leave one out");
-  refuse(m.weft_stiffness && !m.warp_stiffness, "weft_stiffness", "needs \"warp_stiffness\"");
-  refuse(m.weft_bending && !m.warp_bending, "weft_bending", "needs \"warp_bending\"");
-  refuse(m.bias_bending && !m.warp_bending, "bias_bending", "needs \"warp_bending\"");
   try {
     plate_stiffness(m);
   } catch (const std::exception& error) {
@@ -92,29 +89,13 @@ void check_material(const Experiment& e, ConfigErrors& errors) {
   }
 }
 
-/// A schedule without keys, and what a pin or handle says of a motion that it does not have, would not be
-/// read.
-void check_motions(const Experiment& e, ConfigErrors& errors) {
-  const ExperimentParameters& p = e.parameters;
-  if (const ScheduleParameters& s = p.schedule;
-      s.keys.empty() && (s.duration > 0 || s.steps > 1 || s.equilibrate))
+/// A schedule without keys would not be read.
+void check_schedule(const Experiment& e, ConfigErrors& errors) {
+  const ScheduleParameters& s = e.parameters.schedule;
+  if (s.keys.empty() && (s.duration > 0 || s.steps > 1 || s.equilibrate))
     errors.push_back(
         {e.location_of("schedule"),
          "\"schedule\" has no \"keys\", so that nothing would change; give it some, or leave it out"});
-  const auto refuse = [&](const char* list, std::size_t k, const char* key, const std::string& message) {
-    errors.push_back({e.source.find(list)->items[k].where_of(key), message});
-  };
-  const auto check_centre = [&](const char* list, std::size_t k, const VertexSelection& selection) {
-    if (!selection.rotate && !selection.centre.isZero(0))
-      refuse(list, k, "centre", "\"centre\" is that of \"rotate\", which is not given; leave it out");
-  };
-  for (std::size_t k = 0; k < p.handles.size(); ++k) check_centre("handles", k, p.handles[k]);
-  for (std::size_t k = 0; k < p.pins.size(); ++k) {
-    check_centre("pins", k, p.pins[k]);
-    if (const FollowParameters& follow = p.pins[k].follow;
-        follow.obstacle.empty() && !follow.vertices.empty())
-      refuse("pins", k, "follow", "\"vertices\" in follow are those of its \"obstacle\", which is not given");
-  }
 }
 
 }  // namespace
@@ -170,7 +151,7 @@ std::optional<Experiment> read_experiment(ConfigNode source, const Registry& reg
     check_name("name", e.parameters.name, name->where, errors);
   check_cloth_keys(e, errors);
   check_start_coordinates(e, errors);
-  check_motions(e, errors);
+  check_schedule(e, errors);
   check_material(e, errors);
   make_plugins(e, errors);
   make_dressing_schedule(e, errors);

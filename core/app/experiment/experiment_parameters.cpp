@@ -57,7 +57,8 @@ void declare_selection(Declaration<Condition>& d) {
                    "the target is the position at the start, without its noise"));
   angle(d.add("rotate", &VertexSelection::rotate,
               "rotation of the rest position about x, then y, then z through `centre`"));
-  coordinate(d.add("centre", &VertexSelection::centre, "centre of `rotate`, in the rest shape"));
+  coordinate(d.add("centre", &VertexSelection::centre, "centre of `rotate`, in the rest shape"))
+      .only_with("rotate");
 }
 
 }  // namespace
@@ -218,7 +219,8 @@ void FollowParameters::declare(Declaration<FollowParameters>& d) {
         "name of the obstacle, or its index from 0; without one the pin follows none");
   natural(d.add("vertices", &FollowParameters::vertices,
                 "vertices of the obstacle, from 0 in the order of its file, at whose triangles the pin may "
-                "be attached; all without any"));
+                "be attached; all without any"))
+      .only_with("obstacle");
 }
 
 void PinParameters::declare(Declaration<PinParameters>& d) {

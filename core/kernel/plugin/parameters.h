@@ -113,9 +113,9 @@ class ParameterHandle {
   ParameterHandle& path() { return set(&Parameter::path, true); }
   /// A contact model's parameter that is written at the top of the experiment, once for all models.
   ParameterHandle& from_experiment() { return set(&Parameter::from_experiment, true); }
-  /// It is read only where the choice `key` beside it has one of these values. Written elsewhere, it is
-  /// refused unless it is the default, which a saved config has.
-  ParameterHandle& only_with(std::string key, std::vector<std::string> values) {
+  /// It is read only where the choice `key` beside it has one of these values or, without any, is given.
+  /// Written elsewhere, it is refused unless it is the default, which a saved config has.
+  ParameterHandle& only_with(std::string key, std::vector<std::string> values = {}) {
     return set(&Parameter::selector, std::move(key)).set(&Parameter::selector_values, std::move(values));
   }
   /// A key that tells an obstacle of this contact model from those of others.

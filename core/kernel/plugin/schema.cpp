@@ -80,13 +80,16 @@ void Schema::read(void* object, const ConfigNode& map, ConfigErrors& errors) con
 std::string Schema::unread_fault(const Parameter& p, const void* object) const {
   const Parameter* selector = parameter_named(*this, p.selector);
   if (!selector) return "";
-  const std::string chosen = selector->write(object).scalar;
+  const ConfigNode chosen = selector->write(object);
+  const bool given = chosen.is_scalar() ? !chosen.scalar.empty() : chosen.kind != NodeKind::null;
   const auto& reads = p.selector_values;
-  if (is_one_of(chosen, reads) || p.write(object).one_line() == p.write(fresh().get()).one_line()) return "";
-  std::string needed;
+  if ((reads.empty() ? given : is_one_of(chosen.scalar, reads)) ||
+      p.write(object).one_line() == p.write(fresh().get()).one_line())
+    return "";
+  std::string needed = reads.empty() ? p.selector : "";
   for (const std::string& value : reads) needed += (needed.empty() ? "" : " or ") + p.selector + ": " + value;
   return "\"" + p.name + "\"" + (name.empty() ? "" : " in " + name) + " needs \"" + needed + "\"; here \"" +
-         p.selector + "\" is " + (chosen.empty() ? "not given" : chosen);
+         p.selector + "\" is " + (given ? chosen.scalar : "not given");
 }
 
 const Parameter* parameter_named(const Schema& schema, const std::string& name) {

@@ -30,7 +30,7 @@ def sweep(
     starts: Union[int, Sequence[int]] = 1,
     *,
     out: Union[str, os.PathLike],
-    methods: Optional[Sequence[str]] = None,
+    methods: Union[str, Sequence[str], None] = None,
     workers: Optional[int] = None,
     threads: int = 1,
     engine: str = "local",
@@ -49,9 +49,9 @@ def sweep(
     """
     base = experiment if isinstance(experiment, Experiment) else Experiment(experiment)
     resolved = base.resolved
-    seeds = list(range(1, starts + 1)) if isinstance(starts, int) else list(starts)
-    plan: dict = {"name": resolved["name"], "base": "base.yaml", "seeds": seeds, "threads": threads}
-    plan |= {"methods": list(methods)} if methods else {}
+    seeds = {"repeats": starts} if isinstance(starts, int) else {"seeds": list(starts)}
+    plan: dict = {"name": resolved["name"], "base": "base.yaml", "threads": threads, **seeds}
+    plan |= {"methods": [methods] if isinstance(methods, str) else list(methods)} if methods else {}
     plan |= {"ablation": {"grid": {key: list(values) for key, values in grid.items()}}} if grid else {}
     with tempfile.TemporaryDirectory(prefix="drape_sweep_") as folder:
         for name, content in (("base.yaml", resolved), ("sweep.yaml", plan)):  # JSON is YAML too
