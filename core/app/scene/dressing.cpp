@@ -35,16 +35,6 @@ constexpr double largest_placed_stretch = 0.1;
 /// Smallest size of a body over the garment's; a smaller one is in another unit.
 constexpr double smallest_body = 0.01;
 
-/// The triangles of the cloth that a start's intersections name.
-std::vector<int> triangles_in(const std::vector<Intersection>& found) {
-  const std::string triangle = "cloth triangle ";
-  std::vector<int> triangles;
-  for (const Intersection& pair : found)
-    for (const std::string* name : {&pair.first, &pair.second})
-      if (name->starts_with(triangle)) triangles.push_back(std::stoi(name->substr(triangle.size())));
-  return triangles;
-}
-
 std::vector<Intersection> intersections_of(const LevelModel& model, const Positions& x) {
   std::vector<Intersection> all;
   for (const auto& contact : model.contacts())
@@ -71,7 +61,9 @@ void take(DressingStart start, double contraction, Scene& scene) {
 /// The error of the best start that was tried, at the panel of most of its intersections.
 ConfigError refusal(const Experiment& e, const std::vector<Intersection>& found, const Level& level) {
   std::map<int, std::vector<int>> pieces;  // the triangles that intersect
-  for (const int t : triangles_in(found)) pieces[level.rest.piece.at(t)].push_back(t);
+  for (const Intersection& pair : found)
+    for (const int t : pair.triangles)
+      if (t >= 0) pieces[level.rest.piece.at(t)].push_back(t);
   ConfigError error{e.location_of("dress"), ""};
   std::string piece = "the garment";
   if (!pieces.empty()) {

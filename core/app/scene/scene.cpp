@@ -152,8 +152,7 @@ std::string unwelded_fault(const Experiment& e, const Level& level) {
 }
 
 bool touches_itself(const std::vector<Intersection>& pairs) {
-  return std::ranges::any_of(pairs,
-                             [](const Intersection& p) { return p.second.starts_with("cloth triangle "); });
+  return std::ranges::any_of(pairs, [](const Intersection& p) { return p.triangles[1] >= 0; });
 }
 
 void refuse_intersecting_start(const Experiment& e, const LevelModel& model, const Positions& start,

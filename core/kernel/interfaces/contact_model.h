@@ -17,7 +17,7 @@ namespace drape {
 struct Intersection {
   std::string first, second;                        ///< "cloth triangle 12", "ball: sphere"
   Eigen::Vector3d where = Eigen::Vector3d::Zero();  ///< a point near the intersection [m]
-  std::array<int, 2> triangles = {-1, -1};          ///< of the cloth, where it intersects itself
+  std::array<int, 2> triangles = {-1, -1};          ///< of the cloth; -1: an obstacle
 };
 
 /// "cloth triangle 12 and ball: sphere at (0.1, 0, 0.3)".

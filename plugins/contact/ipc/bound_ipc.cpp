@@ -225,7 +225,9 @@ std::vector<Intersection> BoundIpc::intersections(const Positions& x) const {
   for (const TrianglePair& pair : pairs) {
     const auto [body, number] = owners[pair.second];
     found.push_back({"cloth triangle " + std::to_string(pair.first),
-                     body->name + " triangle " + std::to_string(number), pair.where});
+                     body->name + " triangle " + std::to_string(number),
+                     pair.where,
+                     {pair.first, -1}});
   }
   return found;
 }

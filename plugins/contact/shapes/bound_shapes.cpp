@@ -95,7 +95,8 @@ class BoundShapes final : public BoundContact {
       const Corners c = scene_->corners(pair.element, x);
       const Solid& solid = scene_->solids[pair.solid];
       if (intersects(solid, c))
-        found.push_back({triangle_name(pair.element), solid.name, (c[0] + c[1] + c[2]) / 3});
+        found.push_back(
+            {triangle_name(pair.element), solid.name, (c[0] + c[1] + c[2]) / 3, {pair.element, -1}});
     }
     return found;
   }
