@@ -104,7 +104,7 @@ TEST_CASE("a run does not write into a folder that is a link") {
     fs::create_directory_symlink("../photos", copy / ("out/" + name));
     for (const std::string run : {"run e.yaml --out out --overwrite", "run --resume out"})
       check_error(refused(copy, run),
-                  "out/" + name + ": is a link, and a run writes into folders of its own; ");
+                  "out/" + name + ": is a link, and drape writes into folders of its own; ");
     if (name == "pictures") CHECK(drape_with("report out", copy.path).exit_code > 1);
     CHECK(files_in(copy / "photos").size() == 1);
   }

@@ -78,8 +78,10 @@ TEST_CASE("a sweep does not write into a folder that is a link, of whatever dept
     folder.write("photos/base/seed_1.yaml", "mine");
     fs::remove_all(folder / part);
     fs::create_directory_symlink(folder / "photos", folder / part);
-    CHECK_THAT(refused_by("sweep s.yaml --out out", folder.path),
-               Contains(part + ": is a link, and a sweep writes into folders of its own; remove it"));
+    CHECK_THAT(
+        refused_by("sweep s.yaml --out out", folder.path),
+        Contains(part +
+                 ": is a link, and drape writes into folders of its own; remove it, or make it a folder"));
     CHECK(std::distance(fs::directory_iterator(folder / "photos"), fs::directory_iterator()) == 1);
   }
 }

@@ -99,7 +99,7 @@ TEST_CASE("conflicting options, and a foreign folder") {
         "error: mine: holds notes, and no sweep; name another folder with --out\n");
   CHECK(!fs::exists(folder / "mine/sweep.lock"));  // by which a run would take the folder for a sweep's
   CHECK(drape_with("sweep s.yaml --out s.yaml", folder.path).err ==
-        "error: s.yaml: cannot make the sweep's folder (Not a directory); name another with --out\n");
+        "error: s.yaml: cannot make the results folder (Not a directory); name another with --out\n");
   folder.sweep();
   folder.write("other.yaml", "name: other\nbase: e.yaml\n");
   CHECK(drape_with("sweep other.yaml --out out", folder.path).err ==

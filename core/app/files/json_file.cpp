@@ -84,7 +84,8 @@ void refuse_links(const std::filesystem::path& folder, const std::filesystem::pa
   for (const auto& part : way) {
     place /= part;
     if (is_symlink(place))
-      refuse_path(place, "is a link, and a sweep writes into folders of its own; remove it");
+      refuse_path(place,
+                  "is a link, and drape writes into folders of its own; remove it, or make it a folder");
   }
 }
 

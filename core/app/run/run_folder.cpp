@@ -99,10 +99,7 @@ void refuse_what_must_stay(const RunFolder& folder, const std::vector<fs::path>&
 }
 
 void refuse_linked_folders(const RunFolder& folder) {
-  for (const auto& [own, pattern] : own_folders)
-    if (const fs::path path = folder.file(own); fs::is_symlink(path))
-      refuse_path(path,
-                  "is a link, and a run writes into folders of its own; remove it, or make it a folder");
+  for (const auto& [own, pattern] : own_folders) refuse_links(folder.path(), own);
 }
 
 /// Files may be replaced only if they are a run's and `overwrite` is set.
@@ -132,17 +129,6 @@ std::vector<fs::path> missing_folders(const fs::path& folder) {
   return missing;
 }
 
-void make_results_folder(const RunFolder& folder) {
-  std::error_code error;
-  fs::create_directories(folder.path(), error);
-  if (fs::is_symlink(folder.path()) && !fs::exists(folder.path()))
-    refuse_path(folder.path(), "is a link to " + fs::read_symlink(folder.path()).string() +
-                                   ", which does not exist; make that folder, or name another with --out");
-  if (error || !fs::is_directory(folder.path()))
-    refuse_path(folder.path(), "cannot make the results folder" +
-                                   (error ? " (" + error.message() + ")" : "") + "; name another with --out");
-}
-
 void remove_files(const std::vector<fs::path>& files) {
   for (const fs::path& file : files) {
     std::error_code error;
@@ -161,6 +147,17 @@ void clear(const RunFolder& folder) {
 }
 
 }  // namespace
+
+void make_results_folder(const fs::path& folder) {
+  std::error_code error;
+  fs::create_directories(folder, error);
+  if (fs::is_symlink(folder) && !fs::exists(folder))
+    refuse_path(folder, "is a link to " + fs::read_symlink(folder).string() +
+                            ", which does not exist; make that folder, or name another with --out");
+  if (error || !fs::is_directory(folder))
+    refuse_path(folder, "cannot make the results folder" + (error ? " (" + error.message() + ")" : "") +
+                            "; name another with --out");
+}
 
 void refuse_long_names(const fs::path& folder, const std::vector<std::string>& methods) {
   const std::vector<fs::path> missing = missing_folders(folder);
@@ -195,7 +192,7 @@ RunFolder::RunFolder(std::filesystem::path path, bool overwrite,
     : path_(std::move(path)) {
   const std::vector<fs::path> made = missing_folders(path_);
   try {
-    make_results_folder(*this);
+    make_results_folder(path_);
     refuse_what_is_there(*this, overwrite, inputs);
     lock();
   } catch (...) {

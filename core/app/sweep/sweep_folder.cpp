@@ -7,6 +7,7 @@
 #include "core/app/experiment/cloth.h"
 #include "core/app/files/json_file.h"
 #include "core/app/report/run_data.h"
+#include "core/app/run/run_folder.h"
 #include "core/kernel/files/file.h"
 #include "core/kernel/files/number_text.h"
 #include "core/kernel/files/string_utils.h"
@@ -170,11 +171,7 @@ void SweepFolder::finalize() const {
 }
 
 std::unique_ptr<FileLock> SweepFolder::lock() const {
-  std::error_code error;
-  fs::create_directories(path_, error);
-  if (!fs::is_directory(path_))
-    refuse_path(path_, "cannot make the sweep's folder" + (error ? " (" + error.message() + ")" : "") +
-                           "; name another with --out");
+  make_results_folder(path_);
   if (!fs::exists(path_ / "sweep.lock") && !fs::exists(path_ / "sweep.json"))
     for (const auto& entry : fs::directory_iterator(path_))
       if (const std::string name = entry.path().filename(); name != "sweep.lock")
