@@ -4,7 +4,6 @@
 
 #include <cstdlib>
 #include <iostream>
-#include <map>
 
 #include "core/app/cli/commands.h"
 #include "core/app/cli/config_arguments.h"
@@ -30,8 +29,7 @@ namespace {
 namespace fs = std::filesystem;
 using Folders = std::vector<fs::path>;
 
-const std::map<std::string, TableFormat> formats = {
-    {"md", TableFormat::markdown}, {"csv", TableFormat::csv}, {"json", TableFormat::json}};
+const std::vector<std::string> formats = {"md", "csv", "json"};  // in the order of TableFormat
 
 /// The vector that "X,Y,Z" spells; nothing for another text, and for a vector whose length says no direction.
 std::optional<Eigen::Vector3d> direction_of(const std::string& text) {
@@ -173,7 +171,8 @@ int print_comparison(const Folders& runs, const std::vector<std::string>& bounds
 
 int print_table(const Folders& folders, const std::vector<std::string>& columns, const std::string& format) {
   const RunTable table = table_of(measured(folders));
-  const std::string text = table_text(table, columns, formats.at(format));
+  const auto number = std::ranges::find(formats, format) - formats.begin();
+  const std::string text = table_text(table, columns, static_cast<TableFormat>(number));
   std::cout << (format == "json" ? text : printable_lines(text));
   return table.all_pass() ? exit_done : exit_not_converged;
 }
@@ -298,8 +297,7 @@ void add_report_commands(Commands& commands) {
       [o] { return print_table(o->folders, o->columns, o->format); });
   table_command.add_option("folder", o->folders, "folders of runs or sweeps, or one that has them in it")
       ->required();
-  add_option(table_command, "--format NAME", o->format, "md (default), csv or json")
-      ->check(one_of({"md", "csv", "json"}));
+  add_option(table_command, "--format NAME", o->format, "md (default), csv or json")->check(one_of(formats));
   add_option(table_command, "--columns A,B", o->columns, "columns, as in run,status,energy_released")
       ->delimiter(',');
 }

@@ -112,9 +112,7 @@ bool set_parameter(ConfigNode& experiment, const std::string& path, ConfigNode v
     errors.push_back({where, "the experiment has no \"" + list + "\"; write that list first"});
     return false;
   }
-  std::string own;
-  for (std::size_t k = 0; k < words.size(); ++k) own += (k > 0 ? "." : "") + words[k];
-  return set_path(experiment, own, std::move(value), where, errors);
+  return set_path(experiment, joined(words, ".", "."), std::move(value), where, errors);
 }
 
 bool set_parameter(ConfigNode& experiment, const std::string& path, const std::string& value,

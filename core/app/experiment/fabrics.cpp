@@ -1,9 +1,9 @@
 #include "core/app/experiment/fabrics.h"
 
 #include <algorithm>
+#include <boost/algorithm/string/case_conv.hpp>
 #include <boost/algorithm/string/classification.hpp>
 #include <boost/algorithm/string/trim.hpp>
-#include <cctype>
 #include <cmath>
 #include <optional>
 
@@ -94,8 +94,7 @@ struct Table {
           file + (header.empty() ? " is empty" : " has no row below its header") +
           "; a table of fabrics names its columns in the first line, and has a fabric in "
           "each further one");
-    for (std::string& head : header)
-      for (char& c : head) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    for (std::string& head : header) boost::to_lower(head);
   }
 
   /// The column's number, past the last without one. Throws std::runtime_error if there are two.

@@ -1,6 +1,7 @@
 #include "core/kernel/plugin/config_node.h"
 
 #include <algorithm>
+#include <boost/algorithm/string/case_conv.hpp>
 #include <cctype>
 #include <cstdio>
 #include <set>
@@ -16,14 +17,12 @@ namespace {
 /// Whether every YAML reader reads the unquoted text as a text.
 bool plainly_text(const std::string& text) {
   static const std::set<std::string> taken = {"true", "false", "null", "yes", "no", "on", "off"};
-  std::string lower = text;
-  for (char& c : lower) c = char(std::tolower(static_cast<unsigned char>(c)));
   const auto harmless = [](unsigned char c) {
     return std::isalnum(c) || c >= 0x80 || c == '_' || c == '-' || c == '.' || c == '/' || c == ' ';
   };
   const auto begins = [](unsigned char c) { return std::isalpha(c) || c == '_' || c == '/'; };
   return !text.empty() && begins(static_cast<unsigned char>(text[0])) && text.back() != ' ' &&
-         std::all_of(text.begin(), text.end(), harmless) && !taken.count(lower);
+         std::all_of(text.begin(), text.end(), harmless) && !taken.count(boost::to_lower_copy(text));
 }
 
 std::string in_quotes(const std::string& text) {

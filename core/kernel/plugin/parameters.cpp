@@ -23,8 +23,6 @@ std::string with_unit(double value, const Parameter& p) {
 /// What a number must be to be a value of the parameter, or of an item of it, as "at least 0"; "" if it is.
 std::string number_fault(const Parameter& p, const ConfigNode& node) {
   const double value = node.number;
-  if (std::isinf(value) && std::isdigit(static_cast<unsigned char>(node.scalar.back())))
-    return "a number within ±1.8e+308";
   if (!std::isfinite(value)) return "a finite number";
   if (p.open_minimum && !(value > p.minimum)) return "above " + with_unit(p.minimum, p);
   if (!p.open_minimum && !(value >= p.minimum)) return "at least " + with_unit(p.minimum, p);

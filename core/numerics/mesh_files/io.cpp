@@ -1,7 +1,6 @@
 #include "core/numerics/mesh_files/io.h"
 
-#include <algorithm>
-#include <cctype>
+#include <boost/algorithm/string/case_conv.hpp>
 #include <stdexcept>
 
 #include "core/kernel/files/file.h"
@@ -27,10 +26,7 @@ TriangleMesh read(const std::filesystem::path& path, MeshUse use, int& lines) {
 }  // namespace
 
 std::string lower_extension(const std::filesystem::path& path) {
-  std::string extension = path.extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return std::tolower(c); });
-  return extension;
+  return boost::to_lower_copy(path.extension().string());
 }
 
 TriangleMesh read_mesh(const std::filesystem::path& path) {

@@ -85,10 +85,9 @@ bool holds_corners(const PlyProperty& p) {
 }
 
 bool has_warp(const PlyElement& faces) {
-  return std::all_of(warp_names.begin(), warp_names.end(), [&](const std::string& name) {
-    return std::any_of(faces.properties.begin(), faces.properties.end(),
-                       [&](const PlyProperty& p) { return !p.count_type && p.name == name; });
-  });
+  return std::ranges::count_if(faces.properties, [](const PlyProperty& p) {
+           return !p.count_type && std::ranges::count(warp_names, p.name) > 0;
+         }) == std::ssize(warp_names);
 }
 
 int corner(const PlyBody& body, double v, int vertex_count) {

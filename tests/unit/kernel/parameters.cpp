@@ -130,9 +130,8 @@ TEST_CASE("wrong types are reported with the written value") {
     check_faults({{"step_size: " + word, "1:12", "\"step_size\" must be " + message}});
   };
   for (const std::string word : {"1s", "+-1", "0x10"}) check_word(word, "a number, not \"" + word + "\"");
-  for (const std::string word : {"nan", "inf", "-inf"}) check_word(word, "a finite number, not " + word);
-  for (const std::string word : {"1e400", "-1e999999"})
-    check_word(word, "a number within ±1.8e+308, not " + word);
+  for (const std::string word : {"nan", "inf", "-inf", "1e400", "-1e999999"})
+    check_word(word, "a finite number, not " + word);
   check_word("1e-400", "above 0 s, not 1e-400");
   for (const std::string word : {".nan", ".inf", "-.inf"})
     check_word(word, "a finite number, not \"" + word + "\"");
