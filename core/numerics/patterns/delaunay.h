@@ -24,6 +24,9 @@ struct LoopSides {
 };
 LoopSides sides_of(const std::vector<Polygon>& loops);
 
+/// Signed, positive where the loop runs counter-clockwise.
+double area_of(const Polygon& loop);
+
 /// Pairs of segments, each of two points, that cross or touch elsewhere than at a common end, at most so
 /// many; exact.
 std::vector<std::array<int, 2>> crossing_segments(const std::vector<Eigen::Vector2d>& points,

@@ -212,6 +212,15 @@ LoopSides sides_of(const std::vector<Polygon>& loops) {
   return all;
 }
 
+double area_of(const Polygon& loop) {
+  double twice = 0;
+  for (std::size_t i = 0; i < loop.size(); ++i) {
+    const Eigen::Vector2d a = loop[i] - loop[0], b = loop[(i + 1) % loop.size()] - loop[0];
+    twice += a.x() * b.y() - a.y() * b.x();
+  }
+  return twice / 2;
+}
+
 TriangleMesh delaunay_polygon(const std::vector<Polygon>& loops, int vertices_about, unsigned seed,
                               VertexCount count) {
   const std::vector<Ring> rings = checked_rings(loops);

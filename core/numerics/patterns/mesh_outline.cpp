@@ -92,14 +92,10 @@ struct FlatPart {
     double largest = 0;
     for (int v = 0; v < std::ssize(next); ++v) {
       Polygon loop;
-      double area = 0;
       for (int at = v; next[at] >= 0; at = std::exchange(next[at], -1))
         loop.push_back(part.axes * mesh.vertices.row(at).transpose());
-      for (std::size_t i = 0; i < loop.size(); ++i) {
-        const Vector2d a = loop[i] - loop[0], b = loop[(i + 1) % loop.size()] - loop[0];
-        area += (a.x() * b.y() - a.y() * b.x()) / 2;
-      }
       if (loop.empty()) continue;
+      const double area = area_of(loop);
       part.loops.push_back(std::move(loop));
       if (area > largest) largest = area, std::swap(part.loops[0], part.loops.back());
     }

@@ -13,16 +13,6 @@ namespace {
 
 using Eigen::Vector2d;
 
-/// Signed, positive where the loop runs counter-clockwise.
-double area_of(const Polygon& loop) {
-  double twice = 0;
-  for (std::size_t i = 0; i < loop.size(); ++i) {
-    const Vector2d a = loop[i] - loop[0], b = loop[(i + 1) % loop.size()] - loop[0];
-    twice += a.x() * b.y() - a.y() * b.x();
-  }
-  return twice / 2;
-}
-
 /// Whether the loop leans to the left of the middle of its box. Its mirrored loop leans to the right, unless
 /// it is symmetric.
 bool leans_left(const Polygon& loop, double middle) {
