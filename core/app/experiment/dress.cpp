@@ -98,8 +98,7 @@ void make_dressing_schedule(Experiment& e, ConfigErrors& errors) {
   if (!p.schedule.keys.empty())
     refuse("schedule",
            "makes the schedule itself; leave \"schedule\" out, and move what is dressed in a second run: "
-           "drape run "
-           "--resume FOLDER --out OTHER --set dress={} --set schedule=…");
+           "drape run --resume FOLDER --out OTHER --set dress={} --set schedule=…");
   if (!errors.empty()) return;
   const auto is_limit = [](const NamedEnergy& energy) { return energy.energy->role() == EnergyRole::limit; };
   dress.tightening = std::ranges::any_of(e.energies, is_limit) ? limit_increments : 0;
