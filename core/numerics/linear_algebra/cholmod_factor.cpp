@@ -1,6 +1,7 @@
 #include <algorithm>
 
 #include "core/kernel/interfaces/topology.h"
+#include "core/kernel/threads/held_signals.h"
 #include "core/kernel/threads/parallel.h"
 #include "core/numerics/linear_algebra/cholmod_context.h"
 
@@ -32,12 +33,14 @@ class CholmodFactor : public NumericFactor {
   }
 
   bool factorise(const BlockMatrix& matrix, const Eigen::VectorXd& shift) override {
+    const HeldSignals held;  // also from threads of OpenMP, which METIS's handler must not run in
     set_values(matrix, shift);
     context_.require(cholmod_factorize(matrix_, factor_, &context_.common), "numeric factorisation");
     return context_.common.status == CHOLMOD_OK && has_positive_diagonal();
   }
 
   void solve(Eigen::VectorXd& x) override {
+    const HeldSignals held;
     cholmod_dense right = {};  // refers to x
     right.nrow = right.nzmax = right.d = static_cast<std::size_t>(x.size());
     right.ncol = 1;
