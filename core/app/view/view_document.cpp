@@ -207,8 +207,9 @@ std::string encode_scalars(const Eigen::VectorXd& values, double low, double hig
 std::string deflated(std::string_view bytes) {
   uLongf size = compressBound(bytes.size());
   std::string packed(size, '\0');
-  const int code = compress2(reinterpret_cast<Bytef*>(packed.data()), &size,
-                             reinterpret_cast<const Bytef*>(bytes.data()), bytes.size(), Z_DEFAULT_COMPRESSION);
+  const int code =
+      compress2(reinterpret_cast<Bytef*>(packed.data()), &size, reinterpret_cast<const Bytef*>(bytes.data()),
+                bytes.size(), Z_DEFAULT_COMPRESSION);
   if (code != Z_OK) throw std::runtime_error("zlib cannot compress a block of the viewer");
   packed.resize(size);
   return packed;
