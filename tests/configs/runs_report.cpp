@@ -121,7 +121,7 @@ TEST_CASE("report of a sweep is one page with every row, state and failure") {
   CHECK(data["table"]["summary"].size() == 7);
   CHECK(data["table"]["summary"][0]["seconds"]["count"] == 3);
   CHECK(data["model_keys"] == Json(model_keys()));
-  CHECK(data["runs"][0]["reference"] == "newton");
+  CHECK(data["runs"][0]["reference"]["method"] == "newton");
   CHECK(data["runs"][0]["errors"]["rows"].size() > 6);
   CHECK(data["runs"][0]["first_levels"]["newton"] == 1);
   CHECK(data["runs"][6]["error"] == "error: a < b\nand more");
