@@ -170,7 +170,7 @@ def test_plots_have_the_reports_colours(experiment):
     pytest.importorskip("matplotlib").use("Agg")
     result = run(experiment, methods=["all"])
     axes = result.plot_errors()
-    assert axes.get_ylabel() == "reference_rms"
+    assert axes.get_ylabel() == "RMS distance from the reference [diagonal]"
     looks = {line.get_label(): (line.get_color(), line.get_marker()) for line in axes.lines}
     assert looks == {"pcs": ("#0072b2", "o"), "cascadic": ("#d55e00", "s"), "newton": ("#009e73", "^")}
     newton = result.errors[(result.errors["method"] == "newton") & (result.errors["level"] == 1)]

@@ -56,8 +56,7 @@ std::string submit_script(const fs::path& script, std::vector<std::string> words
         "sbatch: not found; install Slurm's client (slurm-client), or use --engine local");
   if (said.exit.code != 0)
     throw std::runtime_error("sbatch refused " + script.string() + ": " + one_line(said.err));
-  std::string id =
-      one_line(said.out.substr(0, said.out.find(';')));  // "id;cluster" with several clusters
+  std::string id = one_line(said.out.substr(0, said.out.find(';')));  // "id;cluster" with several clusters
   if (id.empty() || !is_job(id))
     throw std::runtime_error("sbatch answers \"" + excerpt(id) +
                              "\", no job's number; take out what of --sbatch keeps it from submitting one");

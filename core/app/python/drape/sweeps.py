@@ -49,7 +49,7 @@ def sweep(
     """
     base = experiment if isinstance(experiment, Experiment) else Experiment(experiment)
     resolved = base.resolved
-    seeds = {"repeats": starts} if isinstance(starts, int) else {"seeds": list(starts)}
+    seeds: dict = {"repeats": starts} if isinstance(starts, int) else {"seeds": list(starts)}
     plan: dict = {"name": resolved["name"], "base": "base.yaml", "threads": threads, **seeds}
     plan |= {"methods": [methods] if isinstance(methods, str) else list(methods)} if methods else {}
     plan |= {"ablation": {"grid": {key: list(values) for key, values in grid.items()}}} if grid else {}
