@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <utility>
 
 #include "core/kernel/threads/parallel.h"
 
@@ -265,15 +266,20 @@ CandidatePairs find_candidates(const ShapeScene& scene, const std::vector<SolidP
     triangles = finder.triangles_near(triangles);
     if (scene.solids[k].kind != SolidKind::sphere)
       for (const int i : finder.vertices_of(triangles)) c.vertices.push_back({i, k});
+    const auto has_edges = [](const Features& f) { return !f.edges.empty(); };
+    std::vector<int> edges;
+    if (std::ranges::any_of(scene.features[k], has_edges)) edges = finder.edges_of(triangles);
     for (const Features& features : scene.features[k]) {
       if (features.is_axis) {
-        finder.add_curved_side(features, finder.edges_of(triangles), c.curved_sides);
+        finder.add_curved_side(features, edges, c.curved_sides);
         continue;
       }
-      const std::vector<int> near =
-          features.dhat < scene.barrier.dhat ? finder.triangles_within(features.dhat, triangles) : triangles;
-      finder.add_point_triangle(features, near, c.pairs);
-      if (!features.edges.empty()) finder.add_edge_edge(features, finder.edges_of(near), c.pairs);
+      if (features.dhat < scene.barrier.dhat) {  // the last ones
+        triangles = finder.triangles_within(features.dhat, std::move(triangles));
+        edges = finder.edges_of(triangles);
+      }
+      finder.add_point_triangle(features, triangles, c.pairs);
+      finder.add_edge_edge(features, edges, c.pairs);
     }
   }
   return c;
