@@ -215,9 +215,9 @@ def ablations():
         for method in [m for m in ("pcs", "pcs_loop", "cascadic", "newton") if (variant, m) in named]:
             r = named[variant, method]
             rows.append([plain_name(variant), method, ", ".join(figure(n) for n in iterations(r)), figure(of(r, "tflop") / direct, 2),
-                         preview(r, "distance_rms"), preview(r, "silhouette_overlap"), figure(of(r, "energy"), 6)])
-    return table(["variation", "method", "iterations by level", "total flops, relative to direct by the defaults", "preview: RMS distance [diagonals]", "overlap",
-                  "final energy [J]"], rows, "lllrrrr")
+                         preview(r, "distance_rms")])
+    return table(["variation", "method", "iterations by level", "total flops, relative to direct by the defaults", "preview: RMS distance [diagonals]"],
+                 rows, "lllrr")
 
 
 def decrements():
@@ -256,10 +256,9 @@ def linear_solvers():
         cell = lambda solver: f"{figure(solver['factorisation_seconds'], 2)} ({figure(solver['gflops_per_second'], 2)})"  # noqa: E731
         ratios_of = r["cholmod_over_supernodal"]
         rows.append([r["scene"], str(r["vertices"]), str(r["threads"]), cell(own), cell(cholmod),
-                     figure(ratios_of["factorisation"], 2), figure(ratios_of["solve"], 2),
-                     "yes" if cholmod["same_bits_as_with_one_thread"] else "no"])
+                     figure(ratios_of["factorisation"], 2), figure(ratios_of["solve"], 2)])
     return table(["scene", "vertices", "threads", "supernodal [s] (GFlop/s)", "cholmod [s] (GFlop/s)", "cholmod / supernodal",
-                  "the same for a solve", "cholmod: same bits as with one thread"], rows, "lrrrrrrl")
+                  "the same for a solve"], rows, "lrrrrrr")
 
 
 def sum_of_changes(method, key):
