@@ -65,8 +65,13 @@ int reference(const Registry& registry) {
             << describe_markdown(page.shared);
   for (const std::string& kind : plugin_kinds()) {
     std::cout << "\n## Kind: " << kind << "\n";
+    std::vector<std::string> plain;
     for (const RegistryEntry* entry : registry.of_kind(kind))
-      std::cout << "\n" << describe_markdown(*entry, page);
+      if (entry->schema.parameters.empty())
+        plain.push_back("`" + entry->name + "`");
+      else
+        std::cout << "\n" << describe_markdown(*entry, page);
+    if (!plain.empty()) std::cout << "\nWithout parameters: " << joined(plain) << ".\n";
   }
   std::cout << "\n## Sewing pattern\n\n" << describe_pattern_markdown();
   std::cout << "\n## Sweep\n\n" << describe_sweep_markdown();

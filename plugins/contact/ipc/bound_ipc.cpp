@@ -15,7 +15,7 @@ namespace {
 
 constexpr long unlimited = std::numeric_limits<long>::max();
 
-// Limits on the pairs of one step (README.md, "Long steps").
+// Limits on the pairs of one step, of swept boxes and of primitives.
 constexpr long box_pairs_each = 48, primitive_pairs_each = 16;  // per cloth triangle
 constexpr long min_counted_triangles = 1000;                    // a cloth counts as having at least these
 constexpr long dense_factor = 3;                                // over the pairs at x0

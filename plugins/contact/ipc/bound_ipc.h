@@ -44,8 +44,7 @@ class BoundIpc final : public BoundContact {
 
   const std::shared_ptr<const RestCloth>& rest() const { return rest_; }
 
-  /// Shortens the motion, and with it max_step, if it has too many candidate pairs (see README.md, "Long
-  /// steps").
+  /// Shortens the motion, and with it max_step, if it has too many candidate pairs.
   std::unique_ptr<CollisionCandidates> build_candidates(const Positions& x0,
                                                         const Positions& x1) const override;
   std::vector<Intersection> intersections(const Positions& x) const override;
