@@ -235,6 +235,13 @@ def test_a_sweep_from_python_is_that_of_the_command_and_runs_what_is_missing(tmp
     assert drape.figures(tmp_path / "sweep", tmp_path / "figures")
 
 
+def test_a_map_goes_by_what_names_it_and_else_by_its_number():
+    twill, one, other = (f'{{"file":"{file}.csv","row":"{row}"}}' for file, row in (("mine", "twill-300"), ("mine", "x"), ("theirs", "x")))
+    keys = paper_sweep.Keys({"fabric": ""}, [{"fabric": value} for value in ("cotton", twill, one, other)])
+    assert [keys.value("fabric", value) for value in ("cotton", twill, one, other)] == ["cotton", "twill-300", "2", "3"]
+    assert keys.text("fabric", twill) == "fabric twill-300"
+
+
 def test_figures_evaluate_no_style_of_the_working_folder(tmp_path, monkeypatch):
     command("run", SMALL_FILE, "-o", tmp_path / "run", "--no-report", "-q")
     write = "x.gi_frame.f_back.f_back.f_back.f_builtins['open']('evaluated', 'w')"

@@ -11,7 +11,9 @@ namespace drape {
 
 namespace {
 
+/// None for iterations: those of one method cost more than those of another.
 std::optional<Better> better_of(const std::string& column, const std::vector<DeclaredMetric>& metrics) {
+  if (column == "iterations") return {};
   if (column == "energy_released") return Better::higher;
   if (column == "cpu_seconds" || is_one_of(column, summary_quantities(error_measures(metrics))))
     return Better::lower;
@@ -39,8 +41,8 @@ bool all_converged(const std::string& status) {
   });
 }
 
-/// Names the column in the one row, if there is one, whose range is apart from those of all rivals, and whose
-/// median is so with three digits too.
+/// Names the column in the one row, if there is one, whose range is apart from those of all rivals, with three
+/// digits too.
 void mark_best(std::vector<TableRow*> rivals, const std::string& column, Better better) {
   std::erase_if(rivals, [&](const TableRow* row) { return !(*row)[column].is_object(); });
   const auto rank = [&](const TableRow* row, const char* end) {
@@ -52,14 +54,11 @@ void mark_best(std::vector<TableRow*> rivals, const std::string& column, Better 
         better == Better::lower && (*row)[column]["low"] <= 0 && (*row)[column]["high"] >= 0;
     return around_zero ? 0 : std::min(rank(row, "low"), rank(row, "high"));
   };
-  const auto median = [&](const TableRow* row) {
-    return number_text((*row)[column]["median"].get<double>());
-  };
   const auto is_single = [&](const TableRow* row) { return (*row)[column]["count"] == 1; };
   if (rivals.size() < 2 || std::ranges::any_of(rivals, is_single)) return;  // a single value has no range
   for (TableRow* row : rivals)
     if (std::ranges::all_of(rivals, [&](const TableRow* other) {
-          return other == row || (worst(row) < best(other) && median(row) != median(other));
+          return other == row || (worst(row) < best(other) && number_text(worst(row)) != number_text(best(other)));
         }))
       (*row)["best"].push_back(column);
 }
@@ -121,10 +120,16 @@ Json table_json(const RunCollection& collection) {
   const RunTable table = table_of(collection);
   Json units = Json::object();
   for (const std::string& key : table.keys) units[key] = unit_of(key);
+  const std::vector<DeclaredMetric> metrics = collection.metrics();
+  Json metric_units = Json::object();
+  for (const MetricScope scope : {MetricScope::state, MetricScope::pair})
+    for (const MetricColumn& column : columns_of(metrics, scope, Shown::stored))
+      if (!column.unit.empty() && column.unit != "1") metric_units[column.name] = column.unit;
   return {{"columns", table.columns},
           {"rows", table.rows},
           {"units", units},
-          {"summary", summary_of(table, collection.metrics())},
+          {"metric_units", metric_units},
+          {"summary", summary_of(table, metrics)},
           {"bold", bold_text}};
 }
 

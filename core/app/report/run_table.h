@@ -42,7 +42,7 @@ RunTable table_of(const RunCollection& collection);
 /// converged. `best` names the columns that bold_text is about.
 std::vector<TableRow> summary_of(const RunTable& table, const std::vector<DeclaredMetric>& metrics);
 
-/// The table of a page: columns, rows, the units of the varied keys, and the summary.
+/// The table of a page: columns, rows, the units of the varied keys and of metrics, and the summary.
 Json table_json(const RunCollection& collection);
 
 /// What it means that a value is bold, for whoever reads a page or a table.

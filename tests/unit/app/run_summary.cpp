@@ -48,6 +48,21 @@ TEST_CASE("a value is bold where its range over starts is apart from every other
                               row("newton", 2, 3, none)});
   CHECK(apart[0]["best"] == Json::array({"seconds"}));
   CHECK(apart[1]["best"].empty());
+  // Apart, but 0.206 (0.205–0.206) beside 0.205 (0.205–0.205) is all that a reader sees.
+  for (const Json& each : summary({row("pcs", 1, 0.2046, none), row("pcs", 2, 0.2048, none),
+                                   row("newton", 1, 0.2049, none), row("newton", 2, 0.206, none)}))
+    CHECK(each["best"].empty());
+}
+
+TEST_CASE("iterations of methods are not compared") {
+  RunTable table;
+  table.columns = {"method", "seed", "iterations"};
+  for (const int seed : {1, 2})
+    for (const char* method : {"pcs", "newton"}) {
+      table.rows.push_back(row(method, seed, 1, none));
+      table.rows.back()["iterations"] = method == std::string("pcs") ? 240 : 110;
+    }
+  for (const Json& each : summary_of(table, {})) CHECK(each["best"].empty());
 }
 
 TEST_CASE("one start has no range, and where one has none, none is bold") {

@@ -44,8 +44,9 @@ def _latex_cell(name: str, row) -> tuple[str, str]:
     return median, rf"{{\scriptsize {', '.join(filter(None, [spread, *notes]))}}}" if spread or notes else ""
 
 
-def _title(measure: str) -> str:
-    return COLUMNS.get(measure, measure.replace("_", " "))
+def _title(measure: str, table: dict) -> str:
+    unit = table["metric_units"].get(measure)
+    return COLUMNS.get(measure, measure.replace("_", " ") + (f" [{unit}]" if unit else ""))
 
 
 def _varied(table: dict) -> list[str]:
@@ -59,7 +60,7 @@ def latex_table(table: dict, measures=(), machine: str = "") -> str:
     """Medians over the starts that converged, with ranges below, for the package booktabs; what is bold is the pages' choice."""
     summary, keys = pandas.DataFrame(table["summary"]), _varied(table)
     names = paper_sweep.Keys({key: table["units"].get(key, "") for key in keys}, table["summary"])
-    columns = {name: _title(name) for name in measures or COLUMNS if name in summary and summary[name].notna().any()}
+    columns = {name: _title(name, table) for name in measures or COLUMNS if name in summary and summary[name].notna().any()}
     has_reference = bool(summary["reference"].any())
     head = [*(names.title(key) for key in keys), "method", "converged", *["reference"] * has_reference, *columns.values()]
     stacked = [textwrap.fill(title.translate(ESCAPES), 14).replace("\n", r"\\{}") for title in head]
@@ -148,10 +149,10 @@ def _sweep_figures(table: dict, run_folders: dict, out: pathlib.Path, measures, 
         figure, rows = made
         files.extend(_save(figure, rows, _file(out, name)))
         wide, text = figure.get_figwidth() / paper_sweep.MILLIMETRE, f"{caption} {machine}".translate(ESCAPES)
-        captions.append(rf"\begin{{figure}}\centering\includegraphics[width={wide:.0f}mm]{{{files[-1].stem}.pdf}}\caption{{{text}}}\end{{figure}}")
+        captions.append(rf"\begin{{figure}}\centering\includegraphics[width={wide:.0f}mm]{{{files[-1].stem}.pdf}}\caption{{{text}}}\label{{fig:{files[-1].stem}}}\end{{figure}}")
 
     for name in measures or [name for name in COLUMNS if name not in TOLD and name in summary and summary[name].notna().any()]:
-        title = _title(name) + (", on a busy machine" if busy and name in ("seconds", "preview_seconds") else "")
+        title = _title(name, table) + (", on a busy machine" if busy and name in ("seconds", "preview_seconds") else "")
         for key in keys:
             save(paper_sweep.measure_figure(summary, name, title, key, names, styles, width, log), f"{name}_by_{names.short(key)}",
                  f"{title[0].upper() + title[1:]}, by {names.title(key)}: medians over the starts that converged, with ranges; n where it is not all of them.")
@@ -165,8 +166,9 @@ def _sweep_figures(table: dict, run_folders: dict, out: pathlib.Path, measures, 
     drawn = paper_sweep.draw_states(runs, list(styles), width)
     for cost in ("seconds", "iterations"):
         if made := paper_sweep.distance_figure(runs, cost, styles, references, drawn, width, busy):
-            save(made, f"distance_over_{cost}", f"Distance of each method's states against {COSTS[cost]}: medians over the starts, with bands from the lowest to the "
-                 "highest. Where a method's own end is the reference, its line falls to nothing. Pictures: the end from the first start.")
+            target = ("from the reference", "Where a method's own end is the reference, its line falls to nothing. ") if any(references.values()) else ("from its own end", "")
+            save(made, f"distance_over_{cost}", f"Distance of each method's states {target[0]} against {COSTS[cost]}: medians over the starts, with bands from the "
+                 f"lowest to the highest. {target[1]}Pictures: the end from the first start.")
     if made := paper_sweep.pictures_figure(drawn, styles, width):
         save(made, "pictures", "Preview and end of each method from the first start, by one camera, with vertices and CPU time up to that state.")
     files.append(out / "figures.tex")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import math
 import pathlib
 import tempfile
@@ -36,13 +37,28 @@ def digits(value: float) -> str:
     return f"{value:.2e}" if abs(value) >= 1e5 else f"{value:.0f}" if whole else f"{value:#.3g}"
 
 
+def _name_in(value: str) -> str:
+    """By what a map, as JSON, is told from others: its name, the row of a fabric's table, or its type; empty for all else."""
+    try:
+        fields = json.loads(value)
+    except ValueError:
+        return ""
+    return next((str(fields[name]) for name in ("name", "row", "type") if name in fields), "") if isinstance(fields, dict) else ""
+
+
 class Keys:
-    """The names of the varied keys, as readers know them, with their units. A value that is a map or a list goes by its number among
-    the rows', from 1, as in the names of runs."""
+    """The names of the varied keys, as readers know them, with their units. A map goes by what names it, if nothing else has that name; what is long, by
+    its number among the rows', from 1."""
 
     def __init__(self, units: dict, rows=()):
         self.units = units
-        self.long = {key: [value for value in dict.fromkeys(str(row[key]) for row in rows) if len(value) > 24] for key in units}
+        self.called: dict[str, dict[str, str]] = {}
+        for key in units:
+            values = list(dict.fromkeys(str(row[key]) for row in rows))
+            long = [value for value in values if len(value) > 24]
+            names = [_name_in(value) or value for value in values]
+            self.called[key] = {value: str(long.index(value) + 1) for value in long} | {
+                value: name for value, name in zip(values, names) if name != value and names.count(name) == 1}
         self.last = [key.rsplit(".", 1)[-1] for key in units]
 
     def short(self, key: str) -> str:
@@ -54,7 +70,7 @@ class Keys:
         return self.short(key).replace("_", " ") + (f" [{unit}]" if unit else "")
 
     def value(self, key: str, value) -> str:
-        return str(self.long[key].index(value) + 1) if value in self.long.get(key, ()) else written(value)
+        return self.called[key].get(value) or written(value)
 
     def text(self, key: str, value) -> str:
         text = self.value(key, value)
