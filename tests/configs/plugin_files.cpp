@@ -51,6 +51,11 @@ TEST_CASE("A plugin's source is compiled, loaded and run, and kept for the next 
     CHECK_THAT(ended.err, !Contains("compiling"));
   }
   CHECK_THAT(folder.with(listed + "rubber.cpp").out, Contains("rubber"));
+  REQUIRE(folder.with("run drape.yaml --plugin rubber.cpp -q --no-report -o unmeasured").exit_code == 0);
+  CHECK_THAT(folder.with("table unmeasured").err, Contains("unknown energy \"rubber\""));
+  const Ended table = folder.with("table unmeasured --plugin rubber.cpp");  // measures what the run left
+  CHECK(table.exit_code == 0);
+  CHECK(table.err == "");
   folder.write("stiffness.h", "constexpr double stiffness = 21;\n");  // a header of its own
   CHECK_THAT(folder.with(listed + "rubber.cpp").err, Contains("compiling"));
   CHECK_THAT(folder.with(listed + "rubber.cpp").err, !Contains("compiling"));

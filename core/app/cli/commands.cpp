@@ -109,13 +109,12 @@ CLI::App& Commands::add(const std::string& name, const std::string& summary, con
 
 CLI::App& Commands::add_with_plugins(const std::string& name, const std::string& summary,
                                      const std::string& example, std::function<int(const Registry&)> action) {
-  CLI::App& command = add(name, summary, example, [this, action = std::move(action)] {
-    compile_plugins(plugin_files_);
+  CLI::App& command = add(name, summary, example, [action = std::move(action)] {
     Registry registry;
     load_plugins(registry, plugin_directories());
     return action(registry);
   });
-  with_plugins_.push_back(&command);
+  take_plugins(command);
   return command;
 }
 
@@ -147,6 +146,7 @@ int Commands::run(int argc, char** argv) {
   std::reverse(words.begin(), words.end());  // as the parser takes them
   try {
     app_.parse(words);
+    compile_plugins(plugin_files_);
     return chosen_();
   } catch (const CLI::ParseError& error) {
     return app_.exit(error) == 0 ? exit_done : exit_bad_input;

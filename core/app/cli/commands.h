@@ -18,7 +18,9 @@ class Commands {
   /// Adds a command; its help page has the example unless that is empty. The action returns the exit code.
   CLI::App& add(const std::string& name, const std::string& summary, const std::string& example,
                 std::function<int()> action);
-  /// Adds a command that loads the plugins, those of its option --plugin too.
+  /// Gives a command the option --plugin: such plugins are compiled before its action, which loads them.
+  void take_plugins(CLI::App& command) { with_plugins_.push_back(&command); }
+  /// Adds a command that takes plugins and loads them.
   CLI::App& add_with_plugins(const std::string& name, const std::string& summary, const std::string& example,
                              std::function<int(const Registry&)> action);
 

@@ -263,6 +263,7 @@ void add_figures_command(Commands& commands) {
   option("--style", "FILE", "a matplotlib style: a file, or a name that matplotlib knows");
   flag("--log", "logarithmic axes of measures");
   flag("--overwrite", "replace existing files");
+  commands.take_plugins(command);
 }
 
 void add_report_commands(Commands& commands) {
@@ -301,6 +302,8 @@ void add_report_commands(Commands& commands) {
   add_option(table_command, "--format NAME", o->format, "md (default), csv or json")->check(one_of(formats));
   add_option(table_command, "--columns A,B", o->columns, "columns, as in run,status,energy_released")
       ->delimiter(',');
+
+  for (CLI::App* command : {&report_command, &compare_command, &table_command}) commands.take_plugins(*command);
 }
 
 }  // namespace drape
