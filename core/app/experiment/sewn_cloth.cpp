@@ -170,7 +170,7 @@ std::string sewing_text(const Level& coarsest) {
   std::string text = std::to_string(count) + (count == 1 ? " flat piece, " : " flat pieces, ") +
                      three_digits(seams) + " m of seams";
   if (least < 0.999) text += ", eased by up to " + three_digits(100 * (1 - least)) + " %";
-  return text + "; one of the texture coordinates is " + three_digits(cloth.sewing->uv_length) + " m";
+  return text + "; 1 unit of the texture coordinates is " + three_digits(cloth.sewing->uv_length) + " m";
 }
 
 }  // namespace drape

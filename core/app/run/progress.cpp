@@ -15,7 +15,8 @@ namespace {
 
 /// Intervals between updates of the line: a terminal follows the run, a log stays short [s].
 constexpr double terminal_interval = 0.1, log_interval = 10;
-/// No estimate of the time to go before this fraction; share of an iteration in the estimate.
+/// No estimate of the time to go before this fraction of the increments; share of an iteration in the
+/// estimate. A residual falls too unevenly for one.
 constexpr double least_done = 0.05, smoothing = 0.1;
 
 /// "gravity.acceleration", "pins.0.translate, contact.dhat", "pins.0.translate and 3 more".
@@ -49,7 +50,8 @@ void Progress::level_started(int) {
 void Progress::iteration(const IterationRow& row, const Positions&) {
   take_note(row);
   const double now = level_clock_.seconds();
-  if (done_ > least_done) to_go_ += (now * (1 - done_) / done_ - to_go_) * (to_go_ > 0 ? smoothing : 1);
+  if (load_stepping_ && row.time && done_ > least_done)
+    to_go_ += (now * (1 - done_) / done_ - to_go_) * (to_go_ > 0 ? smoothing : 1);
   if (verbosity_ == Verbosity::iterations) std::fprintf(stderr, "%s\n", details(row).c_str());
   if (verbosity_ != Verbosity::progress || now - last_draw_ < (terminal_ ? terminal_interval : log_interval))
     return;

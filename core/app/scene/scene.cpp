@@ -200,11 +200,11 @@ std::vector<std::string> remarks_of(const Experiment& e, const Scene& scene) {
   if (const std::string text = sewing_text(coarsest); !text.empty()) all.push_back("cloth: " + text);
   if (scene.dressing)
     all.push_back(
-        "dress: the garment starts smoothed by " + general_text(scene.dressing->smoothing, 3) +
+        "dress: the garment starts smoothed (smoothing " + general_text(scene.dressing->smoothing, 3) + ")" +
         (scene.dressing->inflation > 0
              ? ", each layer moved by " + length_text(scene.dressing->inflation) + " to its right side"
              : "") +
-        ", the body contracted by " + general_text(scene.dressing->contraction, 3) + " of its area");
+        ", the body shrunk (contraction " + general_text(scene.dressing->contraction, 3) + " of its area)");
   for (const auto& contact : e.contacts)
     for (std::string& line : contact->input_remarks()) all.push_back(std::move(line));
   for (const auto& model : scene.models)
