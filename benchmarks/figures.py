@@ -113,9 +113,13 @@ def rows_of(record):
     return [dict(zip(cells[0], row)) for row in cells[2:]]
 
 
-def limp_cloth():
-    """The scene with the softest cloth to its finest level."""
-    return next(r for r in rows_of("scenes.md") if r["run"] == "sphere_fine")
+def scene_row(name):
+    """A scene to its finest level."""
+    return next(r for r in rows_of("scenes.md") if r["run"] == name)
+
+
+def minutes_of(name):
+    return figure(float(scene_row(name)["seconds"]) / 60, 2)
 
 
 def scenes(study, columns):
@@ -491,6 +495,8 @@ VALUES = {
     "sphere.distance": lambda: figure(100 * distance_of_previews(finished("sphere", "pcs")), 2),
     "sphere.distance_ratio": lambda: figure(
         distance_of_previews(finished("sphere", "cascadic")) / distance_of_previews(finished("sphere", "pcs")), 2),
+    "previews.distance": lambda: lowest_to_highest([
+        100 * distance_of_previews(finished("previews", "pcs", name, "default")) for name in medians_over("cascadic", "previews", TFLOP)]),
     "previews, distance_ratio": lambda: lowest_to_highest([1 / ratio for ratio in medians_over(
         "cascadic", "previews", lambda r: r["preview"]["distance_rms"]).values()]),
     "sphere, previews": lambda: lowest_to_highest(start_by_start("sphere", lambda r: r["preview"]["distance_rms"])),
@@ -546,11 +552,13 @@ VALUES = {
     "sphere.solves": lambda: str(solves("sphere")[0]),
     "previews.solves": lambda: str(solves("previews")[0]),
     "dragon.pcs": lambda: seconds_text([of(runs("dragon_decrements", "pcs"), "seconds")]),
+    "dragon.residual": lambda: figure(of(runs("dragon_decrements", "pcs"), "force_residual"), 2),
+    "dragon.minutes": lambda: minutes_of("dragon"),
     "scale.vertices": lambda: f"{read('scale.json')['rows'][-1]['vertices'] / 1000:.0f}K",
     "scale.minutes": lambda: figure(read("scale.json")["rows"][-1]["total_seconds"] / 60, 2),
     "scale.memory": lambda: figure(read("scale.json")["rows"][-1]["peak_bytes"] / 1e9, 2),
-    "limp.vertices": lambda: f"{int(limp_cloth()['vertices']) / 1000:.0f}K",
-    "limp.minutes": lambda: figure(float(limp_cloth()["seconds"]) / 60, 2),
+    "limp.vertices": lambda: f"{int(scene_row('sphere_fine')['vertices']) / 1000:.0f}K",
+    "limp.minutes": lambda: minutes_of("sphere_fine"),
     "crossings": lambda: str(solves("sphere", "previews")[1]),
     "hard cases that pass": lambda: row_count("hard.json"),
     "hard cases at rest": lambda: str(sum(r["status"] == "converged" for r in read("hard.json"))),
