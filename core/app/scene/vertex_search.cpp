@@ -75,47 +75,35 @@ std::vector<int> vertices_of_label(const VertexSelection& selection, const Level
 }  // namespace
 
 VertexSearch::VertexSearch(const Level& level, const Level& coarsest, std::size_t count)
-    : level_(level), coarsest_(coarsest) {
-  constexpr std::size_t few = 16;  // for which trees do not pay
+    : level_(level),
+      coarsest_(coarsest),
+      tree_(level.rest.vertices, count),
+      coarse_tree_(coarsest.rest.vertices, &level == &coarsest ? 0 : count) {
   for (int v = 0; v < level.vertex_count(); ++v)
     if (level.topology.on_border[v]) border_.push_back(v);
   for (int t = 0; t < std::ssize(level.rest.piece); ++t)
     triangles_[level.rest.piece_names[level.rest.piece[t]]].push_back(t);
-  if (count <= few) return;
-  const auto build = [](std::optional<BoxTree>& tree, const Level& of) {
-    std::vector<Box> boxes;
-    for (const auto& p : of.rest.vertices.rowwise()) boxes.push_back(Box::around(p, p, 0));
-    tree.emplace().build(boxes);
-  };
-  build(tree_, level);
-  if (&level != &coarsest) build(coarse_tree_, coarsest);
 }
 
 std::vector<int> VertexSearch::candidates(const VertexSelection& selection) const {
   constexpr double margin = 1 + 1e-6;  // over round-off
-  const bool nearest = selection.region == "nearest", in_ball = selection.region == "ball";
+  const bool in_ball = selection.region == "ball";
   std::vector<int> found;
   if (selection.region == "border") return border_;
-  if (!tree_) {
-    found.resize((nearest ? coarsest_ : level_).vertex_count());
+  if (tree_.boxes.size() == 0) {
+    found.resize(level_.vertex_count());
     std::iota(found.begin(), found.end(), 0);
     return found;
   }
-  const Box region = nearest || in_ball
-                         ? Box::around(selection.point, selection.point, 0)
-                         : Box::around(selection.lower.cwiseMin(selection.upper), selection.upper, 1e-9);
-  double reach = nearest ? INFINITY : in_ball ? margin * selection.radius * margin * selection.radius : 0;
-  (nearest && coarse_tree_ ? coarse_tree_ : tree_)
-      ->visit_near(
-          reach, [&](const Box& box) { return box.squared_distance(region); },
-          [&](int v) {
-            found.push_back(v);
-            if (nearest)
-              reach = std::min(
-                  reach,
-                  margin * (coarsest_.rest.vertices.row(v).transpose() - selection.point).squaredNorm());
-            return reach;
-          });
+  const Box region = in_ball ? Box::around(selection.point, selection.point, 0)
+                             : Box::around(selection.lower.cwiseMin(selection.upper), selection.upper, 1e-9);
+  const double reach = in_ball ? margin * selection.radius * margin * selection.radius : 0;
+  tree_.boxes.visit_near(
+      reach, [&](const Box& box) { return box.squared_distance(region); },
+      [&](int v) {
+        found.push_back(v);
+        return reach;
+      });
   std::ranges::sort(found);
   return found;
 }
@@ -138,13 +126,11 @@ std::vector<int> VertexSearch::selected(const VertexSelection& selection) const 
     if (is_new) known->second = selected_by_name(selection);
     return known->second;
   }
-  std::vector<int> among = candidates(selection);
   if (selection.region == "nearest") {
-    const int nearest = *std::ranges::min_element(among, {}, [&](int v) {
-      return (coarsest_.rest.vertices.row(v) - selection.point.transpose()).squaredNorm();
-    });
+    const int nearest = (&level_ == &coarsest_ ? tree_ : coarse_tree_).nearest(selection.point);
     return {level_.own_vertex(coarsest_.cloth_vertex(nearest))};
   }
+  std::vector<int> among = candidates(selection);
   constexpr double rounding = 1e-12;  // round-off must not exclude vertices on a region's boundary
   std::erase_if(among, [&](int v) {
     const Eigen::Vector3d p = level_.rest.vertices.row(v);

@@ -2,13 +2,12 @@
 
 #include <array>
 #include <map>
-#include <optional>
 #include <string>
 #include <vector>
 
 #include "core/app/experiment/experiment_parameters.h"
 #include "core/kernel/interfaces/level.h"
-#include "core/numerics/collision_detection/box_tree.h"
+#include "core/numerics/collision_detection/point_tree.h"
 
 namespace drape {
 
@@ -28,7 +27,7 @@ class VertexSearch {
 
   const Level &level_, &coarsest_;
   std::vector<int> border_;
-  std::optional<BoxTree> tree_, coarse_tree_;          // the second one only of another level
+  PointTree tree_, coarse_tree_;                       // the second one only of another level
   std::map<std::string, std::vector<int>> triangles_;  // of each piece
   mutable std::map<std::array<std::string, 3>, std::vector<int>> named_;  // found by region, piece and label
 };

@@ -4,6 +4,7 @@
 #include "core/kernel/plugin/bounds.h"
 #include "core/kernel/plugin/parameters.h"
 #include "core/kernel/plugin/plugin.h"
+#include "core/numerics/collision_detection/point_tree.h"
 #include "core/numerics/elements/linear_energy.h"
 
 namespace drape {
@@ -44,11 +45,8 @@ class ConstantLoad final : public Energy {
   }
   std::unique_ptr<BoundEnergy> bind(const Level& level, const Material&) const override {
     Positions forces = level.vertex_area * force_density.transpose();
-    for (const PointForce& load : points) {
-      Eigen::Index nearest;
-      (level.rest.vertices.rowwise() - load.point.transpose()).rowwise().squaredNorm().minCoeff(&nearest);
-      forces.row(nearest) += load.force.transpose();
-    }
+    const PointTree vertices(level.rest.vertices, points.size());
+    for (const PointForce& load : points) forces.row(vertices.nearest(load.point)) += load.force.transpose();
     return std::make_unique<LinearEnergy>(std::move(forces));
   }
 };
