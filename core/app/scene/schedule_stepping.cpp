@@ -45,7 +45,9 @@ std::vector<double> times_with_between(const std::vector<double>& times) {
 void check_on_levels(const Experiment& e, const Scene& scene, const LoadSchedule& schedule,
                      ConfigErrors& errors) {
   const std::vector<Level>& levels = scene.hierarchy.levels;
-  std::map<double, Conflicts> conflicts;  // of all pins and handles, at the times of their keys
+  std::map<double, Conflicts> conflicts;         // of all pins and handles, at the times of their keys
+  constexpr std::size_t most_bound = 1'000'000;  // energies times vertices; a run tells of faults beyond
+  std::size_t bound_before = 0;
   for (const ScheduleKey& key : e.parameters.schedule.keys) {
     if (key.is_of_contact() || key.section == "dress") continue;
     const bool of_vertices = key.section == "pins" || key.section == "handles";
@@ -72,8 +74,11 @@ void check_on_levels(const Experiment& e, const Scene& scene, const LoadSchedule
       const LoadState load = *load_at(time);
       if (of_vertices) check_selections(e, *load.parameters, levels, own, &key);
       if (!own.empty() || key.section == "pins") return;
-      for (const auto& first : scene.models)  // throws for an energy that load stepping could not bind
+      for (const auto& first : scene.models) {  // throws for an energy that load stepping could not bind
+        if (bound_before > most_bound) return;
         LevelModel(first->level(), load.parameters->material, load.energies, {}, {}, first.get());
+        bound_before += load.energies.size() * std::size_t(first->level().vertex_count());
+      }
     });
     if (bound && of_vertices)
       hold_at(times_with_between(key.times), [&](double time, ConfigErrors& own) {
