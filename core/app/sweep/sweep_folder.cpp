@@ -226,7 +226,7 @@ std::string list_of_runs(const SweepFolder& folder) {
     std::string end = status.seconds > 0 ? duration_text(status.seconds) : "";
     if (status.state == RunState::failed && !expected)
       end += "\n    " + boost::replace_all_copy(status.error, "\n", "\n    ");
-    rows.push_back({run["name"].get<std::string>(), json_text(run["seed"]),
+    rows.push_back({printable(run["name"].get<std::string>()), json_text(run["seed"]),
                     expected ? "refused, as expected" : to_string(status.state), end});
   }
   return text_table(rows);
