@@ -102,6 +102,9 @@ TEST_CASE("A schedule of many keys or times is refused by its bounds; one within
     CHECK_THAT(
         checked_square(pins + rest_of_experiment + schedule + key(parameter, 40000, value)).err,
         Contains("has 40000 times in the keys of material, energies, pins and handles, of at most 1000"));
+  CHECK(checked(Scratch("name: large\nlevels: 1\ncloth: {vertices: 40000}\n" + rest_of_experiment + schedule +
+                        key("material.density", 1000, "500")))
+            .exit_code == 0);
   const std::string ball =
       "contact: shapes\nobstacles: [{shape: sphere, radius: 0.1, translate: [0, 0, -1]}]\n";
   CHECK(checked_square(ball + rest_of_experiment + schedule + key("obstacles.0.radius", 40000, "0.1"))
@@ -206,6 +209,40 @@ TEST_CASE("Many energies of one kind are checked in time") {
   const std::string list =
       "energies: [neo_hookean" + repeated(2000, [](int) { return ", constant_load"; }) + "]\n";
   CHECK(checked_square(list + "methods: {newton: {}}\n").exit_code == 0);
+  const std::string load = "{point: [0.3, 0.2, 0], force: [0, 0, 1]}, ";
+  CHECK(checked(Scratch("name: large\nlevels: 1\ncloth: {vertices: 100000}\nmethods: {newton: {}}\nenergies: "
+                        "[neo_hookean, {type: constant_load, points: [" +
+                        repeated(20000, [&](int) { return load; }) + "]}]\n"))
+            .exit_code == 0);
+}
+
+TEST_CASE("Many names that are not there are neither compared nor listed without bound") {
+  const std::string letters(180, 'x');
+  const auto piece = [](int k) {
+    const std::string x = std::to_string(2 * k), end = std::to_string(2 * k + 1);
+    return "v " + x + " 0 0\nv " + end + " 0 0\nv " + x + " 1 0\nvt " + x + " 0\nvt " + end + " 0\nvt " + x +
+           " 1\ng p" + std::to_string(k) + "\nf -3/-3 -2/-2 -1/-1\n";
+  };
+  const Scratch pieces(
+      "name: large\nlevels: 1\ncloth: {shape: file, file: a.obj, rest: uv, uv_unit: m}\npins:\n" +
+      repeated(9000, [](int) { return "  - {region: piece, piece: q}\n"; }) + rest_of_experiment);
+  pieces.write("a.obj", repeated(30000, piece));
+  CHECK_THAT(checked(pieces).err,
+             Contains("has no piece \"q\"; it has p0, p1, ") && Contains("and 29960 more"));
+  const Scratch panels("name: large\nlevels: 1\ncloth: {shape: pattern, file: p.yaml}\n" +
+                       rest_of_experiment);
+  panels.write("p.yaml",
+               "properties: {units_in_meter: 1}\npattern:\n  panels:\n" +
+                   repeated(3000,
+                            [&](int k) {
+                              return "    " + letters + std::to_string(k) +
+                                     ": {vertices: [[0, 0], [1, 0], [0, 1]], edges: [[0, 1], [1, 2], "
+                                     "[2, 0]]}\n";
+                            }) +
+                   "  stitches:\n" + repeated(1000, [&](int k) {
+                     return "    - [y" + letters + std::to_string(k) + ".0, " + letters + "0.1]\n";
+                   }));
+  CHECK_THAT(checked(panels).err, Contains("there is no panel"));
 }
 
 TEST_CASE("A vertex or an edge of very many triangles is refused") {

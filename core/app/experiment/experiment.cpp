@@ -212,7 +212,7 @@ std::vector<std::string> chosen_methods(const Experiment& experiment, const std:
   std::vector<std::string> known = experiment.method_names();
   for (const std::string& name : asked)
     if (name != all_methods && !is_one_of(name, known))
-      throw std::runtime_error("--method " + name + ": the experiment's methods are " + joined(known));
+      throw std::runtime_error("--method " + name + ": the experiment's methods are " + listed(known));
   if (is_one_of(all_methods, asked)) return known;
   if (asked.empty()) {
     const std::string name = default_method(known);

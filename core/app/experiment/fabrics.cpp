@@ -187,7 +187,7 @@ ConfigNode material_of(const Table& table, std::size_t row, const std::string& n
 
 std::string remedy(const std::string& name, const std::vector<std::string>& names) {
   return did_you_mean(name, names,
-                      did_you_mean(only_word_with(name, names), names, "it has " + joined(names)));
+                      did_you_mean(only_word_with(name, names), names, "it has " + listed(names)));
 }
 
 ConfigNode row_of_file(const ConfigNode& fabric, std::optional<double> thickness, ConfigErrors& errors) {

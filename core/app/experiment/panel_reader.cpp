@@ -86,7 +86,7 @@ class PanelReader {
     if (number && *number >= 0 && *number < std::ssize(vertices_)) return *number;
     const bool has_names = !vertex_names_[0].empty();
     refuse(node.where, "edge " + edge + " ends at vertex " + node.shown() + ", which is not there; " +
-                           (has_names ? "it has " + joined(vertex_names_)
+                           (has_names ? "it has " + listed(vertex_names_)
                                       : "vertices go from 0 to " + std::to_string(vertices_.size() - 1)));
     return std::nullopt;
   }
@@ -276,7 +276,7 @@ std::optional<int> ReadPanel::edge_of(const ConfigNode& node, const std::string&
   const std::string range = "edges go from 0 to " + std::to_string(parts.size() - 1);
   errors.push_back(
       {node.where, user + ": panel " + excerpt(panel.name) + " has no edge " + node.shown() + "; " +
-                       did_you_mean(node.scalar, names, names.empty() ? range : "it has " + joined(names))});
+                       did_you_mean(node.scalar, names, names.empty() ? range : "it has " + listed(names))});
   return std::nullopt;
 }
 

@@ -71,7 +71,7 @@ class SeamReader {
       std::vector<std::string> names;
       for (const ReadPanel& p : panels_) names.push_back(p.panel.name);
       errors_.push_back({panel.where, "seam " + seam + ": there is no panel " + panel.shown() + "; " +
-                                          did_you_mean(panel.scalar, names, "there are " + joined(names))});
+                                          did_you_mean(panel.scalar, names, "there are " + listed(names))});
       return;
     }
     const ReadPanel& own = panels_[named->second];

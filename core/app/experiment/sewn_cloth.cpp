@@ -150,7 +150,7 @@ void find_label_edges(const ConfigNode& source, ExperimentParameters& p, ConfigE
                                     "\"; " +
                                     (!is_pattern     ? "only edges of a sewing pattern have labels"
                                      : names.empty() ? "the pattern has no labels"
-                                                     : "the pattern has " + joined(names))});
+                                                     : "the pattern has " + listed(names))});
   }
 }
 

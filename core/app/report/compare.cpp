@@ -126,15 +126,6 @@ std::map<std::string, double> parsed(const Names& bounds, const Names& known) {
   return ratios;
 }
 
-/// The first `most` names, then how many more there are.
-Names first_of(Names names, std::size_t most) {
-  if (names.size() <= most) return names;
-  const std::string rest = "and " + std::to_string(names.size() - most) + " more";
-  names.resize(most);
-  names.push_back(rest);
-  return names;
-}
-
 using Kind = ConfigNode::Kind;
 
 /// The part of an experiment under model_keys, without the start's noise and the record of where a material's

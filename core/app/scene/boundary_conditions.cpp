@@ -143,11 +143,12 @@ void check_selection(const ExperimentParameters& parameters, bool handles, std::
   if (p.region == "label" && (!p.label || std::ranges::any_of(p.label_edges, beyond)))
     return errors.push_back({where, name + (p.label ? ": \"label_edges\" name a vertex that is not there"
                                                     : " needs \"label\", that of a pattern's edges")});
-  if (p.region == "piece" && !p.piece)
-    return errors.push_back({where, name + " needs \"piece\", the name of a piece: " + joined(pieces)});
-  if (p.piece && std::ranges::find(pieces, *p.piece) == pieces.end())
-    return errors.push_back({where, name + ": the cloth has no piece \"" + excerpt(*p.piece) + "\"; it has " +
-                                        (pieces.empty() ? "none with a name" : joined(pieces))});
+  if (p.piece ? !is_one_of(*p.piece, pieces) : p.region == "piece")
+    return errors.push_back({where, name +
+                                        (p.piece ? ": the cloth has no piece \"" + excerpt(*p.piece) + "\""
+                                                 : " needs \"piece\", the name of a piece") +
+                                        "; it has " +
+                                        (pieces.empty() ? "none with a name" : listed(pieces))});
   if (p.region == "seam" && !coarsest.rest.sewing)
     return errors.push_back(
         {where, name + " selects seams, which only a cloth of flat pieces has (\"rest: uv\" in cloth)"});

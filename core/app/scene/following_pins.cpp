@@ -74,7 +74,7 @@ std::string unknown_obstacle(const Experiment& e, const std::string& obstacle) {
   return "does not exist; " +
          did_you_mean(obstacle, names,
                       names.empty() ? "give an obstacle a \"name\", or follow it by its index from 0"
-                                    : "the names are " + joined(names));
+                                    : "the names are " + listed(names));
 }
 
 /// For each pin the index of the obstacle that it follows; none if it follows none, or one that is unknown.

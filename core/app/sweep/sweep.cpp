@@ -156,7 +156,7 @@ class Reader {
     for (const std::string& name : chosen)
       if (!is_one_of(name, known))
         errors.push_back({where, "there is no method \"" + excerpt(name) +
-                                     "\"; the experiment's methods are " + joined(known)});
+                                     "\"; the experiment's methods are " + listed(known)});
   }
 
   void add_runs(const Experiment& experiment, const std::vector<std::string>& methods,

@@ -31,12 +31,13 @@ size_t edit_distance(const std::string& a, const std::string& b) {
 
 std::string nearest_word(const std::string& typed, const std::vector<std::string>& words) {
   std::string nearest;
-  size_t least = std::string::npos;
+  size_t least = std::string::npos, work = 0;
   for (const std::string& word : words) {
     // A third of the letters may be wrong; beyond that a guess only misleads.
     const size_t longer = std::max(typed.size(), word.size()), shorter = std::min(typed.size(), word.size());
-    constexpr size_t most_letters = 200;  // the work grows with the square
-    if (longer > most_letters || longer - shorter > longer / 3) continue;
+    constexpr size_t most_work = 200'000;  // many typed words may each be compared with as many long ones
+    if (longer - shorter > longer / 3) continue;
+    if (longer > most_work || (work += longer * longer) > most_work) break;
     const size_t distance = edit_distance(folded(typed), folded(word));
     if (distance > longer / 3 || distance >= least) continue;
     least = distance;
@@ -85,6 +86,19 @@ std::string joined(const std::vector<std::string>& words, const char* separator,
   for (std::size_t i = 0; i < words.size(); ++i)
     text += (text.empty() ? "" : i + 1 == words.size() ? last : separator) + words[i];
   return text;
+}
+
+std::vector<std::string> first_of(const std::vector<std::string>& words, std::size_t most) {
+  if (words.size() <= most) return words;
+  std::vector<std::string> first(words.begin(), words.begin() + std::ptrdiff_t(most));
+  first.push_back("and " + std::to_string(words.size() - most) + " more");
+  return first;
+}
+
+std::string listed(const std::vector<std::string>& words) {
+  std::vector<std::string> first = first_of(words, 40);
+  for (std::string& word : first) word = excerpt(word);
+  return joined(first);
 }
 
 std::string quoted_choice(const std::vector<std::string>& words) {

@@ -29,6 +29,12 @@ std::vector<std::string> split(const std::string& text, char separator);
 std::string joined(const std::vector<std::string>& words, const char* separator = ", ",
                    const char* last = ", ");
 
+/// The first `most` words, then how many more there are.
+std::vector<std::string> first_of(const std::vector<std::string>& words, std::size_t most);
+
+/// "a, b, c" for a message: excerpts of the first forty words, then how many more there are.
+std::string listed(const std::vector<std::string>& words);
+
 /// `"a", "b" or "c"`
 std::string quoted_choice(const std::vector<std::string>& words);
 
