@@ -150,6 +150,12 @@ std::vector<Features> Features::of(const Solid& solid, double dhat) {
   return all;
 }
 
+double Features::distance_bound(const Solid& solid, const Vector3d& p) const {
+  const Vector3d q = solid.to_local(p);
+  const double out = std::abs(q.head<2>().norm() - solid.radius), up = std::abs(q.z()) - solid.half.z();
+  return std::hypot(std::max(0.0, out - side), up);
+}
+
 void Features::points_near(const Solid& solid, const Vector3d& centre, double radius,
                            std::vector<int>& found) const {
   visit_candidates(*this, points.size(), solid, centre, radius, [&](int i) {

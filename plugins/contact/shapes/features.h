@@ -28,6 +28,9 @@ struct Features {
   /// with many sides for gaps so small that few would be too far inside the circle.
   static std::vector<Features> of(const Solid& solid, double dhat);
 
+  /// Below the distance of p from the rims [m].
+  double distance_bound(const Solid& solid, const Eigen::Vector3d& p) const;
+
   /// Appends the indices of points within `radius` of `centre`.
   void points_near(const Solid& solid, const Eigen::Vector3d& centre, double radius,
                    std::vector<int>& found) const;

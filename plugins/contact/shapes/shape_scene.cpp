@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "core/kernel/threads/parallel.h"
+#include "core/numerics/collision_detection/closest.h"
 
 namespace drape::shapes {
 
@@ -81,13 +82,13 @@ class Finder {
                          [&](int i) { return is_near(ball_of(&scene_.cloth.edges(i, 0), 2, x0_, x1_)); });
   }
 
-  /// Which of the triangles may come within a d̂ that is smaller than the scene's.
-  std::vector<int> triangles_within(double dhat, std::vector<int> triangles) const {
+  /// Which of the triangles may come within the d̂ of rims, smaller than the scene's.
+  std::vector<int> triangles_near_rims(const Features& rims, std::vector<int> triangles) const {
     std::erase_if(triangles, [&](int i) {
-      const Corners from = scene_.corners(i, x0_), to = scene_.corners(i, x1_);
-      double moved = 0;
-      for (int k = 0; k < 3; ++k) moved = std::max(moved, (to[k] - from[k]).norm());
-      return separate(solid_, from).separation > moved + dhat;
+      const int* vertices = &scene_.cloth.triangles(i, 0);
+      const Ball ball = ball_of(vertices, 3, x0_, x1_);
+      return rims.distance_bound(solid_, ball.centre) > ball.radius + rims.dhat ||
+             separate(solid_, scene_.corners(i, x0_)).separation > reach_of(rims, vertices, 3);
     });
     return triangles;
   }
@@ -101,6 +102,7 @@ class Finder {
       const Ball ball = ball_of(&scene_.cloth.triangles(i, 0), 3, x0_, x1_);
       found.clear();
       features.points_near(solid_, ball.centre, ball.radius + features.reach(), found);
+      if (features.sides > 0) drop_far_points(features, i, found);
       const double area = scene_.cloth.triangle_area[i];
       ContactPair pair = pair_of(features, PairKind::point_triangle,
                                  share * area * side_fraction(features, std::sqrt(2 * area)));
@@ -120,6 +122,7 @@ class Finder {
       const Ball ball = ball_of(&scene_.cloth.edges(i, 0), 2, x0_, x1_);
       found.clear();
       features.edges_near(solid_, ball.centre, ball.radius + features.reach(), found);
+      if (features.sides > 0) drop_far_sides(features, i, found);
       const double length = std::sqrt(scene_.cloth.edge_length_squared[i]);
       ContactPair pair = pair_of(features, PairKind::edge_edge,
                                  half * scene_.cloth.edge_area[i] * side_fraction(features, length));
@@ -148,6 +151,30 @@ class Finder {
   }
 
  private:
+  /// The distance at x0 within which an element may come within the rims' d̂.
+  double reach_of(const Features& rims, const int* vertices, int count) const {
+    double moved = 0;
+    for (int k = 0; k < count; ++k)
+      moved = std::max(moved, (x1_.row(vertices[k]) - x0_.row(vertices[k])).norm());
+    return moved + rims.dhat;
+  }
+  /// A ball around a triangle or an edge holds many sides of a rim, of which few are near the element. These
+  /// drop points too far from the triangle's plane, and sides too far from the edge.
+  void drop_far_points(const Features& rims, int triangle, std::vector<int>& points) const {
+    const Corners c = scene_.corners(triangle, x0_);
+    const Vector3d normal = (c[1] - c[0]).cross(c[2] - c[0]).normalized();
+    const double reach = reach_of(rims, &scene_.cloth.triangles(triangle, 0), 3);
+    std::erase_if(points, [&](int i) { return std::abs(normal.dot(rims.points[i] - c[0])) > reach; });
+  }
+  void drop_far_sides(const Features& rims, int edge, std::vector<int>& sides) const {
+    const int* vertices = &scene_.cloth.edges(edge, 0);
+    const Vector3d a = x0_.row(vertices[0]), u = x0_.row(vertices[1]).transpose() - a;
+    const double reach = reach_of(rims, vertices, 2) + 0.5 * rims.side;
+    std::erase_if(sides, [&](int i) {
+      const Vector3d middle = 0.5 * (rims.points[rims.edges[i][0]] + rims.points[rims.edges[i][1]]) - a;
+      return (middle - nearest_on_segment(u, middle) * u).norm() > reach;
+    });
+  }
   /// A pair with one of the features, without its vertices.
   ContactPair pair_of(const Features& features, PairKind kind, double weight) const {
     ContactPair pair{{}, kind, solid_index_, weight, features.dhat, features.offset};
@@ -275,7 +302,7 @@ CandidatePairs find_candidates(const ShapeScene& scene, const std::vector<SolidP
         continue;
       }
       if (features.dhat < scene.barrier.dhat) {  // the last ones
-        triangles = finder.triangles_within(features.dhat, std::move(triangles));
+        triangles = finder.triangles_near_rims(features, std::move(triangles));
         edges = finder.edges_of(triangles);
       }
       finder.add_point_triangle(features, triangles, c.pairs);
