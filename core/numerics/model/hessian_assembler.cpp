@@ -1,6 +1,8 @@
 #include "core/numerics/model/hessian_assembler.h"
 
 #include <algorithm>
+#include <cstring>
+#include <span>
 
 #include "core/kernel/threads/parallel.h"
 
@@ -84,7 +86,6 @@ BlockMatrix hessian_of(const std::vector<const BoundEnergy*>& energies, const Po
 
 void HessianAssembler::reset(const std::shared_ptr<const BlockPattern>& base) {
   base_ = pattern_ = base;
-  base_slot_.clear();
   extra_ = {};
   persistent_slots_.clear();
   neighbours_ = {};
@@ -131,14 +132,21 @@ void HessianAssembler::grow_pattern(const std::shared_ptr<const BlockPattern>& b
 void HessianAssembler::build_pattern() {
   pattern_ = with_blocks(*base_, extra_.blocks);
   persistent_slots_.clear();
-  base_slot_.resize(base_->columns.size());
-  parallel_for(base_->rows(), 4096, [&](int begin, int end) {
+}
+
+void HessianAssembler::copy_to_whole(const BlockMatrix& smooth) {
+  matrix_.pattern = pattern_;
+  matrix_.values.resize(9 * static_cast<std::size_t>(pattern_->blocks()));
+  parallel_for(base_->rows(), 1024, [&](int begin, int end) {
     for (int i = begin; i < end; ++i) {
-      int to = pattern_->row_start[i];
-      for (int b = base_->row_start[i]; b < base_->row_start[i + 1]; ++b) {
-        while (pattern_->columns[to] != base_->columns[b]) ++to;
-        base_slot_[b] = to;
-      }
+      const std::span<const int> columns = pattern_->row(i), from = base_->row(i);
+      double* to = matrix_.block(pattern_->row_start[i]);
+      std::size_t b = 0;
+      for (std::size_t k = 0; k < columns.size(); ++k, to += 9)
+        if (b < from.size() && from[b] == columns[k])
+          std::memcpy(to, smooth.block(base_->row_start[i] + static_cast<int>(b++)), 9 * sizeof(double));
+        else
+          std::fill_n(to, 9, 0.0);
     }
   });
 }
@@ -151,12 +159,8 @@ const BlockMatrix& HessianAssembler::add(BlockMatrix& smooth,
   for (const BoundEnergy* energy : transient) stencils.push_back(energy->stencils());
   grow_pattern(smooth.pattern, stencils);
   BlockMatrix* sum = &smooth;
-  if (!base_slot_.empty()) {
-    if (matrix_.pattern != pattern_) matrix_ = BlockMatrix(pattern_);
-    matrix_.set_zero();
-    parallel_for(static_cast<int>(base_slot_.size()), 8192, [&](int begin, int end) {
-      for (int b = begin; b < end; ++b) std::copy_n(smooth.block(b), 9, matrix_.block(base_slot_[b]));
-    });
+  if (pattern_ != base_) {
+    copy_to_whole(smooth);
     sum = &matrix_;
   }
   if (persistent_slots_.empty())

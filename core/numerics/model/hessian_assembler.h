@@ -42,11 +42,13 @@ class HessianAssembler {
  private:
   void reset(const std::shared_ptr<const BlockPattern>& base);
   void build_pattern();
+  /// Makes matrix_ the smooth matrix in the whole pattern. Blocks are cleared or copied in one pass, and
+  /// their memory is kept.
+  void copy_to_whole(const BlockMatrix& smooth);
   void grow_pattern(const std::shared_ptr<const BlockPattern>& base, const std::vector<Stencils>& stencils);
 
   std::shared_ptr<const BlockPattern> base_;     // of the smooth matrix
-  std::shared_ptr<const BlockPattern> pattern_;  // base_ and the extra blocks
-  std::vector<int> base_slot_;                   // index in pattern_ of each block of base_; empty if equal
+  std::shared_ptr<const BlockPattern> pattern_;  // base_ and the extra blocks; base_ itself without any
   std::vector<BlockSlots> persistent_slots_;
   BlockMatrix matrix_;
   ExtraPattern extra_;
