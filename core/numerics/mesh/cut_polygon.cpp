@@ -18,8 +18,8 @@ constexpr double largest_bend = 0.08;
 constexpr double area_rounding = 1e-13;
 /// Corners off a line by less than this part of the diameter lie on it.
 constexpr double line_rounding = 1e-6;
-/// The time to search ears and crossings grows with the square of the corners, or faster.
-constexpr std::size_t most_of_ears = 400, most_compared = 10'000;
+/// Corners of an outline whose sides are compared: the time grows with the square.
+constexpr std::size_t most_compared = 10'000;
 /// Corners of the largest fan: corner 0 is in all its triangles, and a mesh limits the triangles around a
 /// vertex.
 constexpr std::size_t most_of_fan = 5000;
@@ -100,40 +100,6 @@ std::array<int, 2> meeting_sides(const Outline& outline) {
   return {-1, -1};
 }
 
-/// Whether corner i of what is left of the outline is an ear: its triangle faces up and holds no other
-/// corner.
-bool is_ear(const Outline& outline, const std::vector<int>& left, int i) {
-  const int n = static_cast<int>(left.size()), before = (i + n - 1) % n, after = (i + 1) % n;
-  const Vector2d &a = outline[left[before]], &b = outline[left[i]], &c = outline[left[after]];
-  if (side_of(a, b, c) <= 0) return false;
-  for (int k = 0; k < n; ++k) {
-    if (k == before || k == i || k == after) continue;
-    const Vector2d& p = outline[left[k]];
-    if (side_of(a, b, p) >= 0 && side_of(b, c, p) >= 0 && side_of(c, a, p) >= 0) return false;
-  }
-  return true;
-}
-
-std::vector<std::array<int, 3>> ears(const Outline& outline) {
-  std::vector<std::array<int, 3>> triangles;
-  std::vector<int> left(outline.size());
-  for (int k = 0; k < static_cast<int>(left.size()); ++k) left[k] = k;
-  for (int at = 0, tried = 0; left.size() > 3 && tried < static_cast<int>(left.size());) {
-    const int n = static_cast<int>(left.size());
-    if (!is_ear(outline, left, at)) {
-      at = (at + 1) % n;
-      ++tried;
-      continue;
-    }
-    triangles.push_back({left[(at + n - 1) % n], left[at], left[(at + 1) % n]});
-    left.erase(left.begin() + at);
-    at %= n - 1;
-    tried = 0;
-  }
-  triangles.push_back({left[0], left[1], left[2]});
-  return triangles;
-}
-
 /// Corners that do not coincide with the one before; the last not with the first either.
 std::vector<int> different_corners(const Outline& outline) {
   constexpr double same = 1e-12;
@@ -178,16 +144,12 @@ CutPolygon cut_polygon(const std::vector<Vector3d>& corners) {
   if (kept.size() < 3) return fan;  // has no area but by round-off
   Outline outline;
   for (const int k : kept) outline.push_back(flat.outline[k]);
-  const bool is_simple_fan = is_fan(outline),
-             is_large = outline.size() > (is_simple_fan ? most_of_fan : most_of_ears);
-  if (is_simple_fan && !is_large && kept.size() == corners.size()) return fan;
-  auto meeting = is_simple_fan || is_large ? std::array{-1, -1} : meeting_sides(outline);
-  const auto triangles = is_large || meeting[0] >= 0 ? delaunay_cut(outline) : ears(outline);
-  if (triangles.empty() && is_large && outline.size() <= most_compared) meeting = meeting_sides(outline);
-  if (triangles.empty() && meeting[0] >= 0)
-    return refused("crosses or touches itself: its sides " + std::to_string(kept[meeting[0]]) + " and " +
-                   std::to_string(kept[meeting[1]]) +
-                   " (counted from 0) meet; cut it into faces that do not");
+  if (kept.size() == corners.size() && outline.size() <= most_of_fan && is_fan(outline)) return fan;
+  const auto triangles = delaunay_cut(outline);
+  if (triangles.empty() && outline.size() <= most_compared)
+    if (const auto [one, other] = meeting_sides(outline); one >= 0)
+      return refused("crosses or touches itself: its sides " + std::to_string(kept[one]) + " and " +
+                     std::to_string(kept[other]) + " (counted from 0) meet; cut it into faces that do not");
   CutPolygon cut{with_all_corners(triangles, kept, static_cast<int>(corners.size())), {}};
   if (cut.triangles.size() != corners.size() - 2)
     return refused("cannot be cut: some of its corners lie on one line to round-off; cut it into triangles");

@@ -14,11 +14,10 @@ struct CutPolygon {
 };
 
 /// Cuts a polygon of n ≥ 3 corners [m] into n - 2 triangles that face as it does: a fan around corner 0 if
-/// each triangle of it faces so, as in every convex polygon, and ears otherwise. A polygon without area is
-/// cut as a fan too, and a corner at the place of the one before gets a triangle without area. A polygon of
-/// very many corners, and one with holes that sides lead to and back from, is cut by delaunay_cut. Refuses a
-/// polygon whose corners lie off its mean plane by more than 8 % of its diameter, and one that crosses or
-/// touches itself otherwise.
+/// each triangle of it faces so, as in every convex polygon, unless its corners are very many, and as
+/// delaunay_cut does otherwise. A polygon without area is cut as a fan too, and a corner at the place of the
+/// one before gets a triangle without area. Refuses a polygon whose corners lie off its mean plane by more
+/// than 8 % of its diameter, and one that crosses or touches itself but along the way to a hole and back.
 CutPolygon cut_polygon(const std::vector<Eigen::Vector3d>& corners);
 
 /// The constrained Delaunay triangulation of what an outline of n corners encloses, anticlockwise: n - 2
