@@ -98,13 +98,10 @@ OutlineSize outline_of(const ClothParameters& c) {
   c.convert(metre);
   OutlineSize outline;
   for (const Polygon& loop : loops_of(c)) {
-    double area = 0;
-    for (std::size_t i = 0; i < loop.size(); ++i) {
-      const Eigen::Vector2d a = metre(0, 0) * loop[i], b = metre(0, 0) * loop[(i + 1) % loop.size()];
-      area += (a.x() * b.y() - a.y() * b.x()) / 2;
-      outline.border += (b - a).norm();
-    }
-    outline.area = std::abs(outline.area - std::abs(area));  // less that of holes
+    for (std::size_t i = 0; i < loop.size(); ++i)
+      outline.border += metre(0, 0) * (loop[(i + 1) % loop.size()] - loop[i]).norm();
+    const double area = metre(0, 0) * metre(0, 0) * std::abs(area_of(loop));
+    outline.area = std::abs(outline.area - area);  // less that of holes
   }
   return outline;
 }

@@ -176,14 +176,10 @@ void check_joints(const Pattern& pattern, const TriangleMesh& cloth, double edge
 
 double area_of(const std::vector<int>& loop, const std::vector<PanelEdge>& edges) {
   constexpr int steps = 32;  // of a curve
-  double area = 0;
+  Polygon corners;
   for (const int e : loop)
-    for (int i = 0; i < steps; ++i) {
-      const Eigen::Vector2d a = edges[e].curve.at(double(i) / steps),
-                            b = edges[e].curve.at(double(i + 1) / steps);
-      area += (a.x() * b.y() - a.y() * b.x()) / 2;
-    }
-  return area;
+    for (int i = 0; i < steps; ++i) corners.push_back(edges[e].curve.at(double(i) / steps));
+  return area_of(corners);
 }
 
 OutlineSize outline_size(const Pattern& pattern) {

@@ -1,12 +1,12 @@
 #include "plugins/contact/ipc/cages.h"
 
-#include <Eigen/Geometry>
 #include <stdexcept>
 #include <vector>
 
 #include "core/kernel/plugin/parameters.h"
 #include "core/numerics/collision_detection/components.h"
 #include "core/numerics/collision_detection/intersections.h"
+#include "core/numerics/dressing/implicit_smoothing.h"
 #include "core/numerics/mesh/check.h"
 #include "core/numerics/mesh/repair.h"
 
@@ -17,12 +17,7 @@ namespace {
 /// mesh has many times the area of its box, so bounds on alpha do not suffice.
 void check_piece_count(const TriangleMesh& mesh, double alpha) {
   constexpr double max_pieces = 2e7;
-  double area = 0;
-  for (const auto& t : mesh.triangles.rowwise()) {
-    const Eigen::RowVector3d a = mesh.vertices.row(t[0]);
-    area += 0.5 * (mesh.vertices.row(t[1]) - a).cross(mesh.vertices.row(t[2]) - a).norm();
-  }
-  if (area / (alpha * alpha) > max_pieces)
+  if (surface_area(mesh) / (alpha * alpha) > max_pieces)
     throw std::runtime_error(
         "a cage would take more than 20 million pieces of its mesh; raise the cages' alpha");
 }
@@ -45,17 +40,14 @@ void CageParameters::declare(Declaration<CageParameters>& d) {
   d.add("alpha", &P::alpha,
         "alpha of the innermost cage's alpha wrap, relative to the diagonal of the mesh's bounding box; "
         "sets the size of the holes that are closed, and of triangles")
-      .unit("1")
       .at_least(5e-3)
       .below(1)
       .source("Portaneri et al. 2022");
   d.add("offset", &P::offset, "offset of the innermost cage from the mesh, over the same diagonal")
-      .unit("1")
       .at_least(1e-4)
       .below(1)
       .source("Portaneri et al. 2022");
   d.add("growth", &P::growth, "ratio of a cage's alpha and offset to those of the next finer one")
-      .unit("1")
       .between(1, 10);
 }
 
