@@ -2,6 +2,7 @@
 
 #include <unistd.h>
 
+#include <climits>
 #include <cstring>
 #include <regex>
 #include <stdexcept>
@@ -151,39 +152,22 @@ void clear(const RunFolder& folder) {
 void make_results_folder(const fs::path& folder) {
   std::error_code error;
   fs::create_directories(folder, error);
-  if (fs::is_symlink(folder) && !fs::exists(folder))
+  if (std::error_code none; fs::is_symlink(folder, none) && !fs::exists(folder, none))
     refuse_path(folder, "is a link to " + fs::read_symlink(folder).string() +
                             ", which does not exist; make that folder, or name another with --out");
-  if (error || !fs::is_directory(folder))
+  if (error || !fs::is_directory(folder, error))
     refuse_path(folder, "cannot make the results folder" + (error ? " (" + error.message() + ")" : "") +
                             "; name another with --out");
 }
 
-void refuse_long_names(const fs::path& folder, const std::vector<std::string>& methods) {
-  const std::vector<fs::path> missing = missing_folders(folder);
-  const fs::path there = missing.empty() ? folder : missing.back().parent_path();
-  const auto limit = [&](int which, std::size_t usual) {
-    const long most = pathconf(there.c_str(), which);
-    return most > 0 ? static_cast<std::size_t>(most) : usual;
-  };
-  const std::size_t most_in_name = limit(_PC_NAME_MAX, 255), most_in_path = limit(_PC_PATH_MAX, 4096);
-  for (const fs::path& part : folder)
-    if (part.string().size() > most_in_name)
-      throw std::runtime_error("the results folder's name \"" + part.string() + "\" has " +
-                               std::to_string(part.string().size()) + " bytes, and the file system takes " +
-                               std::to_string(most_in_name) + "; name another with --out");
+void refuse_long_paths(const fs::path& folder, const std::vector<std::string>& methods) {
   for (const std::string& method : methods) {
-    const std::size_t name = method.size() + longest_ending;
-    if (name > most_in_name)
-      throw std::runtime_error("method \"" + method + "\" would have files with names of " +
-                               std::to_string(name) + " bytes, and the file system takes " +
-                               std::to_string(most_in_name) + "; give it a shorter name");
-    const std::size_t path = fs::absolute(folder).string().size() + std::strlen("/pictures/") + name;
-    if (path >= most_in_path)
+    const std::size_t path =
+        fs::absolute(folder).string().size() + std::strlen("/pictures/") + method.size() + longest_ending;
+    if (path >= PATH_MAX)
       throw std::runtime_error("method \"" + method + "\" would have files with paths of " +
                                std::to_string(path) + " bytes, and the system takes " +
-                               std::to_string(most_in_path - 1) +
-                               "; name a results folder less deep with --out");
+                               std::to_string(PATH_MAX - 1) + "; name a results folder less deep with --out");
   }
 }
 

@@ -12,9 +12,8 @@ namespace drape {
 /// Makes the folder of a run or a sweep and its parents. Throws std::runtime_error, which names --out.
 void make_results_folder(const std::filesystem::path& folder);
 
-/// Throws std::runtime_error if file names or paths of a run of these methods would be too long for the file
-/// system.
-void refuse_long_names(const std::filesystem::path& folder, const std::vector<std::string>& methods);
+/// Throws std::runtime_error if paths of a run of these methods would be too long for the system.
+void refuse_long_paths(const std::filesystem::path& folder, const std::vector<std::string>& methods);
 
 /// A run's results folder. Files are written under a temporary name and renamed: a final name never has an
 /// incomplete file.

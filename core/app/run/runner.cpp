@@ -169,7 +169,7 @@ bool run_experiment(const Experiment& experiment, const Scene& scene, const RunO
   const std::string& start_file = experiment.parameters.start.file;
   TriangleMesh start;
   if (!start_file.empty()) start = read_mesh(start_file);  // it may be of the run that is overwritten
-  refuse_long_names(options.out, methods);
+  refuse_long_paths(options.out, methods);
   const ConfigNode config = saved_config(experiment);
   const std::string config_text = to_yaml(config);
   if (first_unprintable(config_text) != config_text.npos)
