@@ -1,5 +1,6 @@
 #include "core/kernel/files/message_text.h"
 
+#include <boost/locale/utf.hpp>
 #include <cstdint>
 #include <cstdio>
 #include <filesystem>
@@ -14,21 +15,9 @@ namespace {
 
 /// The length in bytes of the UTF-8 character at the front, 0 where there is none.
 std::size_t utf8_length(std::string_view text, std::uint32_t& code) {
-  const auto byte = [&](std::size_t k) { return static_cast<unsigned char>(text[k]); };
-  const std::size_t length = byte(0) < 0x80           ? 1
-                             : (byte(0) >> 5) == 0x06 ? 2
-                             : (byte(0) >> 4) == 0x0e ? 3
-                             : (byte(0) >> 3) == 0x1e ? 4
-                                                      : 0;
-  if (length == 0 || length > text.size()) return 0;
-  code = length == 1 ? byte(0) : byte(0) & (0xffu >> (length + 1));
-  for (std::size_t k = 1; k < length; ++k) {
-    if ((byte(k) & 0xc0) != 0x80) return 0;
-    code = code << 6 | (byte(k) & 0x3f);
-  }
-  constexpr std::uint32_t smallest[] = {0, 0, 0x80, 0x800, 0x10000};
-  const bool surrogate = code >= 0xd800 && code < 0xe000;
-  return code < smallest[length] || code > 0x10ffff || surrogate ? 0 : length;
+  const char* end = text.data();
+  code = boost::locale::utf::utf_traits<char>::decode(end, text.data() + text.size());
+  return boost::locale::utf::is_valid_codepoint(code) ? end - text.data() : 0;
 }
 
 /// Whether a terminal would interpret the character or reorder the text around it.
