@@ -30,8 +30,6 @@ namespace {
 namespace fs = std::filesystem;
 using Folders = std::vector<fs::path>;
 
-const std::vector<std::string> formats = {"md", "csv", "json"};  // in the order of TableFormat
-
 /// The vector that "X,Y,Z" spells; nothing for another text, and for a vector whose length says no direction.
 std::optional<Eigen::Vector3d> direction_of(const std::string& text) {
   const std::vector<std::string> parts = split(text, ',');
@@ -172,8 +170,9 @@ int print_comparison(const Folders& runs, const std::vector<std::string>& bounds
 
 int print_table(const Folders& folders, const std::vector<std::string>& columns, const std::string& format) {
   const RunTable table = table_of(measured(folders));
-  const auto number = std::ranges::find(formats, format) - formats.begin();
-  const std::string text = table_text(table, columns, static_cast<TableFormat>(number));
+  static const std::map<std::string, TableFormat> formats = {
+      {"md", TableFormat::markdown}, {"csv", TableFormat::csv}, {"json", TableFormat::json}};
+  const std::string text = table_text(table, columns, formats.at(format));
   std::cout << (format == "json" ? text : printable_lines(text));
   return table.all_pass() ? exit_done : exit_not_converged;
 }
@@ -299,7 +298,8 @@ void add_report_commands(Commands& commands) {
       [o] { return print_table(o->folders, o->columns, o->format); });
   table_command.add_option("folder", o->folders, "folders of runs or sweeps, or one that has them in it")
       ->required();
-  add_option(table_command, "--format NAME", o->format, "md (default), csv or json")->check(one_of(formats));
+  add_option(table_command, "--format NAME", o->format, "md (default), csv or json")
+      ->check(one_of({"md", "csv", "json"}));
   add_option(table_command, "--columns A,B", o->columns, "columns, as in run,status,energy_released")
       ->delimiter(',');
 
