@@ -48,7 +48,6 @@ void DressParameters::declare(Declaration<DressParameters>& d) {
   d.add("largest_stretch", &DressParameters::largest_stretch,
         "a garment is too tight, and refused, if more than a tenth of the area of one of its pieces is "
         "stretched beyond this once it is sewn; 0.5 is by half")
-      .unit("1")
       .between(0.01, 10)
       .only_with("obstacle");
 }

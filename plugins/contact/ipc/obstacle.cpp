@@ -121,17 +121,14 @@ void ObstacleParameters::declare(Declaration<ObstacleParameters>& d) {
       .path()
       .identifies_item();
   d.add("frame", &P::frame, "frame of the animation, from 0, interpolated linearly; for a schedule to change")
-      .unit("1")
       .between(0, 1e6);
   d.add("contraction", &P::contraction,
         "how far a mesh shrinks before it is grown, as the time of one implicit step of mean curvature flow "
         "over its area; `dress` finds it")
-      .unit("1")
       .between(0, 1)
       .source("Desbrun et al. 1999");
   d.add("grown", &P::grown,
         "from the contracted mesh (0) to the whole one (1), linearly; for a schedule to change")
-      .unit("1")
       .between(0, 1);
   d.add("strict", &P::strict,
         "whether a mesh that a cloth could not have is refused; otherwise it is repaired");

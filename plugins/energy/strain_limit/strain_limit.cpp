@@ -145,7 +145,6 @@ class StrainLimit final : public Energy {
 
   static void declare(Declaration<StrainLimit>& d) {
     d.add("limit", &StrainLimit::limit, "largest principal stretch s of every triangle, never reached")
-        .unit("1")
         .between(1.0001, 100)
         .source("our default; cotton 1.0608 and wool-lycra 1.134: Li et al. 2021");
     d.add("stiffness", &StrainLimit::stiffness, "κ_s, stiffness of the barrier: energy per volume")
