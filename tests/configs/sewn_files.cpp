@@ -186,9 +186,10 @@ TEST_CASE("A sewn run can be run again from its own config, and goes out as its 
   const Scratch folder(
       sewn_experiment("uv_unit: mm, join: 1e-5, unit: cm, up: y", "{region: seam, piece: back}"));
   folder.write("cushion.obj", obj_of(writing));
-  CHECK_THAT(drape_ends("check e.yaml", folder).out,
-             Contains("16 vertices of the cloth's file were joined to others") &&
-                 Contains("cloth: 2 flat pieces, 0.8 m of seams; 1 unit of the texture coordinates is 0.001 m"));
+  CHECK_THAT(
+      drape_ends("check e.yaml", folder).out,
+      Contains("16 vertices of the cloth's file were joined to others") &&
+          Contains("cloth: 2 flat pieces, 0.8 m of seams; 1 unit of the texture coordinates is 0.001 m"));
   run_into("out", folder, "-j 1");
   drape_ends("run out/config.yaml --quiet --no-report --measure -j 1 --out again", folder);
   check_same_files(folder / "out", folder / "again",

@@ -303,7 +303,8 @@ void add_report_commands(Commands& commands) {
   add_option(table_command, "--columns A,B", o->columns, "columns, as in run,status,energy_released")
       ->delimiter(',');
 
-  for (CLI::App* command : {&report_command, &compare_command, &table_command}) commands.take_plugins(*command);
+  for (CLI::App* command : {&report_command, &compare_command, &table_command})
+    commands.take_plugins(*command);
 }
 
 }  // namespace drape

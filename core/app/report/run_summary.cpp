@@ -41,8 +41,8 @@ bool all_converged(const std::string& status) {
   });
 }
 
-/// Names the column in the one row, if there is one, whose range is apart from those of all rivals, with three
-/// digits too.
+/// Names the column in the one row, if there is one, whose range is apart from those of all rivals, with
+/// three digits too.
 void mark_best(std::vector<TableRow*> rivals, const std::string& column, Better better) {
   std::erase_if(rivals, [&](const TableRow* row) { return !(*row)[column].is_object(); });
   const auto rank = [&](const TableRow* row, const char* end) {
@@ -58,7 +58,8 @@ void mark_best(std::vector<TableRow*> rivals, const std::string& column, Better 
   if (rivals.size() < 2 || std::ranges::any_of(rivals, is_single)) return;  // a single value has no range
   for (TableRow* row : rivals)
     if (std::ranges::all_of(rivals, [&](const TableRow* other) {
-          return other == row || (worst(row) < best(other) && number_text(worst(row)) != number_text(best(other)));
+          return other == row ||
+                 (worst(row) < best(other) && number_text(worst(row)) != number_text(best(other)));
         }))
       (*row)["best"].push_back(column);
 }
