@@ -9,6 +9,7 @@
 #include "core/app/report/run_data.h"
 #include "core/app/run/run_folder.h"
 #include "core/kernel/files/file.h"
+#include "core/kernel/files/message_text.h"
 #include "core/kernel/files/number_text.h"
 #include "core/kernel/files/string_utils.h"
 
