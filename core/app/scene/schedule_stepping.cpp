@@ -76,7 +76,8 @@ void check_on_levels(const Experiment& e, const Scene& scene, const LoadSchedule
       if (!own.empty() || key.section == "pins") return;
       for (const auto& first : scene.models) {  // throws for an energy that load stepping could not bind
         if (bound_before > most_bound) return;
-        LevelModel(first->level(), load.parameters->material, load.energies, {}, {}, first.get());
+        [[maybe_unused]] const LevelModel model(first->level(), load.parameters->material, load.energies, {},
+                                                {}, first.get());
         bound_before += load.energies.size() * std::size_t(first->level().vertex_count());
       }
     });
