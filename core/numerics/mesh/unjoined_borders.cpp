@@ -1,5 +1,6 @@
 #include "core/numerics/mesh/unjoined_borders.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -15,12 +16,148 @@
 namespace drape {
 namespace {
 
+using Eigen::RowVector3d;
+
+/// Distances from a line below this part of an edge's length are the rounding of a file's numbers.
+constexpr double on_line = 1e-4;
+
 /// Whether no triangle shares more than one of its edges.
 bool has_only_pieces(const Triangles& triangles, const std::vector<int>& border) {
   std::vector<int> sides(triangles.rows(), 0);
   for (const int h : border) ++sides[h / 3];
   return std::ranges::all_of(sides, [](int count) { return count >= 2; });
 }
+
+/// A border edge with its triangle's corner opposite.
+struct BorderEdge : HalfEdge {
+  int opposite;
+};
+
+class JunctionSearch {
+ public:
+  JunctionSearch(const TriangleMesh& mesh, const std::vector<int>& border)
+      : x_(mesh.vertices), edges_at_(mesh.vertices.rows()) {
+    DisjointSets parts(static_cast<int>(mesh.vertices.rows()));
+    for (const auto& t : mesh.triangles.rowwise()) {
+      parts.unite(t[0], t[1]);
+      parts.unite(t[1], t[2]);
+    }
+    part_ = parts.numbered();
+    for (const int h : border)
+      edges_.push_back({HalfEdge::of(mesh.triangles, h), mesh.triangles(h / 3, h % 3)});
+    for (int i = 0; i < static_cast<int>(edges_.size()); ++i)
+      for (const int v : {edges_[i].from, edges_[i].to}) {
+        if (edges_at_[v].empty()) vertices_.push_back(v);
+        edges_at_[v].push_back(i);
+      }
+    std::ranges::stable_sort(vertices_, {}, [&](int v) { return part_[v]; });
+    for (int begin = 0, end = 0; begin < std::ssize(vertices_); begin = end) {
+      const int part = part_[vertices_[begin]];
+      for (end = begin; end < std::ssize(vertices_) && part_[vertices_[end]] == part;) ++end;
+      trees_.resize(part + 1);
+      trees_[part] = {begin, end, {}};
+      split(trees_[part].balls, 0, begin, end);
+    }
+  }
+
+  std::vector<TJunction> all() const {
+    std::vector<TJunction> found;
+    for (const BorderEdge& e : edges_) {
+      const Tree& own = trees_[part_[e.from]];
+      visit(own.balls, 0, own.begin, own.end, reach_of(e), [&](int v) {
+        if (is_inside(v, e) && has_neighbour_across(v, e)) found.push_back({v, {e.from, e.to}});
+      });
+    }
+    std::ranges::sort(found, {}, [](const TJunction& j) { return std::pair(j.vertex, j.edge); });
+    return found;
+  }
+
+ private:
+  /// A ball around the vertices of a node, whose children have its halves along the longest axis of its box.
+  struct Ball {
+    RowVector3d centre;
+    double radius;
+  };
+  using Balls = std::vector<Ball>;  // of nodes; the children of node k are 2k + 1 and 2k + 2
+  struct Tree {
+    int begin = 0, end = 0;  // of its part's vertices
+    Balls balls;
+  };
+  static constexpr int leaf = 8;  // vertices
+
+  void split(Balls& balls, std::size_t node, int begin, int end) {
+    const std::vector<int> own(vertices_.begin() + begin, vertices_.begin() + end);
+    const Positions x = x_(own, Eigen::all);
+    const RowVector3d low = x.colwise().minCoeff(), size = x.colwise().maxCoeff() - low;
+    if (balls.size() <= node) balls.resize(node + 1);
+    balls[node] = {low + size / 2, size.norm() / 2};
+    if (end - begin <= leaf) return;
+    Eigen::Index axis = 0;
+    size.maxCoeff(&axis);
+    const int middle = (begin + end) / 2;
+    std::nth_element(vertices_.begin() + begin, vertices_.begin() + middle, vertices_.begin() + end,
+                     [&](int a, int b) { return std::pair(x_(a, axis), a) < std::pair(x_(b, axis), b); });
+    split(balls, 2 * node + 1, begin, middle);
+    split(balls, 2 * node + 2, middle, end);
+  }
+
+  /// Where an edge goes from a vertex, and how far from it one may lie that is on it.
+  struct Reach {
+    RowVector3d from, along, per_length;  ///< per_length: along over its length's square
+    double distance;
+  };
+  Reach reach_of(const BorderEdge& e) const {
+    const RowVector3d along = x_.row(e.to) - x_.row(e.from);
+    return {x_.row(e.from), along, along / along.squaredNorm(), 2 * on_line * along.norm()};
+  }
+
+  /// Visits the vertices of a node that may lie on the edge.
+  template <class Visit>
+  void visit(const Balls& balls, std::size_t node, int begin, int end, const Reach& edge,
+             const Visit& visit_vertex) const {
+    const RowVector3d to = balls[node].centre - edge.from;
+    const double at = std::clamp(to.dot(edge.per_length), 0.0, 1.0);
+    const double most = balls[node].radius + edge.distance;
+    if (!((to - at * edge.along).squaredNorm() <= most * most)) return;
+    if (end - begin <= leaf) {
+      std::for_each(vertices_.begin() + begin, vertices_.begin() + end, visit_vertex);
+      return;
+    }
+    visit(balls, 2 * node + 1, begin, (begin + end) / 2, edge, visit_vertex);
+    visit(balls, 2 * node + 2, (begin + end) / 2, end, edge, visit_vertex);
+  }
+
+  RowVector3d off_line(const BorderEdge& e, int v) const {
+    const RowVector3d along = (x_.row(e.to) - x_.row(e.from)).normalized(), to = x_.row(v) - x_.row(e.from);
+    return to - to.dot(along) * along;
+  }
+
+  bool is_inside(int v, const BorderEdge& e) const {
+    if (v == e.from || v == e.to) return false;
+    const RowVector3d along = x_.row(e.to) - x_.row(e.from);
+    const double length = along.norm(), at = along.dot(x_.row(v) - x_.row(e.from)) / length;
+    return at > on_line * length && at < (1 - on_line) * length && off_line(e, v).norm() <= on_line * length;
+  }
+
+  /// Whether one of v's border edges runs along e, with its triangle on the other side. On the same side two
+  /// layers lie on one another.
+  bool has_neighbour_across(int v, const BorderEdge& e) const {
+    return std::ranges::any_of(edges_at_[v], [&](int i) {
+      const BorderEdge& own = edges_[i];
+      const int end = own.from == v ? own.to : own.from;
+      const double length = (x_.row(end) - x_.row(v)).norm();
+      return off_line(e, end).norm() <= on_line * length &&
+             off_line(e, own.opposite).dot(off_line(e, e.opposite)) < 0;
+    });
+  }
+
+  const Positions& x_;
+  std::vector<BorderEdge> edges_;
+  std::vector<int> part_;                   // of each vertex
+  std::vector<int> vertices_;               // of the border, by parts
+  std::vector<Tree> trees_;                 // of each part
+  std::vector<std::vector<int>> edges_at_;  // of each vertex
+};
 
 }  // namespace
 
@@ -53,6 +190,12 @@ bool is_soup(const TriangleMesh& mesh) {
   for (std::size_t i = 0; i < edges.size(); ++i)
     coincident += (i > 0 && edges[i] == edges[i - 1]) || (i + 1 < edges.size() && edges[i] == edges[i + 1]);
   return 2 * coincident > edges.size();
+}
+
+std::vector<TJunction> t_junctions(const TriangleMesh& mesh) {
+  const std::vector<int> border = border_half_edges(mesh.triangles, static_cast<int>(mesh.vertices.rows()));
+  if (border.empty()) return {};
+  return JunctionSearch(mesh, border).all();
 }
 
 namespace {
