@@ -19,7 +19,6 @@ void declare_file_coordinates(Declaration<Struct>& d) {
 template <class Struct>
 auto declare_scale(Declaration<Struct>& d) {
   return d.add("scale", &Struct::scale, "scale factor, applied before `rotate` and `translate`")
-      .unit("1")
       .between(1 / bounds::largest_scale, bounds::largest_scale);
 }
 

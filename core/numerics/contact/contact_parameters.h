@@ -35,7 +35,6 @@ auto declare_friction(Declaration<Struct>& d) {
   return d
       .add("friction", &Struct::friction,
            "Coulomb's friction coefficient μ, where an obstacle does not have its own")
-      .unit("1")
       .between(0, bounds::largest_friction)
       .source("Li et al. 2020, section 5");
 }
@@ -60,7 +59,6 @@ void declare_contact_parameters(Declaration<Derived>& d) {
       .source("Li et al. 2020, eq. 14");
   d.add("min_gap_fraction", &Derived::min_gap_fraction,
         "fraction of every gap that a step must leave: s of additive CCD")
-      .unit("1")
       .between(1e-6, 0.99)
       .source("Li et al. 2021");
 }
