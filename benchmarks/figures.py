@@ -114,7 +114,7 @@ def rows_of(record):
 
 
 def scene_row(name):
-    """A scene to its finest level."""
+    """Of the study that runs each scene to its finest level."""
     return next(r for r in rows_of("scenes.md") if r["run"] == name)
 
 
@@ -413,11 +413,14 @@ def solves(*names):
     return len(records), sum(r["intersections"] for r in records)
 
 
+def scene_names(study):
+    return dict.fromkeys(r["scene"] for r in read(f"{study}.json"))
+
+
 def medians_over(other, study, value):
     """PCS's median over another method's, by scene."""
-    names = dict.fromkeys(r["scene"] for r in read(f"{study}.json"))
     return {name: median([value(r) for r in finished(study, "pcs", name, "default")])
-            / median([value(r) for r in finished(study, other, name)]) for name in names}
+            / median([value(r) for r in finished(study, other, name)]) for name in scene_names(study)}
 
 
 def scenes_above(study, value, other="cascadic"):
@@ -496,7 +499,7 @@ VALUES = {
     "sphere.distance_ratio": lambda: figure(
         distance_of_previews(finished("sphere", "cascadic")) / distance_of_previews(finished("sphere", "pcs")), 2),
     "previews.distance": lambda: lowest_to_highest([
-        100 * distance_of_previews(finished("previews", "pcs", name, "default")) for name in medians_over("cascadic", "previews", TFLOP)]),
+        100 * distance_of_previews(finished("previews", "pcs", name, "default")) for name in scene_names("previews")]),
     "previews, distance_ratio": lambda: lowest_to_highest([1 / ratio for ratio in medians_over(
         "cascadic", "previews", lambda r: r["preview"]["distance_rms"]).values()]),
     "sphere, previews": lambda: lowest_to_highest(start_by_start("sphere", lambda r: r["preview"]["distance_rms"])),

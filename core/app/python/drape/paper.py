@@ -166,9 +166,11 @@ def _sweep_figures(table: dict, run_folders: dict, out: pathlib.Path, measures, 
     drawn = paper_sweep.draw_states(runs, list(styles), width)
     for cost in ("seconds", "iterations"):
         if made := paper_sweep.distance_figure(runs, cost, styles, references, drawn, width, busy):
-            target = ("from the reference", "Where a method's own end is the reference, its line falls to nothing. ") if any(references.values()) else ("from its own end", "")
-            save(made, f"distance_over_{cost}", f"Distance of each method's states {target[0]} against {COSTS[cost]}: medians over the starts, with bands from the "
-                 f"lowest to the highest. {target[1]}Pictures: the end from the first start.")
+            target, note = "its own end", ""
+            if any(references.values()):
+                target, note = "the reference", "Where a method's own end is the reference, its line falls to nothing. "
+            save(made, f"distance_over_{cost}", f"Distance of each method's states from {target} against {COSTS[cost]}: medians over the starts, with bands from the "
+                 f"lowest to the highest. {note}Pictures: the end from the first start.")
     if made := paper_sweep.pictures_figure(drawn, styles, width):
         save(made, "pictures", "Preview and end of each method from the first start, by one camera, with vertices and CPU time up to that state.")
     files.append(out / "figures.tex")
