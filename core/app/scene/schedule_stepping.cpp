@@ -46,7 +46,7 @@ void check_on_levels(const Experiment& e, const Scene& scene, const LoadSchedule
                      ConfigErrors& errors) {
   const std::vector<Level>& levels = scene.hierarchy.levels;
   std::map<double, Conflicts> conflicts;         // of all pins and handles, at the times of their keys
-  constexpr std::size_t most_bound = 1'000'000;  // energies times vertices; a run tells of faults beyond
+  constexpr std::size_t most_bound = 1'000'000;  // energies × vertices; faults beyond show in the run
   std::size_t bound_before = 0;
   for (const ScheduleKey& key : e.parameters.schedule.keys) {
     if (key.is_of_contact() || key.section == "dress") continue;

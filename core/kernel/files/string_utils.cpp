@@ -37,7 +37,6 @@ std::string nearest_word(const std::string& typed, const std::vector<std::string
     const size_t longer = std::max(typed.size(), word.size()), shorter = std::min(typed.size(), word.size());
     constexpr size_t most_work = 200'000;  // many typed words may each be compared with as many long ones
     if (longer - shorter > longer / 3) continue;
-    if (longer > most_work) break;
     work += longer * longer;
     if (work > most_work) break;
     const size_t distance = edit_distance(folded(typed), folded(word));

@@ -5,7 +5,7 @@
 
 namespace drape {
 
-/// Points that are searched, by a tree if often. They must outlive it.
+/// Points to search, with a tree of boxes if many searches follow. The points must outlive it.
 struct PointTree {
   const Positions& points;
   BoxTree boxes;  ///< without boxes if a tree does not pay

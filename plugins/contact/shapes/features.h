@@ -28,7 +28,7 @@ struct Features {
   /// with many sides for gaps so small that few would be too far inside the circle.
   static std::vector<Features> of(const Solid& solid, double dhat);
 
-  /// Below the distance of p from the rims [m].
+  /// A lower bound of the distance of p from a cylinder's rims [m].
   double distance_bound(const Solid& solid, const Eigen::Vector3d& p) const;
 
   /// Appends the indices of points within `radius` of `centre`.

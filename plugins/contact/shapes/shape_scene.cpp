@@ -301,7 +301,7 @@ CandidatePairs find_candidates(const ShapeScene& scene, const std::vector<SolidP
         finder.add_curved_side(features, edges, c.curved_sides);
         continue;
       }
-      if (features.dhat < scene.barrier.dhat) {  // the last ones
+      if (features.dhat < scene.barrier.dhat) {  // rims of many sides, which come last
         triangles = finder.triangles_near_rims(features, std::move(triangles));
         edges = finder.edges_of(triangles);
       }
