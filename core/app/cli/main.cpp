@@ -1,6 +1,8 @@
 // The `drape` command. Its exit codes are in exit_codes.h.
 
 #include <fcntl.h>
+#include <malloc.h>
+#include <sys/mman.h>
 #include <unistd.h>
 
 #include <csignal>
@@ -51,6 +53,18 @@ void open_standard_streams() {
     if (fcntl(stream, F_GETFD) == -1 && open("/dev/null", O_RDWR) != stream) std::_Exit(exit_aborted);
 }
 
+/// Keeps freed memory in the process, in huge pages where the system has them: a run makes and frees matrices of
+/// megabytes all the time, and took the system's page faults for them again and again.
+void keep_freed_memory() {
+  if (!mallopt(M_MMAP_MAX, 0) || !mallopt(M_TRIM_THRESHOLD, -1)) return;
+  constexpr std::size_t reserved = std::size_t(1) << 30;  // of addresses; a page is taken by its first use
+  const auto memory = static_cast<char*>(std::malloc(reserved));
+  if (!memory) return;
+  const std::size_t page = sysconf(_SC_PAGESIZE);
+  madvise(memory + page - reinterpret_cast<std::uintptr_t>(memory) % page, reserved - page, MADV_HUGEPAGE);
+  std::free(memory);
+}
+
 }  // namespace
 
 void stop_on_signals() {
@@ -79,6 +93,7 @@ int main(int argc, char** argv) {
   // Exceeding a file size limit is reported as an error instead of ending the process.
   std::signal(SIGXFSZ, SIG_IGN);
   open_standard_streams();
+  keep_freed_memory();
   static bool at_work = true;  // until main returns: who ends the program before is a plugin
   std::atexit([] {
     if (!at_work) return;
