@@ -35,21 +35,27 @@ void RimContact::add_gradient(const BarrierParameters& p, Positions& g) const {
 
 void RimContact::hessians(std::span<const RimContact> contacts, const BarrierParameters& p,
                           Projection projection, ContactBlocks<2>* blocks) {
-  for (std::size_t i = 0; i < contacts.size(); ++i) {
-    Matrix6d h = contacts[i].hessian(p);
-    if (!projection.is_exact()) h = projected_matrix(h, projection);
+  std::vector<PairContact> all;
+  all.reserve(3 * contacts.size());
+  for (const RimContact& contact : contacts)
+    for (int i = 0; i < 3; ++i) all.push_back(contact.weighted(i));
+  std::vector<ContactBlocks<4>> of_parts(all.size());
+  PairContact::hessians(all, p, Projection::none, of_parts.data());
+  std::vector<SymmetricMatrix<6, double>> matrices;
+  for (std::size_t i = 0; i < contacts.size(); ++i)
+    matrices.emplace_back(contacts[i].hessian(p, &of_parts[3 * i]));
+  project_all<6>(
+      static_cast<int>(contacts.size()), projection, [&](int i) -> auto& { return matrices[i]; });
+  for (std::size_t i = 0; i < contacts.size(); ++i)
     for (int b = 0, index = 0; b < 2; ++b)
       for (int a = 0; a <= b; ++a, ++index)
-        Eigen::Map<Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(blocks[i].block[index]) =
-            h.block<3, 3>(3 * a, 3 * b);
-  }
+        for (int entry = 0; entry < 9; ++entry)
+          blocks[i].block[index][entry] = matrices[i](3 * a + entry / 3, 3 * b + entry % 3);
 }
 
-/// Σ_i ∂f/∂b_i ∇²(m b_i) + Σ_ij ∂²f/∂b_i∂b_j ∇(m b_i) ∇(m b_j)ᵀ / m, by the cloth edge's two vertices.
-RimContact::Matrix6d RimContact::hessian(const BarrierParameters& p) const {
-  const std::array<PairContact, 3> all = {weighted(0), weighted(1), weighted(2)};
-  std::array<ContactBlocks<4>, 3> blocks;
-  PairContact::hessians(all, p, Projection::none, blocks.data());
+/// Σ_i ∂f/∂b_i ∇²(m b_i) + Σ_ij ∂²f/∂b_i∂b_j ∇(m b_i) ∇(m b_j)ᵀ / m, by the cloth edge's two vertices;
+/// `blocks` has the weighted parts' Hessians.
+RimContact::Matrix6d RimContact::hessian(const BarrierParameters& p, const ContactBlocks<4>* blocks) const {
   Matrix6d h = Matrix6d::Zero();
   for (int i = 0; i < 3; ++i)
     for (int l = 0; l < 2; ++l)

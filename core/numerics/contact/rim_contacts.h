@@ -41,7 +41,7 @@ struct RimContact {
   int cloth_vertex(int k) const { return parts[0].pair.vertices[place(0, k)]; }
   PairContact weighted(int i) const;
   Vector6d gradient_of(const PairContact& contact, int i) const;
-  Matrix6d hessian(const BarrierParameters& p) const;
+  Matrix6d hessian(const BarrierParameters& p, const ContactBlocks<4>* blocks) const;
 };
 
 /// The rim contacts at x (cloth, n×3) of those pairs whose gap is below their d̂, in their order.

@@ -94,6 +94,20 @@ double nearest_to_box_on_edge(const Vector3d& half, const Vector3d& a, const Vec
   return low + (high - low) * low_slope / (low_slope - high_slope);
 }
 
+/// Where an edge is nearest to a cylinder's curved side, that is to its axis; elsewhere by a root.
+double nearest_to_cylinder_on_edge(const Solid& s, const Vector3d& a, const Vector3d& e) {
+  const double t = std::clamp(-a.head<2>().dot(e.head<2>()) / e.head<2>().squaredNorm(), 0.0, 1.0);
+  const Vector3d nearest = a + t * e;
+  if (nearest.head<2>().norm() > s.radius && std::abs(nearest.z()) <= s.half.z()) return t;
+  const auto half_slope = [&](double u) {  // derivative of half the squared distance
+    const Vector3d q = a + u * e;
+    const double rho = q.head<2>().norm();
+    const double out = std::max(0.0, 1 - s.radius / rho), up = std::abs(q.z()) - s.half.z();
+    return out * (q.x() * e.x() + q.y() * e.y()) + (up > 0 ? std::copysign(up, q.z()) * e.z() : 0.0);
+  };
+  return monotone_root(half_slope);
+}
+
 /// The shortest rotation that takes +z to this unit vector; for -z, half a turn about y. Eigen's own
 /// (Quaternion::FromTwoVectors) brings a singular value decomposition, which takes ten seconds to compile.
 Eigen::Matrix3d rotation_of_z_to(const Vector3d& u) {
@@ -148,15 +162,9 @@ double Solid::support(const Vector3d& n) const {
 
 double Solid::nearest_on_edge(const Vector3d& a, const Vector3d& b) const {
   const Vector3d p = to_local(a), e = axes.transpose() * (b - a);
-  const auto half_slope = [&](double t) {  // derivative of half the squared distance to a cylinder
-    const Vector3d q = p + t * e;
-    const double rho = q.head<2>().norm();
-    const double out = std::max(0.0, 1 - radius / rho), up = std::abs(q.z()) - half.z();
-    return out * (q.x() * e.x() + q.y() * e.y()) + (up > 0 ? std::copysign(up, q.z()) * e.z() : 0.0);
-  };
   return by_form(
-      kind, [&] { return nearest_to_box_on_edge(half, p, e); }, [&] { return monotone_root(half_slope); },
-      [&] { return e.z() < 0 ? 1.0 : 0.0; });
+      kind, [&] { return nearest_to_box_on_edge(half, p, e); },
+      [&] { return nearest_to_cylinder_on_edge(*this, p, e); }, [&] { return e.z() < 0 ? 1.0 : 0.0; });
 }
 
 }  // namespace drape::shapes
