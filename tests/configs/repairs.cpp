@@ -187,6 +187,22 @@ TEST_CASE("a sleeve that its arm cuts a little stays around it, and one that it 
   }
 }
 
+TEST_CASE(
+    "a start is not moved across a sheet that it does not touch, whichever side of it faces the start") {
+  const Scratch folder;
+  const std::string corners = "v -0.3 -0.3 0.02\nv 0.3 -0.3 0.02\nv 0.3 0.3 0.02\nv -0.3 0.3 0.02\n";
+  for (const std::string face : {"f 1 2 3 4\n", "f 4 3 2 1\n"}) {
+    INFO(face);
+    std::ofstream(folder / "roof.obj") << corners << face;
+    const std::string obstacles =
+        "ipc\nobstacles: [{name: floor, meshed_shape: box, size: [0.2, 0.2, 0.2], translate: [0, 0, -0.09]}, "
+        "{name: roof, mesh: " +
+        (folder / "roof.obj").string() + "}]";
+    CHECK_THAT(said_of(experiment(obstacles, "[-0.2, -0.2, 0]"), repair),
+               Contains(" m frees it only across an obstacle, to another side"));
+  }
+}
+
 TEST_CASE("a start is not moved into a closed mesh, nor into one that faces inwards") {
   const Scratch folder;
   drape::TriangleMesh inwards = drape::unit_sphere(4);

@@ -55,7 +55,8 @@ void CrossedParts::add(const Level& level, const TriangleMesh& obstacle) {
     way_out_ += facing * normal_of(pair.second);
     cuts(facing * normal_of(pair.second));
   }
-  if (closed && std::ranges::count(crosses, 1) > 0) cut_.push_back(obstacle.vertices);
+  const bool is_cut = std::ranges::count(crosses, 1) > 0;
+  if (closed && is_cut) cut_.push_back(obstacle.vertices);
   // What triangles without an intersection connect is on one side.
   DisjointSets sides(vertices);
   for (Eigen::Index t = 0; t < cloth.triangles.rows(); ++t)
@@ -73,7 +74,9 @@ void CrossedParts::add(const Level& level, const TriangleMesh& obstacle) {
   };
   std::vector<char> behind(vertices, 0);
   for (std::size_t i = 0; i < ones.size(); ++i)
-    behind[ones[i]] = closed ? is_room != (within[i] || inwards[i]) : is_behind(at_ones.row(i).transpose());
+    behind[ones[i]] = closed
+                          ? is_room != (within[i] || inwards[i])
+                          : is_cut && is_behind(at_ones.row(i).transpose());  // both sides of others are free
   for (int v = 0; v < vertices; ++v) {
     behind[v] = behind[sides.find(v)];
     if (!behind[v]) continue;
