@@ -109,7 +109,10 @@ Recorder::Recorder(const RunFolder& folder, const Experiment& experiment, const 
 
 Recorder::Recorder(const RunFolder& folder, const Experiment& experiment, const Scene& scene,
                    const Recorder::State& state)
-    : Recorder(folder, experiment, scene, state.iterations_bytes, state.log_bytes) {
+    : Recorder(folder, experiment, scene, state.iterations_bytes,
+               // That of a run that is only measured goes on at its end.
+               complete_results(folder.path()).is_null() ? state.log_bytes
+                                                         : size_of_file(folder.file("log.jsonl"))) {
   s_ = state;
   results_ = parse_json(std::exchange(s_.results, ""));
   const Json now = program_and_machine(),
@@ -316,7 +319,7 @@ void Recorder::level_finished(const LevelResult& r) {
 void Recorder::run_finished(bool complete, bool measured) {
   results_["complete"] = complete;
   if (!measured) results_["measured"] = false;
-  results_["ended"] = wall_clock();
+  results_["ended"] = solved_ ? complete_results(folder_.path())["ended"] : Json(wall_clock());
   if (complete) solved_ = false;
   save();
   log("run_finished", {{"complete", complete}});
