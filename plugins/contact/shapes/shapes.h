@@ -1,5 +1,7 @@
 #pragma once
 
+#include <future>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -23,6 +25,8 @@ struct ShapeParameters : CommonObstacleParameters {
 extern const std::vector<std::pair<std::string, SolidKind>> kind_names;
 std::string to_string(SolidKind kind);
 
+struct SolidFeatures;
+
 /// Contact with convex obstacles in closed form (see README.md).
 class Shapes final : public ContactModel {
  public:
@@ -38,6 +42,7 @@ class Shapes final : public ContactModel {
  private:
   Parameters p_;
   std::vector<Solid> solids_;
+  std::shared_future<std::shared_ptr<const SolidFeatures>> features_;  // made when a level is first bound
 };
 
 }  // namespace drape::shapes
