@@ -159,6 +159,12 @@ void make_methods(Experiment& e, ConfigErrors& errors) {
 
 void make_plugins(Experiment& e, ConfigErrors& errors) {
   ConfigNode energies(ConfigNode::Kind::list), metrics(ConfigNode::Kind::list);
+  constexpr std::size_t most_energies = 50;
+  if (const std::size_t count = e.parameters.energies.size(); count > most_energies)
+    return errors.push_back(
+        {e.location_of("energies"), "\"energies\" has " + std::to_string(count) + " entries, of at most " +
+                                        std::to_string(most_energies) +
+                                        "; one constant_load can have the forces of many \"points\""});
   for (const ConfigNode& node : e.parameters.energies) {
     if (auto energy = make_from<Energy>(*e.registry, node, errors, &energies.items.emplace_back()))
       e.energies.push_back({label_of(node), std::move(energy)});
