@@ -26,12 +26,15 @@ struct LiveAddress {
 /// A connection to a live view's server.
 class LiveClient {
  public:
-  explicit LiveClient(int port) {
+  /// With SOCK_NONBLOCK in `flags` nothing waits for the connection, which may be refused.
+  explicit LiveClient(int port, int flags = 0)
+      : socket_(socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC | flags, 0)) {
     sockaddr_in address{};
     address.sin_family = AF_INET;
     address.sin_port = htons(static_cast<std::uint16_t>(port));
     address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-    REQUIRE(connect(socket_, reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0);
+    const int refused = connect(socket_, reinterpret_cast<const sockaddr*>(&address), sizeof address);
+    REQUIRE((refused == 0 || flags != 0));
   }
   ~LiveClient() { close(socket_); }
   LiveClient(const LiveClient&) = delete;
@@ -57,5 +60,5 @@ class LiveClient {
   }
 
  private:
-  int socket_ = socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
+  int socket_;
 };

@@ -47,16 +47,20 @@ constexpr std::size_t largest_body = 1024;    // [bytes]; no request of the page
 constexpr std::size_t most_connections = 16;  // at a time, each with a thread of its own
 
 /// The connections to a port of this process: their sockets, by the ports of their peers. The library tells
-/// nobody its sockets; those beyond 1024 cannot be its own, since it has so few.
-std::map<int, int> connections_to(int port) {
+/// nobody its sockets; those beyond 1024 cannot be its own, since it has so few. A new socket has the least
+/// free number: beyond the `highest` known one, a gap ends the search, which takes a call for each number.
+std::map<int, int> connections_to(int port, int highest = 1023) {
+  constexpr int gap = 16;
   std::map<int, int> sockets;
-  for (int socket = 3; socket < 1024; ++socket) {
+  for (int socket = 3, closed = 0; socket < 1024 && (socket <= highest || closed < gap); ++socket) {
     sockaddr_in own{}, peer{};
     socklen_t own_size = sizeof own, peer_size = sizeof peer;
+    errno = 0;
     if (getsockname(socket, reinterpret_cast<sockaddr*>(&own), &own_size) == 0 && own.sin_family == AF_INET &&
         ntohs(own.sin_port) == port &&
         getpeername(socket, reinterpret_cast<sockaddr*>(&peer), &peer_size) == 0)
       sockets[ntohs(peer.sin_port)] = socket;
+    closed = errno == EBADF ? closed + 1 : 0;
   }
   return sockets;
 }
@@ -71,7 +75,8 @@ class ConnectionQueue final : public httplib::ThreadPool {
   /// Called by the thread that accepts connections, once for each.
   void enqueue(std::function<void()> serve) override {
     std::unique_lock lock(mutex_);
-    std::map<int, int> sockets = connections_to(port_);
+    std::map<int, int> sockets = connections_to(port_, highest_);
+    for (const auto& [peer, socket] : sockets) highest_ = std::max(highest_, socket);
     std::erase_if(idle_, [&](int peer) { return !sockets.contains(peer); });
     for (const auto& [peer, socket] : sockets)
       if (!sockets_.contains(peer)) idle_.push_back(peer);
@@ -101,6 +106,7 @@ class ConnectionQueue final : public httplib::ThreadPool {
   std::mutex mutex_;
   std::condition_variable has_room_;
   std::size_t open_ = 0;        // connections that have a thread
+  int highest_ = 0;             // of the sockets so far
   std::map<int, int> sockets_;  // of the connections when the last one came, by the ports of their peers
   std::vector<int> idle_;       // ports of those that have not asked for anything, the oldest first
 };
@@ -209,8 +215,9 @@ LiveServer::LiveServer(int port, const LiveAnswers& answers, double patience)
     throw std::runtime_error(
         "--port " + std::to_string(port) + ": cannot listen on 127.0.0.1:" + std::to_string(port) + " (" +
         std::strerror(errno) + "); name another port, or leave --port out for one that is free");
-  // The library has the system let five connections wait; a sixth would come back after a second or more.
-  ::listen(listening, SOMAXCONN);
+  // The library has the system let five connections wait; a sixth would come back after a second or more. A
+  // page needs few, and behind thousands that others left there it would wait for long.
+  ::listen(listening, 64);
   impl_->port = bound;
   url_ = "http://127.0.0.1:" + std::to_string(bound) + base;
   const HeldSignals held;

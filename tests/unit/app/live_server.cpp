@@ -88,6 +88,15 @@ TEST_CASE("idle connections take few descriptors, and delay neither the page nor
   served.server.reset();
 }
 
+TEST_CASE("thousands of connections that were opened and closed do not delay the page") {
+  const Served served(5);
+  REQUIRE(served.serves_page());
+  for (int k = 0; k < 8000; ++k) const LiveClient closed(served.address.port, SOCK_NONBLOCK);
+  const Stopwatch watch;
+  CHECK(served.serves_page());
+  CHECK(watch.seconds() < 3);
+}
+
 TEST_CASE("a request that does not arrive in time is given up") {
   const Stopwatch watch;
   const Served served(0.5);
