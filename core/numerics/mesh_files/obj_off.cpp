@@ -192,8 +192,9 @@ std::string obj_text(const TriangleMesh& mesh) {
     text += "vt " + exact_text(corners.uv(i, 0)) + ' ' + exact_text(corners.uv(i, 1)) + '\n';
   for (int t = 0; t < mesh.triangles.rows(); ++t) {
     if (!mesh.piece.empty() && (t == 0 || mesh.piece[t] != mesh.piece[t - 1])) {
-      std::string name = mesh.piece_names[mesh.piece[t]];
-      std::ranges::replace(name, ' ', '_');             // a name ends with its word
+      std::string name = printable(mesh.piece_names[mesh.piece[t]]);
+      const auto ends_word = [](char c) { return c == ' ' || c == '#' || c == '\\'; };
+      std::ranges::replace_if(name, ends_word, '_');
       text += "g " + name + "\nusemtl " + name + '\n';  // Blender keeps materials, and loses groups of faces
     }
     text += 'f';

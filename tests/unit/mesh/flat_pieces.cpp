@@ -109,6 +109,9 @@ TEST_CASE("OBJ and PLY files keep pieces by name, a PLY the length of texture co
     CHECK(read.uv == sewn.uv);
   }
   CHECK(read_mesh(folder / "m.ply").sewing->uv_length == 0.0254);
+  sewn.piece_names = {"a\x1b[2J b", "c#d\\"};
+  write_mesh(folder / "odd.obj", sewn);
+  CHECK(read_mesh(folder / "odd.obj").piece_names == std::vector<std::string>{"a_x1b[2J_b", "c_d_"});
   CHECK_THAT(vtp_text(sewn), Catch::Contains("Name=\"piece\""));
 }
 
