@@ -45,6 +45,11 @@ TEST_CASE("what was left is measured by --resume, and at once where there is som
 TEST_CASE("a run that can no longer be measured is reported with a warning") {
   const Scratch folder(small_experiment());
   drape_ends("run e.yaml --quiet --no-report --out out --method pcs --threads 1", folder);
+  folder.write("out/errors.csv", "mine\n");
+  CHECK_THAT(drape_ends("table out", folder).err,
+             Contains("left to measure is missing: out/errors.csv: drape did not write it, and would"));
+  CHECK(text_of(folder / "out/errors.csv") == "mine\n");
+  fs::remove(folder / "out/errors.csv");
   std::ofstream(folder / "out/config.yaml", std::ios::app) << "# changed\n";
   CHECK_THAT(drape_ends("table out", folder).err,
              Contains("what the run in out left to measure is missing: out/config.yaml: is not the one"));

@@ -11,6 +11,10 @@
 
 namespace drape {
 
+/// How errors.csv begins.
+inline constexpr const char* errors_header =
+    "method,level,level_iterations,seconds,iterations,flops,vertices";
+
 /// The cost of reaching a state.
 struct Cost {
   double seconds = 0;

@@ -119,7 +119,7 @@ void Recorder::write_errors(const Positions* reference, const std::function<bool
   const auto fault = [&](const std::string& message) { log("not_measured", {{"message", message}}); };
   const int finest = scene_.finest();
   const std::vector<ErrorMeasure> measures = error_measures(declared_metrics(experiment_.metrics));
-  std::string text = "method,level,level_iterations,seconds,iterations,flops,vertices";
+  std::string text = errors_header;
   for (const char* target : {",own_", ",reference_"})
     for (const ErrorMeasure& measure : measures) text += target + measure.name;
   text += "\n";

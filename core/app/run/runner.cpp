@@ -201,6 +201,9 @@ bool resume_experiment(const Experiment& experiment, const Scene& scene, const R
   const Checkpoint& checkpoint = interrupted.checkpoint;
   require_fitting(checkpoint, experiment, scene);
   refuse_short_files(folder, checkpoint.recorder);
+  if (const std::filesystem::path table = folder.file("errors.csv");
+      std::filesystem::exists(table) && !read_file(table).starts_with(errors_header))
+    refuse_path(table, "drape did not write it, and would replace it; rename it");
   return with_folder(folder, options, [&] {
     folder.remove_unfinished();
     Recorder recorder(folder, experiment, scene, checkpoint.recorder);
