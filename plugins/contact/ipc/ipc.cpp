@@ -30,23 +30,24 @@ Ipc::Ipc(const Parameters& parameters, const Ipc* before) : p_(parameters) {
     for_all_items("obstacles", p_.obstacles, [&](const ObstacleParameters& p, std::size_t k) {
       bodies.push_back(Obstacle::of(p, static_cast<int>(k), meshes_[k], static_cast<int>(level)));
     });
-    const bool same = before && level < before->bodies_.size() && before->bodies_[level] == bodies;
-    const auto all = [bodies] { return std::make_shared<const Obstacles>(Obstacles::of(bodies)); };
-    obstacles_.push_back(same ? before->obstacles_[level] : std::async(std::launch::deferred, all).share());
-    const bool same_tree = same && before->p_.dhat == p_.dhat && before->p_.broad_phase == p_.broad_phase;
-    const auto tree = [obstacles = obstacles_[level], dhat = p_.dhat, kind = p_.broad_phase] {
-      return std::make_shared<const ObstacleTree>(obstacles.get(), dhat, kind);
-    };
-    trees_.push_back(same_tree ? before->trees_[level] : std::async(std::launch::deferred, tree).share());
-    bodies_.push_back(std::move(bodies));
+    const bool same =
+        before && level < before->obstacles_.size() && before->obstacles_[level]->bodies == bodies;
+    obstacles_.push_back(same ? before->obstacles_[level]
+                              : std::make_shared<const Obstacles>(Obstacles::of(std::move(bodies))));
   }
+  trees_.resize(levels);
+  if (!before || before->p_.dhat != p_.dhat || before->p_.broad_phase != p_.broad_phase) return;
+  const std::lock_guard lock(before->busy_);
+  for (std::size_t level = 0; level < std::min(levels, before->trees_.size()); ++level)
+    if (obstacles_[level] == before->obstacles_[level]) trees_[level] = before->trees_[level];
 }
 
 std::unique_ptr<BoundContact> Ipc::bind(const Level& level, const Material& material,
                                         std::shared_ptr<const RestCloth> rest) const {
-  // A copy, since threads that wait for the same future each need their own.
-  const auto tree = trees_[std::min<std::size_t>(level.index, trees_.size() - 1)];
-  return std::make_unique<BoundIpc>(p_, p_.barrier(material), tree.get(), std::move(rest));
+  const std::size_t k = std::min<std::size_t>(level.index, obstacles_.size() - 1);
+  const std::lock_guard lock(busy_);
+  if (!trees_[k]) trees_[k] = std::make_shared<const ObstacleTree>(obstacles_[k], p_.dhat, p_.broad_phase);
+  return std::make_unique<BoundIpc>(p_, p_.barrier(material), trees_[k], std::move(rest));
 }
 
 std::unique_ptr<BoundContact> Ipc::bind(const Level& level, const Material& material) const {
