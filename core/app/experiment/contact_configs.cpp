@@ -146,7 +146,7 @@ void make_contacts(Experiment& e, ConfigErrors& errors) {
     if (models[k] && std::find(models.begin(), models.begin() + k, models[k]) != models.begin() + k)
       errors.push_back(
           {written[k].where, "\"contact\" lists " + models[k]->name + " twice; list each model once"});
-  constexpr std::size_t most_obstacles = 3000;
+  constexpr std::size_t most_obstacles = 10'000;
   if (p.obstacles.size() > most_obstacles)
     return errors.push_back(
         {e.location_of("obstacles"), "\"obstacles\" has " + std::to_string(p.obstacles.size()) +

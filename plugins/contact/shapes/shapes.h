@@ -1,7 +1,5 @@
 #pragma once
 
-#include <future>
-#include <memory>
 #include <string>
 #include <vector>
 
@@ -25,8 +23,6 @@ struct ShapeParameters : CommonObstacleParameters {
 extern const std::vector<std::pair<std::string, SolidKind>> kind_names;
 std::string to_string(SolidKind kind);
 
-struct SolidFeatures;
-
 /// Contact with convex obstacles in closed form (see README.md).
 class Shapes final : public ContactModel {
  public:
@@ -42,7 +38,6 @@ class Shapes final : public ContactModel {
  private:
   Parameters p_;
   std::vector<Solid> solids_;
-  std::shared_future<std::shared_ptr<const SolidFeatures>> features_;  // made when a level is first bound
 };
 
 }  // namespace drape::shapes
