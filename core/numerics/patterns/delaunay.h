@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 #include <random>
+#include <stdexcept>
 #include <vector>
 
 #include "core/numerics/patterns/generate.h"
@@ -52,9 +53,13 @@ struct OutlineSize {
   double vertices(double edge_length) const;
 };
 
-/// Whether a mesh must have about the vertices that are asked for, or may have more where corners and angles
-/// need them.
+/// Whether a mesh must have about the vertices that are asked for, or may have some times as many where
+/// corners and angles need them.
 enum class VertexCount { about, at_least_about };
+/// Thrown for a number of vertices that no mesh within the loops has.
+struct ImpossibleCount : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
 TriangleMesh delaunay_polygon(const std::vector<Polygon>& loops, int vertices_about, unsigned seed,
                               VertexCount count);
 
@@ -62,8 +67,8 @@ TriangleMesh delaunay_polygon(const std::vector<Polygon>& loops, int vertices_ab
 /// mesh is valid (check_mesh), its parts need not lie in one plane. Border vertices that are nearer to each
 /// other and at which the border turns by less than 30° are left out. Keeps texture coordinates that are an
 /// affine function of the place in each part, and warp that is the same all over it. Throws
-/// std::runtime_error naming the part that is not flat to a thousandth of its diagonal, or whose triangles
-/// face both ways.
+/// std::runtime_error naming the part that is not flat to a thousandth of its diagonal, whose triangles face
+/// both ways, or that is so narrow that it needs many more vertices.
 TriangleMesh mesh_outline(const TriangleMesh& flat, double edge_length, unsigned seed);
 
 /// Random numbers that are equal for every standard library.

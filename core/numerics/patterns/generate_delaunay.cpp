@@ -225,18 +225,20 @@ TriangleMesh delaunay_polygon(const std::vector<Polygon>& loops, int vertices_ab
                               VertexCount count) {
   const std::vector<Ring> rings = checked_rings(loops);
   if (vertices_about < 3) throw std::runtime_error("polygon: at least three vertices are needed");
-  double inner_area = 0, border = 0;
+  double inner_area = 0, border = 0, corners = 0;
   for (const Ring& ring : rings) {
+    corners += static_cast<double>(ring.size());
     inner_area += &ring == &rings[0] ? area(ring) : -area(ring);
     for (std::size_t i = 0; i < ring.size(); ++i) border += std::sqrt(side(ring, i).squared_length());
   }
 
   const auto refuse = [&](const std::string& nearest) {
-    throw std::runtime_error("polygon: about " + std::to_string(vertices_about) +
-                             " vertices are not possible; the nearest number is " + nearest +
-                             " (corners and angles ask for that many)");
+    throw ImpossibleCount("polygon: about " + std::to_string(vertices_about) +
+                          " vertices are not possible; the nearest number is " + nearest +
+                          " (corners, angles and narrow places ask for that many)");
   };
-  const double most = 1e4 + 5.0 * vertices_about;  // well above the overshoot of a first attempt
+  // Well above the overshoot of a first attempt, and above what ordinary corners need.
+  const double most = 5.0 * vertices_about + (count == VertexCount::about ? 1e4 : 100 + 10 * corners);
   const double spacing = even_spacing(inner_area, border, vertices_about);
   const std::optional<Point2> inner = first_inner(rings, spacing, seed);
   const std::vector<Point2> hole_points = points_in_holes(rings);

@@ -7,6 +7,7 @@
 #include <string>
 #include <utility>
 
+#include "core/kernel/files/message_text.h"
 #include "core/kernel/interfaces/topology.h"
 #include "core/numerics/mesh/area_vectors.h"
 #include "core/numerics/mesh/flat_pieces.h"
@@ -172,8 +173,12 @@ TriangleMesh mesh_outline(const TriangleMesh& flat, double edge_length, unsigned
     std::vector<Polygon> loops;
     for (const Polygon& loop : part->loops) loops.push_back(thinned(loop, edge_length));
     const long about = std::lround(OutlineSize::of(old).vertices(edge_length));
-    TriangleMesh& mesh = meshes.emplace_back(
-        delaunay_polygon(loops, static_cast<int>(std::max(3L, about)), seed, VertexCount::at_least_about));
+    const std::string name = "part " + std::to_string(meshes.size()) + " of the mesh, with edges of " +
+                             three_digits(edge_length) + " m";
+    TriangleMesh& mesh = meshes.emplace_back(with_name(name, [&] {
+      return delaunay_polygon(loops, static_cast<int>(std::max(3L, about)), seed,
+                              VertexCount::at_least_about);
+    }));
     mesh.vertices = ((mesh.vertices.leftCols<2>() * part->axes).rowwise() + part->offset).eval();
     keep_pattern(old, *part, mesh);
     mesh.triangles.array() += first_vertex;
