@@ -134,11 +134,14 @@ TriangleMesh cloth_of_file(const ClothParameters& c) {
 TriangleMesh make_cloth(const ClothParameters& c) {
   if (c.shape == "file") return cloth_of_file(c);
   if (c.shape == "disc") return disc(c.radius, vertices_of(c));
-  if (c.shape == "polygon") {
-    TriangleMesh mesh = delaunay_polygon(loops_of(c), vertices_of(c), c.seed);
-    c.convert(mesh.vertices);
-    return mesh;
-  }
+  if (c.shape == "polygon") try {
+      TriangleMesh mesh = delaunay_polygon(loops_of(c), vertices_of(c), c.seed);
+      c.convert(mesh.vertices);
+      return mesh;
+    } catch (const ImpossibleCount& fault) {
+      if (!c.edge_length) throw;
+      throw std::runtime_error("\"edge_length\" of " + three_digits(*c.edge_length) + " m: " + fault.what());
+    }
   if (c.triangulation == "random") return random_triangulation(size_of(c), c.vertex_count(), c.seed);
   const Eigen::Vector2i counts = grid_counts(c);
   if (c.triangulation == "equilateral") return equilateral(size_of(c), counts.x(), counts.y());
