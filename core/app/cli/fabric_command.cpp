@@ -9,7 +9,7 @@
 #include "core/app/cli/commands.h"
 #include "core/app/cli/config_arguments.h"
 #include "core/app/experiment/exit_codes.h"
-#include "core/app/experiment/experiment_parameters.h"
+#include "core/app/experiment/experiment.h"
 #include "core/app/experiment/fabrics.h"
 #include "core/kernel/files/message_text.h"
 #include "core/kernel/files/number_text.h"
@@ -100,13 +100,15 @@ int print_fabric(const FabricOptions& options) {
   experiment.add("material", std::move(material));
   for (const char* required : {"name", "methods"}) experiment.add(required, ConfigNode::of(options.name));
   experiment.add("energies", ConfigNode(ConfigNode::Kind::list));
-  ExperimentParameters own;
-  if (errors.empty()) own = parameters_of(experiment, errors);
+  Experiment own;
+  own.source = std::move(experiment);
+  if (errors.empty()) own.parameters = parameters_of(own.source, errors);
+  if (errors.empty()) check_material(own, errors);
   require_none(errors);
   std::cout << printable(options.name);
   if (const ConfigNode* source = values.find("source")) std::cout << ": " << printable(source->scalar);
   std::cout << "\n";
-  print_sheet(own.material, values);
+  print_sheet(own.parameters.material, values);
   const std::string value = printable(options.file.empty() ? options.name : fabric.one_line());
   std::cout
       << "Where a figure is not known, the material's default stands for it: material: {fabric: " << value

@@ -63,8 +63,17 @@ void check_start_coordinates(const Experiment& e, ConfigErrors& errors) {
                         "or set it in cloth if the cloth is of a file"});
 }
 
-/// A number of the material that others hide is refused, unless it is the default, which a saved config has.
-/// So is bending that is not positive definite.
+/// A schedule without keys would not be read.
+void check_schedule(const Experiment& e, ConfigErrors& errors) {
+  const ScheduleParameters& s = e.parameters.schedule;
+  if (s.keys.empty() && (s.duration > 0 || s.steps > 1 || s.equilibrate))
+    errors.push_back(
+        {e.location_of("schedule"),
+         "\"schedule\" has no \"keys\", so that nothing would change; give it some, or leave it out"});
+}
+
+}  // namespace
+
 void check_material(const Experiment& e, ConfigErrors& errors) {
   const Material &m = e.parameters.material, plain;
   const ConfigNode* material = e.source.find("material");
@@ -88,17 +97,6 @@ void check_material(const Experiment& e, ConfigErrors& errors) {
     errors.push_back({e.location_of("material"), error.what()});
   }
 }
-
-/// A schedule without keys would not be read.
-void check_schedule(const Experiment& e, ConfigErrors& errors) {
-  const ScheduleParameters& s = e.parameters.schedule;
-  if (s.keys.empty() && (s.duration > 0 || s.steps > 1 || s.equilibrate))
-    errors.push_back(
-        {e.location_of("schedule"),
-         "\"schedule\" has no \"keys\", so that nothing would change; give it some, or leave it out"});
-}
-
-}  // namespace
 
 void check_name(const std::string& what, const std::string& name, const Location& where,
                 ConfigErrors& errors) {

@@ -65,6 +65,10 @@ std::vector<const ScheduleKey*> set_values(const Experiment& experiment, std::ve
 /// A number of the method's `newton` in a resolved or saved config; empty if there is none.
 std::optional<double> newton_number(const ConfigNode& config, const std::string& method, const char* key);
 
+/// A number of the material that others hide is refused, unless it is the default, which a saved config has.
+/// So is bending that is not positive definite.
+void check_material(const Experiment& e, ConfigErrors& errors);
+
 /// Appends an error unless the name (of an experiment, a method or a sweep) can be part of file names.
 void check_name(const std::string& what, const std::string& name, const Location& where,
                 ConfigErrors& errors);

@@ -142,16 +142,21 @@ const Table& own_table() {
 /// thickness of 0 or less, and for a row without mass or bending.
 ConfigNode material_of(const Table& table, std::size_t row, const std::string& name, const Location& where,
                        std::optional<double> thickness, ConfigErrors& errors) {
-  const auto refuse = [&](const std::string& what) {
-    errors.push_back({where, table.file + ": row \"" + name + "\" " + what});
+  const std::string named = table.file + ": row \"" + name + '"';
+  const auto refuse = [&](const std::string& what) { errors.push_back({where, named + ' ' + what}); };
+  ConfigNode material;
+  const auto add = [&](const std::string& key, double value, const std::string& column) {
+    ConfigNode node = ConfigNode::of(value);
+    const std::string place = where.text();
+    if (&table != &own_table())  // what refuses the number names its cell
+      node.where.file = (place.empty() ? "" : place + ": ") + named + ", column \"" + column + '"';
+    material.add(key, std::move(node));
   };
   const std::size_t before = errors.size();
   const std::optional<double> measured = number_of(table.cell(row, "thickness"));
   const double own = measured.value_or(Material().thickness), in_force = thickness.value_or(own);
   // A number per volume that the source gives without a thickness stays as it is.
   const double ratio = measured ? own / in_force : 1;
-  ConfigNode material;
-  std::optional<double> mass;
   bool has_mass = false;
   for (const Column& column : columns) {
     const std::string text = table.cell(row, column.name);
@@ -166,14 +171,12 @@ ConfigNode material_of(const Table& table, std::size_t row, const std::string& n
       refuse("has \"" + excerpt(text) + "\" in column \"" + column.name + "\", which is not a finite number" +
              (is_positive ? " above 0" : ""));
     else if (is_mass)
-      mass = *value;
+      add("density", *value / in_force, column.name);
     else
-      material.add(column.key,
-                   ConfigNode::of(column.factor * *value * std::pow(ratio, column.thickness_power)));
+      add(column.key, column.factor * *value * std::pow(ratio, column.thickness_power), column.name);
   }
   if (in_force != own && !material.find("membrane_modulus") && !material.find("warp_stiffness"))
     material.add("membrane_modulus", ConfigNode::of(Material().membrane_modulus * (own / in_force)));
-  if (mass) material.add("density", ConfigNode::of(*mass / in_force));
   if (errors.size() == before) {  // what a refused cell leaves would be refused for what it lacks
     if (!has_mass && !material.find("density")) refuse("lacks column \"mass\" [kg/m²]");
     if (!material.find("warp_bending") && !material.find("bending_modulus"))
@@ -240,7 +243,7 @@ bool replaced_by(const ConfigNode& written, const std::string& key) {
 void add_fabric(ConfigNode& material, const ConfigNode& fabric, ConfigErrors& errors) {
   const ConfigNode written = material, row = fabric_row(fabric, written_thickness(written), errors);
   const auto add = [&](const std::string& key, ConfigNode value) {
-    value.where = fabric.where;
+    if (value.where.file.empty()) value.where = fabric.where;
     material.add(key, std::move(value));
   };
   for (const auto& [key, value] : row.entries)
