@@ -169,7 +169,8 @@ ConfigNode material_of(const Table& table, std::size_t row, const std::string& n
     has_mass = has_mass || is_mass;
     if (!value || (is_positive && !(*value > 0)))
       refuse("has \"" + excerpt(text) + "\" in column \"" + column.name + "\", which is not a finite number" +
-             (is_positive ? " above 0" : ""));
+             (is_positive ? " above 0" : "") +
+             (text.find(',') == std::string::npos ? "" : "; write a point for a decimal comma"));
     else if (is_mass)
       add("density", *value / in_force, column.name);
     else
