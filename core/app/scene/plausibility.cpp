@@ -4,6 +4,7 @@
 
 #include "core/app/scene/scene_summary.h"
 #include "core/app/scene/vertex_search.h"
+#include "core/numerics/mesh/area_vectors.h"
 #include "core/numerics/mesh_files/io.h"
 #include "core/numerics/solve/start_fault.h"
 
@@ -18,6 +19,7 @@ constexpr double least_weight = 3e-3, largest_weight = 10;      // [kg/m²]
 constexpr double shortest_bending = 2e-4, longest_bending = 2;  // bending length [m]
 constexpr double fewest_edges = 0.02, most_edges = 1000;        // bending length over an edge
 constexpr double fewest_of_outline = 0.1;                       // the same of a file's pieces or a polygon
+constexpr double least_height = 1e-6;                           // of a triangle over its longest edge
 constexpr double largest_dhat = 1.5;                            // d̂ over an edge
 constexpr double largest_obstacle = 100;                        // diagonal [m]
 constexpr double largest_ratio = 50;                            // of that to the cloth's
@@ -179,6 +181,24 @@ void check_nearest(const Experiment& e, const std::string& key, const Selections
   }
 }
 
+/// Triangles whose stiffness hides that of the others.
+void check_heights(const TriangleMesh& mesh, const Warn& warn) {
+  const Positions areas = area_vectors(mesh);
+  for (Eigen::Index t = 0; t < areas.rows(); ++t) {
+    double longest = 0;
+    for (int k = 0; k < 3; ++k)
+      longest = std::max(longest, (mesh.vertices.row(mesh.triangles(t, k)) -
+                                   mesh.vertices.row(mesh.triangles(t, (k + 1) % 3)))
+                                      .squaredNorm());
+    if (areas.row(t).norm() >= least_height * longest) continue;
+    return warn("cloth",
+                "triangle " + std::to_string(t) +
+                    " (counted from 0) is lower than a millionth of "
+                    "its longest edge, so that solvers may not reach an equilibrium; move its vertices "
+                    "apart, or mesh the cloth anew there");
+  }
+}
+
 /// Panels of a file that nothing joins.
 void check_joined(const Experiment& e, const Level& cloth, const Warn& warn) {
   if (const std::string unwelded = unwelded_fault(e, cloth); !unwelded.empty()) warn("cloth", unwelded);
@@ -200,6 +220,7 @@ ConfigErrors plausibility_warnings(const Experiment& e, const Scene& scene, cons
   };
   check_size(e.parameters, s, warn);
   const double coarse_edge = std::ldexp(s.median_edge, s.level);
+  check_heights(scene.hierarchy.levels[scene.hierarchy.cloth].rest, warn);
   check_joined(e, scene.hierarchy.levels[scene.hierarchy.cloth], warn);
   check_material(e.parameters, s, warn);
   check_membrane(e, warn);

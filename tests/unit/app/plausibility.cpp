@@ -170,6 +170,19 @@ TEST_CASE("What no fabric or scene has gets a warning that says what is usual, b
   });
 }
 
+TEST_CASE("A triangle that is too low for solvers gets a warning") {
+  TriangleMesh mesh = grid({0.4, 0.4}, 9, 9, Diagonals::one_way);
+  const Scratch folder;
+  for (const double height : {2e-6, 1e-9}) {
+    mesh.vertices(10, 1) = height;
+    write_mesh(folder / "low.ply", mesh);
+    const std::string warnings =
+        warnings_of(scene_yaml("shape: file, file: " + (folder / "low.ply").string()));
+    CHECK((warnings.find("is lower than a millionth of its longest edge") != warnings.npos) ==
+          (height < 1e-7));
+  }
+}
+
 TEST_CASE("Measured stiffness that the energies of a scene do not read gets a warning") {
   const auto measured = [&](const std::string& keys, const std::string& energies) {
     return warnings_of(
