@@ -17,7 +17,8 @@ TEST_CASE("a table measures what a run of one method has left: once, with the re
   CHECK(!fs::exists(folder / "out/pictures"));
   CHECK_THAT(text_of(folder / "out/report.html"), Contains("The preview was not measured"));
 
-  const std::string log = text_of(folder / "out/log.jsonl"), ended_at = results_in(folder / "out")["ended"];
+  const std::string log = text_of(folder / "out/log.jsonl");
+  const auto ended_at = results_in(folder / "out")["ended"];
   drape_ends("table out", folder);
   CHECK(text_of(folder / "out/log.jsonl").starts_with(log));
   CHECK(results_in(folder / "out")["ended"] == ended_at);

@@ -190,7 +190,7 @@ TEST_CASE("a sleeve that its arm cuts a little stays around it, and one that it 
 TEST_CASE(
     "a start is not moved across a sheet that it does not touch, whichever side of it faces the start") {
   const Scratch folder;
-  const std::string corners = "v -0.3 -0.3 0.02\nv 0.3 -0.3 0.02\nv 0.3 0.3 0.02\nv -0.3 0.3 0.02\n";
+  const std::string corners = "v -0.3 -0.3 0.0102\nv 0.3 -0.3 0.0102\nv 0.3 0.3 0.0102\nv -0.3 0.3 0.0102\n";
   for (const std::string face : {"f 1 2 3 4\n", "f 4 3 2 1\n"}) {
     INFO(face);
     std::ofstream(folder / "roof.obj") << corners << face;

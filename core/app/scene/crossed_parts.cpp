@@ -26,13 +26,15 @@ constexpr double parallel = 1e-6;
 
 }  // namespace
 
-CrossedParts::CrossedParts(const Level& level, const Positions& start, std::vector<TriangleMesh> obstacles)
+CrossedParts::CrossedParts(const Level& level, const Positions& start, std::vector<TriangleMesh> obstacles,
+                           const std::vector<double>& gaps)
     : start_(start), obstacles_(std::move(obstacles)) {
-  for (const TriangleMesh& obstacle : obstacles_) add(level, obstacle);
+  for (std::size_t k = 0; k < obstacles_.size(); ++k)
+    add(level, obstacles_[k], gaps.size() == obstacles_.size() && gaps[k] > 0);
   if (way_out_.norm() > 0) way_out_.normalize();
 }
 
-void CrossedParts::add(const Level& level, const TriangleMesh& obstacle) {
+void CrossedParts::add(const Level& level, const TriangleMesh& obstacle, bool has_gap) {
   const TriangleMesh cloth{start_, level.rest.triangles};
   const int vertices = level.vertex_count();
   const bool closed =
@@ -74,9 +76,8 @@ void CrossedParts::add(const Level& level, const TriangleMesh& obstacle) {
   };
   std::vector<char> behind(vertices, 0);
   for (std::size_t i = 0; i < ones.size(); ++i)
-    behind[ones[i]] = closed
-                          ? is_room != (within[i] || inwards[i])
-                          : is_cut && is_behind(at_ones.row(i).transpose());  // both sides of others are free
+    behind[ones[i]] = closed ? is_room != (within[i] || inwards[i])
+                             : (is_cut || !has_gap) && is_behind(at_ones.row(i).transpose());
   for (int v = 0; v < vertices; ++v) {
     behind[v] = behind[sides.find(v)];
     if (!behind[v]) continue;

@@ -10,8 +10,11 @@ namespace drape {
 /// surface. Its other parts are where they are meant to be.
 class CrossedParts {
  public:
-  /// `start` (n×3) [m] is of the level. Obstacles need not be closed.
-  CrossedParts(const Level& level, const Positions& start, std::vector<TriangleMesh> obstacles);
+  /// `start` (n×3) [m] is of the level. Obstacles need not be closed. `gaps` [m] are theirs from the start,
+  /// not positive for a half-space that it is in; empty if unknown. Both sides of an open sheet that has a gap,
+  /// and is not cut, are free.
+  CrossedParts(const Level& level, const Positions& start, std::vector<TriangleMesh> obstacles,
+               const std::vector<double>& gaps);
 
   /// How far the deepest vertex behind an obstacle is from that obstacle's surface [m].
   double depth() const { return depth_; }
@@ -22,7 +25,7 @@ class CrossedParts {
   bool lead_across(const Eigen::Vector3d& translation, double longest_edge) const;
 
  private:
-  void add(const Level& level, const TriangleMesh& obstacle);
+  void add(const Level& level, const TriangleMesh& obstacle, bool has_gap);
 
   Positions start_;
   std::vector<TriangleMesh> obstacles_;

@@ -49,6 +49,14 @@ double winding_number(const TriangleMesh& mesh, const Vector3d& p) {
   return angle / (4 * M_PI);
 }
 
+/// The gaps of a level's obstacles, in their order.
+std::vector<double> gaps_at(const LevelModel& model, const Positions& x) {
+  std::vector<double> gaps;
+  for (const auto& contact : model.contacts())
+    for (const ObstacleGap& obstacle : contact->obstacle_gaps(x)) gaps.push_back(obstacle.gap);
+  return gaps;
+}
+
 /// Searches for a translation of the start without intersections.
 class TranslationSearch {
  public:
@@ -57,7 +65,8 @@ class TranslationSearch {
         diagonal_(bounding_box_diagonal(scene.starts[0])),
         points_(scene.starts[0](components(scene.hierarchy.levels[0].topology), Eigen::all)),
         obstacles_(scene.model(0)->obstacles()),
-        crossed_(scene.hierarchy.levels[0], scene.starts[0], obstacles_) {
+        crossed_(scene.hierarchy.levels[0], scene.starts[0], obstacles_,
+                 gaps_at(*scene.model(0), scene.starts[0])) {
     const Level& level = scene.hierarchy.levels[0];
     for (const auto& edge : level.topology.edges.rowwise())
       longest_edge_ =
