@@ -2,7 +2,8 @@
 #include <vector>
 
 #include "core/numerics/contact/pair_contacts.h"
-#include "core/numerics/contact/projected_matrix.h"
+#include "core/numerics/elements/project_hessian.h"
+#include "core/numerics/linear_algebra/pack.h"
 
 namespace drape {
 namespace {
@@ -170,6 +171,23 @@ struct Mollified {
   }
 };
 
+/// Projects the matrices with SIMD, native_pack_width contacts at a time.
+template <class Kind>
+void project_all(std::vector<Kind>& kinds, Projection projection) {
+  if (projection.is_exact()) return;
+  constexpr int W = native_pack_width, entries = Kind::size * (Kind::size + 1) / 2;
+  const int count = static_cast<int>(kinds.size());
+  for (int first = 0; first < count; first += W) {
+    SymmetricMatrix<Kind::size, Pack<W>> pack;
+    const auto of_lane = [&](int lane) { return kinds[std::min(first + lane, count - 1)].m.upper; };
+    for (int lane = 0; lane < W; ++lane)
+      for (int e = 0; e < entries; ++e) pack.upper[e].v[lane] = of_lane(lane)[e];
+    projection_detail::project_eigenvalues(pack, projection);
+    for (int lane = 0; lane < std::min(W, count - first); ++lane)
+      for (int e = 0; e < entries; ++e) of_lane(lane)[e] = pack.upper[e][lane];
+  }
+}
+
 template <class Kind>
 void hessians_of_kind(std::span<const PairContact> contacts, bool mollified, double stiffness,
                       Projection projection, ContactBlocks<4>* blocks) {
@@ -180,8 +198,7 @@ void hessians_of_kind(std::span<const PairContact> contacts, bool mollified, dou
     kinds.emplace_back(contacts[i], stiffness);
     indices.push_back(i);
   }
-  project_all<Kind::size>(
-      static_cast<int>(kinds.size()), projection, [&](int k) -> auto& { return kinds[k].m; });
+  project_all(kinds, projection);
   for (std::size_t k = 0; k < kinds.size(); ++k) kinds[k].expand(blocks[indices[k]]);
 }
 

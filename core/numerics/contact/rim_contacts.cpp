@@ -41,16 +41,14 @@ void RimContact::hessians(std::span<const RimContact> contacts, const BarrierPar
     for (int i = 0; i < 3; ++i) all.push_back(contact.weighted(i));
   std::vector<ContactBlocks<4>> of_parts(all.size());
   PairContact::hessians(all, p, Projection::none, of_parts.data());
-  std::vector<SymmetricMatrix<6, double>> matrices;
-  for (std::size_t i = 0; i < contacts.size(); ++i)
-    matrices.emplace_back(contacts[i].hessian(p, &of_parts[3 * i]));
-  project_all<6>(
-      static_cast<int>(contacts.size()), projection, [&](int i) -> auto& { return matrices[i]; });
-  for (std::size_t i = 0; i < contacts.size(); ++i)
+  for (std::size_t i = 0; i < contacts.size(); ++i) {
+    Matrix6d h = contacts[i].hessian(p, &of_parts[3 * i]);
+    if (!projection.is_exact()) h = projected_matrix(h, projection);
     for (int b = 0, index = 0; b < 2; ++b)
       for (int a = 0; a <= b; ++a, ++index)
-        for (int entry = 0; entry < 9; ++entry)
-          blocks[i].block[index][entry] = matrices[i](3 * a + entry / 3, 3 * b + entry % 3);
+        Eigen::Map<Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(blocks[i].block[index]) =
+            h.block<3, 3>(3 * a, 3 * b);
+  }
 }
 
 /// Σ_i ∂f/∂b_i ∇²(m b_i) + Σ_ij ∂²f/∂b_i∂b_j ∇(m b_i) ∇(m b_j)ᵀ / m, by the cloth edge's two vertices;
