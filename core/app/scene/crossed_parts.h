@@ -11,8 +11,8 @@ namespace drape {
 class CrossedParts {
  public:
   /// `start` (n×3) [m] is of the level. Obstacles need not be closed. `gaps` [m] are theirs from the start,
-  /// not positive for a half-space that it is in; empty if unknown. Both sides of an open sheet that has a gap,
-  /// and is not cut, are free.
+  /// not positive for a half-space that it is in; empty if unknown. Both sides of an open sheet that has a
+  /// gap, and is not cut, are free.
   CrossedParts(const Level& level, const Positions& start, std::vector<TriangleMesh> obstacles,
                const std::vector<double>& gaps);
 
