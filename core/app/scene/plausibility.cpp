@@ -183,20 +183,12 @@ void check_nearest(const Experiment& e, const std::string& key, const Selections
 
 /// Triangles whose stiffness hides that of the others.
 void check_heights(const TriangleMesh& mesh, const Warn& warn) {
-  const Positions areas = area_vectors(mesh);
-  for (Eigen::Index t = 0; t < areas.rows(); ++t) {
-    double longest = 0;
-    for (int k = 0; k < 3; ++k)
-      longest = std::max(longest, (mesh.vertices.row(mesh.triangles(t, k)) -
-                                   mesh.vertices.row(mesh.triangles(t, (k + 1) % 3)))
-                                      .squaredNorm());
-    if (areas.row(t).norm() >= least_height * longest) continue;
-    return warn("cloth",
-                "triangle " + std::to_string(t) +
-                    " (counted from 0) is lower than a millionth of "
-                    "its longest edge, so that solvers may not reach an equilibrium; move its vertices "
-                    "apart, or mesh the cloth anew there");
-  }
+  for (Eigen::Index t = 0; t < mesh.triangles.rows(); ++t)
+    if (relative_height(rest_corners(mesh, t)) < least_height)
+      return warn("cloth", "triangle " + std::to_string(t) +
+                               " (counted from 0) is lower than a millionth of its longest edge, so that "
+                               "solvers may not reach an equilibrium; move its vertices apart, or mesh the "
+                               "cloth anew there");
 }
 
 /// Panels of a file that nothing joins.

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <Eigen/Geometry>
+#include <algorithm>
+
 #include "core/kernel/interfaces/triangle_mesh.h"
 
 namespace drape {
@@ -13,6 +16,12 @@ inline Positions area_vectors(const TriangleMesh& mesh) {
         (mesh.vertices.row(mesh.triangles(t, 1)) - a).cross(mesh.vertices.row(mesh.triangles(t, 2)) - a);
   }
   return areas;
+}
+
+/// The height of a triangle over its longest edge, which is its base; its corners are the columns.
+inline double relative_height(const Eigen::Matrix3d& corners) {
+  const Eigen::Vector3d a = corners.col(1) - corners.col(0), b = corners.col(2) - corners.col(0);
+  return a.cross(b).norm() / std::max({a.squaredNorm(), b.squaredNorm(), (b - a).squaredNorm()});
 }
 
 /// n×3 unit normals, area-weighted; zero where undefined.

@@ -7,6 +7,7 @@
 
 #include "core/kernel/files/message_text.h"
 #include "core/kernel/plugin/bounds.h"
+#include "core/numerics/mesh/area_vectors.h"
 #include "core/numerics/mesh/mesh_faults.h"
 #include "core/numerics/mesh/texture_coordinates.h"
 #include "core/numerics/mesh/unjoined_borders.h"
@@ -190,12 +191,8 @@ std::vector<std::string> check_pieces(const TriangleMesh& mesh) {
   Lines lines;
   constexpr double flat = 1e-12;  // height over the longest side
   std::vector<int> empty;
-  for (int t = 0; t < mesh.triangles.rows(); ++t) {
-    const Eigen::Matrix3d x = rest_corners(mesh, t);
-    const Eigen::Vector3d a = x.col(1) - x.col(0), b = x.col(2) - x.col(0);
-    const double longest = std::max({a.squaredNorm(), b.squaredNorm(), (b - a).squaredNorm()});
-    if (!(a.cross(b).norm() > flat * longest)) empty.push_back(t);
-  }
+  for (int t = 0; t < mesh.triangles.rows(); ++t)
+    if (!(relative_height(rest_corners(mesh, t)) > flat)) empty.push_back(t);
   const auto name = [&](int t) { return triangle_text(mesh.triangles, t); };
   add_line(lines, empty,
            {"triangle has", "triangles have", " no area in texture coordinates",
