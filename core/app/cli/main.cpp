@@ -53,8 +53,8 @@ void open_standard_streams() {
     if (fcntl(stream, F_GETFD) == -1 && open("/dev/null", O_RDWR) != stream) std::_Exit(exit_aborted);
 }
 
-/// Keeps freed memory in the process, in huge pages where the system has them: a run makes and frees matrices
-/// of megabytes all the time, and took the system's page faults for them again and again.
+/// Keeps freed memory in the process, in huge pages where the system has them. A run makes and frees matrices
+/// of megabytes in every iteration: each would otherwise be given back, and fetched again page by page.
 void keep_freed_memory() {
   if (!mallopt(M_MMAP_MAX, 0) || !mallopt(M_TRIM_THRESHOLD, -1)) return;
   constexpr std::size_t reserved = std::size_t(1) << 30;  // of addresses; a page is taken by its first use

@@ -216,7 +216,7 @@ LiveServer::LiveServer(int port, const LiveAnswers& answers, double patience)
         "--port " + std::to_string(port) + ": cannot listen on 127.0.0.1:" + std::to_string(port) + " (" +
         std::strerror(errno) + "); name another port, or leave --port out for one that is free");
   // The library has the system let five connections wait; a sixth would come back after a second or more. A
-  // page needs few, and behind thousands that others left there it would wait for long.
+  // page needs few, and would itself wait long behind thousands that others have closed.
   ::listen(listening, 64);
   impl_->port = bound;
   url_ = "http://127.0.0.1:" + std::to_string(bound) + base;

@@ -116,8 +116,8 @@ class BoundContact {
 
   /// The smallest gap at x, for a model with a barrier.
   virtual SmallestGap smallest_gap([[maybe_unused]] const Positions& x) const { return {}; }
-  /// The gap of each obstacle at x (n×3), which must be free of intersections, however far it is, in the
-  /// order of obstacles(). None by default.
+  /// The gap of each obstacle at x (n×3), however far it is, in the order of obstacles(). Any number where x
+  /// intersects the obstacle, and not positive where x is wholly in it. None by default.
   virtual std::vector<ObstacleGap> obstacle_gaps([[maybe_unused]] const Positions& x) const { return {}; }
 
   /// The largest collision-free step of the obstacles (kinematic obstacles of IPC) from their placement in

@@ -94,7 +94,8 @@ double nearest_to_box_on_edge(const Vector3d& half, const Vector3d& a, const Vec
   return low + (high - low) * low_slope / (low_slope - high_slope);
 }
 
-/// Where an edge is nearest to a cylinder's curved side, that is to its axis; elsewhere by a root.
+/// Exact where the nearest point lies on the cylinder's curved side: the edge is then nearest to the axis
+/// there. Elsewhere, and along the axis, where t is NaN, a root.
 double nearest_to_cylinder_on_edge(const Solid& s, const Vector3d& a, const Vector3d& e) {
   const double t = std::clamp(-a.head<2>().dot(e.head<2>()) / e.head<2>().squaredNorm(), 0.0, 1.0);
   const Vector3d nearest = a + t * e;
