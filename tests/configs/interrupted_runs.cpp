@@ -58,6 +58,15 @@ TEST_CASE("SIGINT ends a run after the step, with all results so far and the rep
   CHECK(text_of(run / "out/report.html").ends_with("</html>\n"));
 }
 
+TEST_CASE("SIGTERM ends a run so too when it comes within an ordering, in a thread of another library") {
+  const Scratch folder(small_experiment());
+  const std::string preloaded = (folders::test_plugins() / "../libsignal_in_ordering.so").string();
+  const Ended ended =
+      Command("LD_PRELOAD=" + preloaded + " " + drape_command + " " + endless, folder.path).wait();
+  CHECK(ended.exit_code == 143);
+  CHECK_THAT(ended.err, EndsWith(stopped));
+}
+
 TEST_CASE("SIGHUP, as of a terminal that is closed, ends a run as SIGTERM does; under nohup it does not") {
   EndlessRun run;
   run.command.send(SIGHUP);
