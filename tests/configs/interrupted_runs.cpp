@@ -62,7 +62,7 @@ TEST_CASE("SIGTERM ends a run so too when it comes within an ordering, in a thre
   const Scratch folder(small_experiment());
   const std::string preloaded = (folders::test_plugins() / "../libsignal_in_ordering.so").string();
   const Ended ended =
-      Command("LD_PRELOAD=" + preloaded + " " + drape_command + " " + endless, folder.path).wait();
+      Command("exec env LD_PRELOAD=" + preloaded + " " + drape_command + " " + endless, folder.path).wait();
   CHECK(ended.exit_code == 143);
   CHECK_THAT(ended.err, EndsWith(stopped));
 }
