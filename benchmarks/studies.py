@@ -59,7 +59,8 @@ STUDIES = {
         "starts": 1},
     "changes": program("changes", "what a change of a parameter costs", 10),
     "linear_solvers": program("linear_solvers", "both linear solvers on the same matrices", 15) | {
-        "check": ["sh", "-c", "/sbin/ldconfig -p | grep -q openblas || echo 'OpenBLAS: run third_party/setup compare' >&2"]},
+        "check": ["sh", "-c", "ldd {build}/bin/drape_bench_linear_solvers | grep -q openblas || echo 'OpenBLAS as the BLAS: run third_party/setup compare, "
+                          "or choose it by update-alternatives' >&2"]},
     "python": one_record("python", "what the Python module costs", 5, "env", "PYTHONPATH={build}/python", "/usr/bin/python3",
                          "benchmarks/python", "{drape}") | {"needs": MODULE},
     "codim_ipc": beside("codim_ipc", "Codim-IPC", 60, ["benchmarks/codim_ipc/installation.py"]),
