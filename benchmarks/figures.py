@@ -12,6 +12,7 @@ from operator import itemgetter
 from records import CONVERGED, RESULTS, WITHOUT_CONTACT, conditions, figure, median, read, seconds_text, stamps, usual_conditions, with_range
 
 TFLOP = itemgetter("tflop")
+PREVIEW_DISTANCE = lambda r: r["preview"]["distance_rms"]  # noqa: E731
 METHODS = ["pcs", "cascadic", "newton"]
 TOLERANCES_AND_STEPS = ["tolerance_1e-2", "tolerance_1e-4", "step_growth_1", "step_growth_3", "step_size_0.01_s", "step_size_1_s"]  # of ablations
 TWO_DRAPES = ["hanging", "draped"]  # the scenes of two_drapes.py
@@ -257,7 +258,7 @@ def linear_solvers():
     rows = []
     for r in read("linear_solvers.json")["rows"]:
         own, cholmod = r["supernodal"], r["cholmod"]
-        cell = lambda solver: f"{figure(solver['factorisation_seconds'], 2)} ({figure(solver['gflops_per_second'], 2)})"  # noqa: E731
+        cell = lambda solver: f"{figure(solver['factorisation_seconds'], 2)} ({solver['gflops_per_second']:.0f})"  # noqa: E731
         ratios_of = r["cholmod_over_supernodal"]
         rows.append([r["scene"], str(r["vertices"]), str(r["threads"]), cell(own), cell(cholmod),
                      figure(ratios_of["factorisation"], 2), figure(ratios_of["solve"], 2)])
@@ -500,23 +501,19 @@ VALUES = {
         distance_of_previews(finished("sphere", "cascadic")) / distance_of_previews(finished("sphere", "pcs")), 2),
     "previews.distance": lambda: lowest_to_highest([
         100 * distance_of_previews(finished("previews", "pcs", name, "default")) for name in scene_names("previews")]),
-    "previews, distance_ratio": lambda: lowest_to_highest([1 / ratio for ratio in medians_over(
-        "cascadic", "previews", lambda r: r["preview"]["distance_rms"]).values()]),
-    "garments, previews": lambda: lowest_to_highest(medians_over("cascadic", "garments", lambda r: r["preview"]["distance_rms"]).values()),
-    "garments, farther": lambda: scenes_above("garments", lambda r: r["preview"]["distance_rms"]),
+    "previews, distance_ratio": lambda: lowest_to_highest([1 / ratio for ratio in medians_over("cascadic", "previews", PREVIEW_DISTANCE).values()]),
+    "garments, previews": lambda: lowest_to_highest(medians_over("cascadic", "garments", PREVIEW_DISTANCE).values()),
+    "garments, farther": lambda: scenes_above("garments", PREVIEW_DISTANCE),
     "garments, higher ends": lambda: starts_above("garments", itemgetter("energy")),
     **{f"garments.{key}": lambda value=value: lowest_to_highest([of(finished("garments", "pcs", name), value) for name in scene_names("garments")])
        for key, value in (("seen", "seconds_of_preview"), ("finished", "seconds"))},
     "garments.number": lambda: str(len(scene_names("garments"))),
-    "garments.solves": lambda: str(solves("garments")[0]),
-    "sphere, previews": lambda: lowest_to_highest(start_by_start("sphere", lambda r: r["preview"]["distance_rms"])),
+    "sphere, previews": lambda: lowest_to_highest(start_by_start("sphere", PREVIEW_DISTANCE)),
     "sphere, level 1": lambda: lowest_to_highest(start_by_start("sphere", lambda r: r["level_1"]["distance_rms"])),
     "sphere, time to the preview": lambda: lowest_to_highest(start_by_start("sphere", lambda r: r["seconds_of_preview"])),
     "sphere, later previews": lambda: starts_above("sphere", lambda r: r["seconds_of_preview"]),
     "sphere, time to the end": lambda: lowest_to_highest(start_by_start("sphere", lambda r: r["seconds"])),
-    "sphere, flops over direct": lambda: figure(medians_over("newton", "sphere", TFLOP)["sphere"], 2),
-    **{f"{study}, flops over direct from single starts": lambda study=study: lowest_to_highest(start_by_start(study, TFLOP, "newton"))
-       for study in ("sphere", "previews")},
+    "previews, flops over direct from single starts": lambda: lowest_to_highest(start_by_start("previews", TFLOP, "newton")),
     "previews, more flops than direct": lambda: scenes_above("previews", TFLOP, "newton"),
     "previews, higher energy": lambda: scenes_above("previews", lambda r: r["preview"]["energy_above_end"]),
     "flops from single starts": lambda: lowest_to_highest(start_by_start("previews", TFLOP)),
@@ -559,8 +556,7 @@ VALUES = {
     "iterations of STARK over drape's": lambda: lowest_to_highest(
         [r["stark"]["iterations"] / r["drape"]["iterations"] for r in read("stark.json")["runs"]]),
     "linear solvers of STARK": starks_linear_solvers,
-    "sphere.solves": lambda: str(solves("sphere")[0]),
-    "previews.solves": lambda: str(solves("previews")[0]),
+    **{f"{study}.solves": lambda study=study: str(solves(study)[0]) for study in ("sphere", "previews", "garments")},
     "dragon.minutes": lambda: minutes_of("dragon"),
     "scale.vertices": lambda: f"{read('scale.json')['rows'][-1]['vertices'] / 1000:.0f}K",
     "scale.minutes": lambda: figure(read("scale.json")["rows"][-1]["total_seconds"] / 60, 2),
