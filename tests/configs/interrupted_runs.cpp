@@ -58,7 +58,7 @@ TEST_CASE("SIGINT ends a run after the step, with all results so far and the rep
   CHECK(text_of(run / "out/report.html").ends_with("</html>\n"));
 }
 
-TEST_CASE("SIGTERM ends a run so too when it comes within an ordering, in a thread of another library") {
+TEST_CASE("SIGTERM ends a run after the step where another library's thread receives it while METIS orders") {
   const Scratch folder(small_experiment());
   const std::string preloaded = (folders::test_plugins() / "../libsignal_in_ordering.so").string();
   const Ended ended =
