@@ -114,7 +114,7 @@ SceneSummary summary_of(const Scene& scene) {
 std::optional<double> estimated_seconds(const SceneSummary& s, double vertices) {
   // Soft cloth has more folds, which take more iterations.
   if (!s.bending_length) return std::nullopt;
-  constexpr double each = 9.5e-6, with_contact = 2;  // [s], [1]
+  constexpr double each = 1.1e-5, with_contact = 2;  // [s], [1]
   return each * vertices * s.size.maxCoeff() / *s.bending_length * (s.dhat > 0 ? with_contact : 1);
 }
 
