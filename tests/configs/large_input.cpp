@@ -105,9 +105,14 @@ TEST_CASE("A schedule of many keys or times is refused by its bounds; one within
   CHECK(checked(Scratch("name: large\nlevels: 1\ncloth: {vertices: 40000}\n" + rest_of_experiment + schedule +
                         key("material.density", 1000, "500")))
             .exit_code == 0);
-  const std::string ball =
-      "contact: shapes\nobstacles: [{shape: sphere, radius: 0.1, translate: [0, 0, -1]}]\n";
-  CHECK(checked_square(ball + rest_of_experiment + schedule + key("obstacles.0.radius", 40000, "0.1"))
+  const auto ball = [](const std::string& contact, const std::string& shape) {
+    return "contact: " + contact + "\nobstacles: [{" + shape + ", radius: 0.1, translate: [0, 0, -1]}]\n";
+  };
+  CHECK(checked_square(ball("shapes", "shape: sphere") + rest_of_experiment + schedule +
+                       key("obstacles.0.radius", 40000, "0.1"))
+            .exit_code == 0);
+  CHECK(checked_square(ball("ipc", "meshed_shape: sphere, subdivisions: 7") + rest_of_experiment + schedule +
+                       key("obstacles.0.radius", 2000, "0.1"))
             .exit_code == 0);
 }
 

@@ -18,7 +18,7 @@ struct NearSurface {
   drape::BarrierParameters parameters;
 
   explicit NearSurface(const drape::TriangleMesh& mesh)
-      : obstacles(drape::ipc::Obstacles::of({{"mesh", mesh, 0.5, {{drape::ipc::ValidatedMesh::of(mesh)}}}})),
+      : obstacles(drape::ipc::Obstacles::of({{"mesh", 0.5, {{drape::ipc::ValidatedMesh::of(mesh)}}}})),
         coefficients(drape::OperatorCoefficients::of(obstacles.surface, obstacles.dihedrals, dhat)) {
     parameters.dhat = dhat;
     parameters.stiffness = 1 / dhat;

@@ -9,15 +9,6 @@
 
 namespace drape {
 
-std::shared_ptr<const Level> IntermediateRests::level(int level) const {
-  const std::lock_guard lock(busy_);
-  std::shared_ptr<const Level>& own = levels_[level];
-  if (!own)
-    own = std::make_shared<const Level>(
-        with_intermediate_rest(scene_.hierarchy.levels[level], scene_.dressing->garments[level], placed_));
-  return own;
-}
-
 Positions own_of(const Hierarchy& hierarchy, const Positions& x, int fine, int coarse) {
   const Level &from = hierarchy.levels[fine], &to = hierarchy.levels[coarse];
   Positions own(to.vertex_count(), 3);
@@ -37,7 +28,7 @@ LoadSchedule::LoadSchedule(const Experiment& e, const Scene& scene)
   std::vector<double> values =
       e.parameters.dress.is_asked() ? keys_.values_at(keys_.time(keys_.steps)) : keys_.values_at(0);
   first_ = std::make_shared<const LoadState>(
-      LoadState{{std::move(values), parameters, scene.energies, e.contacts}, nullptr, nullptr});
+      LoadState{{std::move(values), parameters, scene.energies, e.contacts}, {}, nullptr});
 }
 
 std::shared_ptr<const LoadState> LoadSchedule::at(std::vector<double> values, const LoadState& before) const {
@@ -60,8 +51,13 @@ Positions LoadSchedule::placed(const LoadState& load, int level) const {
 /// Gives a load the loads and the rest shapes of its phase.
 void LoadSchedule::dress(LoadState& load, const LoadState& before) const {
   const DressParameters &own = load.parameters->dress, &old = before.parameters->dress;
-  if (own.placed != old.placed)
-    load.rests = own.placed > 0 ? std::make_shared<const IntermediateRests>(scene_, own.placed) : nullptr;
+  if (own.placed != old.placed) {
+    load.rests.clear();
+    for (int level = 0; own.placed > 0 && level < scene_.hierarchy.level_count(); ++level)
+      load.rests.emplace_back([&scene = scene_, level, weight = own.placed] {
+        return with_intermediate_rest(scene.hierarchy.levels[level], scene.dressing->garments[level], weight);
+      });
+  }
   if (own.loads == old.loads) return;
   for (std::size_t k = 0; k < load.energies.size(); ++k) {
     const std::shared_ptr<const Energy>& whole = scene_.energies[k].energy;
@@ -75,7 +71,7 @@ std::shared_ptr<const LevelModel> LoadSchedule::model(const LoadState& load, int
   const auto with = [&](std::vector<DirichletVertex> dirichlet, const LevelModel& shared) {
     return std::make_shared<const LevelModel>(own, load.parameters->material, load.energies,
                                               std::move(dirichlet), load.contacts, &shared,
-                                              load.rests ? load.rests->level(level) : nullptr);
+                                              load.rests.empty() ? nullptr : load.rests[level].get());
   };
   if (load.parameters->dress.loads == 0) return with({}, before);
   std::vector<DirichletVertex> dirichlet =

@@ -1,30 +1,17 @@
 #pragma once
 
-#include <map>
-#include <mutex>
+#include <memory>
+#include <vector>
 
 #include "core/app/scene/scene.h"
+#include "core/kernel/threads/deferred.h"
 
 namespace drape {
 
-/// The levels of a garment whose pieces rest between the shape that they were placed in and their own, each
-/// made when it is asked for.
-class IntermediateRests {
- public:
-  /// Refers to the scene, which has a DressingStart. `placed` is the weight of the placed shape's metric.
-  IntermediateRests(const Scene& scene, double placed) : scene_(scene), placed_(placed) {}
-  std::shared_ptr<const Level> level(int level) const;
-
- private:
-  const Scene& scene_;
-  const double placed_;
-  mutable std::mutex busy_;
-  mutable std::map<int, std::shared_ptr<const Level>> levels_;
-};
-
 /// A load of a scene. Immutable.
 struct LoadState : Load {
-  std::shared_ptr<const IntermediateRests> rests;  ///< of membranes; null: those of the levels
+  /// By level, rests of membranes between the shape that pieces were placed in and their own, if any.
+  std::vector<Deferred<Level>> rests;
   /// Where pins hold a garment that has been sewn: its positions then, prolonged to the finest level from the
   /// one that it was sewn on, n×3 [m]; null: where the scene placed it.
   std::shared_ptr<const Positions> sewn;

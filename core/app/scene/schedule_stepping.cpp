@@ -215,7 +215,7 @@ class ScheduleStepping final : public LoadStepping {
     if (increment_ == 0 || increment_ > dress_.growth + dress_.sewing) return;
     std::string fault;
     if (increment_ <= dress_.growth)
-      fault = too_tight_as_placed(cloth_, *load_->rests->level(0), x);
+      fault = too_tight_as_placed(cloth_, *load_->rests[0].get(), x);
     else if (increment_ == dress_.growth + dress_.sewing && complete())
       fault = too_tight_as_sewn(cloth_, dress_, hierarchy_.levels[0], x);
     if (!fault.empty()) throw LoadRefused(fault);

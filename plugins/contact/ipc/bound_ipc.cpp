@@ -186,7 +186,7 @@ std::vector<ObstacleGap> BoundIpc::obstacle_gaps(const Positions& x) const {
   const SurfaceSearch near_cloth(cloth);
   std::vector<ObstacleGap> gaps;
   for (const Obstacle& body : obstacles_.bodies) {
-    const Eigen::Vector3d connection = shortest_connection(near_cloth, SurfaceSearch(body.mesh));
+    const Eigen::Vector3d connection = shortest_connection(near_cloth, SurfaceSearch(body.mesh()));
     gaps.push_back({body.name, connection.norm(), connection.normalized()});
   }
   return gaps;
@@ -218,7 +218,7 @@ std::vector<Intersection> BoundIpc::intersections(const Positions& x) const {
                        {pair.first, pair.second}});
   std::vector<std::pair<const Obstacle*, int>> owners;  // of each triangle of all, with its number there
   for (const Obstacle& body : obstacles_.bodies)
-    for (int t = 0; t < body.mesh.triangles.rows(); ++t) owners.emplace_back(&body, t);
+    for (int t = 0; t < body.triangles().rows(); ++t) owners.emplace_back(&body, t);
   std::vector<TrianglePair> pairs =
       drape::intersections(cloth, {obstacles_.vertices, obstacles_.surface.triangles});
   std::ranges::stable_sort(pairs, {}, [&](const TrianglePair& pair) { return owners[pair.second].first; });
@@ -234,7 +234,7 @@ std::vector<Intersection> BoundIpc::intersections(const Positions& x) const {
 
 std::vector<TriangleMesh> BoundIpc::obstacles() const {
   std::vector<TriangleMesh> meshes;
-  for (const Obstacle& body : obstacles_.bodies) meshes.push_back(body.mesh);
+  for (const Obstacle& body : obstacles_.bodies) meshes.push_back(body.mesh());
   return meshes;
 }
 

@@ -30,24 +30,22 @@ Ipc::Ipc(const Parameters& parameters, const Ipc* before) : p_(parameters) {
     for_all_items("obstacles", p_.obstacles, [&](const ObstacleParameters& p, std::size_t k) {
       bodies.push_back(Obstacle::of(p, static_cast<int>(k), meshes_[k], static_cast<int>(level)));
     });
-    const bool same =
-        before && level < before->obstacles_.size() && before->obstacles_[level]->bodies == bodies;
+    const bool same = before && level < before->bodies_.size() && before->bodies_[level] == bodies;
     obstacles_.push_back(same ? before->obstacles_[level]
-                              : std::make_shared<const Obstacles>(Obstacles::of(std::move(bodies))));
+                              : Deferred<Obstacles>([bodies] { return Obstacles::of(bodies); }));
+    const bool same_tree = same && before->p_.dhat == p_.dhat && before->p_.broad_phase == p_.broad_phase;
+    const auto tree = [obstacles = obstacles_[level], dhat = p_.dhat, kind = p_.broad_phase] {
+      return ObstacleTree(obstacles.get(), dhat, kind);
+    };
+    trees_.push_back(same_tree ? before->trees_[level] : Deferred<ObstacleTree>(tree));
+    bodies_.push_back(std::move(bodies));
   }
-  trees_.resize(levels);
-  if (!before || before->p_.dhat != p_.dhat || before->p_.broad_phase != p_.broad_phase) return;
-  const std::lock_guard lock(before->busy_);
-  for (std::size_t level = 0; level < std::min(levels, before->trees_.size()); ++level)
-    if (obstacles_[level] == before->obstacles_[level]) trees_[level] = before->trees_[level];
 }
 
 std::unique_ptr<BoundContact> Ipc::bind(const Level& level, const Material& material,
                                         std::shared_ptr<const RestCloth> rest) const {
-  const std::size_t k = std::min<std::size_t>(level.index, obstacles_.size() - 1);
-  const std::lock_guard lock(busy_);
-  if (!trees_[k]) trees_[k] = std::make_shared<const ObstacleTree>(obstacles_[k], p_.dhat, p_.broad_phase);
-  return std::make_unique<BoundIpc>(p_, p_.barrier(material), trees_[k], std::move(rest));
+  const std::size_t k = std::min<std::size_t>(level.index, trees_.size() - 1);
+  return std::make_unique<BoundIpc>(p_, p_.barrier(material), trees_[k].get(), std::move(rest));
 }
 
 std::unique_ptr<BoundContact> Ipc::bind(const Level& level, const Material& material) const {

@@ -1,9 +1,10 @@
 #pragma once
 
-#include <mutex>
+#include <memory>
 #include <vector>
 
 #include "core/kernel/interfaces/contact_model.h"
+#include "core/kernel/threads/deferred.h"
 #include "core/numerics/collision_detection/broad_phase.h"
 #include "core/numerics/contact/contact_parameters.h"
 #include "plugins/contact/ipc/obstacle.h"
@@ -41,11 +42,11 @@ class Ipc final : public ContactModel {
                                      std::shared_ptr<const RestCloth> rest) const;
 
   Parameters p_;
-  std::vector<ObstacleMeshes> meshes_;                       // of each obstacle
-  std::vector<std::shared_ptr<const Obstacles>> obstacles_;  // by level; finer levels use the last
-  // One for each of obstacles_, made when its level is first bound: a load may be bound to a single level.
-  mutable std::vector<std::shared_ptr<const ObstacleTree>> trees_;
-  mutable std::mutex busy_;  // guards trees_
+  std::vector<ObstacleMeshes> meshes_;         // of each obstacle
+  std::vector<std::vector<Obstacle>> bodies_;  // by level; finer levels use the last
+  // Of each of bodies_, made when its level is first bound: a load may be bound to a single level or none.
+  std::vector<Deferred<Obstacles>> obstacles_;
+  std::vector<Deferred<ObstacleTree>> trees_;
 };
 
 }  // namespace drape::ipc

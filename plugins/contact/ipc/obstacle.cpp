@@ -176,7 +176,7 @@ bool ObstacleMeshes::are_same(const ObstacleParameters& a, const ObstacleParamet
 }
 
 Obstacle Obstacle::of(const ObstacleParameters& p, int number, const ObstacleMeshes& meshes, int level) {
-  Obstacle body{name_of(p, number), {}, p.friction, {}};
+  Obstacle body{name_of(p, number), p.friction, {}};
   ObstacleGeometry& geometry = body.geometry;
   geometry.frames = meshes.frames;
   geometry.pose = {p.scale, p.rotate, p.translate};
@@ -200,22 +200,25 @@ Obstacle Obstacle::of(const ObstacleParameters& p, int number, const ObstacleMes
     geometry.frames = {meshes.cages[level]};
     body.name += " (cage " + std::to_string(level) + ")";
   }
-  body.mesh.triangles = geometry.frames[0]->mesh.triangles;
-  body.mesh.vertices = geometry.pose.applied_to(geometry.local_positions(geometry.frame));
   return body;
+}
+
+TriangleMesh Obstacle::mesh() const {
+  return {geometry.pose.applied_to(geometry.local_positions(geometry.frame)), triangles()};
 }
 
 Obstacles Obstacles::of(std::vector<Obstacle> bodies) {
   Obstacles all;
   all.first_vertex = {0};
   for (const Obstacle& body : bodies)
-    all.first_vertex.push_back(all.first_vertex.back() + static_cast<int>(body.mesh.vertices.rows()));
+    all.first_vertex.push_back(all.first_vertex.back() +
+                               static_cast<int>(body.geometry.frames[0]->mesh.vertices.rows()));
   all.vertices.resize(all.first_vertex.back(), 3);
   for (const Obstacle& body : bodies) {
-    all.vertices.middleRows(all.first_vertex[&body - bodies.data()], body.mesh.vertices.rows()) =
-        body.mesh.vertices;
+    const TriangleMesh mesh = body.mesh();
+    all.vertices.middleRows(all.first_vertex[&body - bodies.data()], mesh.vertices.rows()) = mesh.vertices;
     all.body_friction.push_back(body.friction);
-    all.surface.append(Surface::of(body.mesh, body.geometry.frames[0]->topology));
+    all.surface.append(Surface::of(mesh, body.geometry.frames[0]->topology));
   }
   all.dihedrals = Dihedrals::of(all.surface, all.vertices);
   all.bodies = std::move(bodies);

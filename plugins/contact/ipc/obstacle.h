@@ -78,14 +78,15 @@ struct ObstacleGeometry {
 /// A mesh that the cloth collides with.
 struct Obstacle {
   std::string name;
-  TriangleMesh mesh;               ///< in world coordinates
   std::optional<double> friction;  ///< μ, if it has its own
   ObstacleGeometry geometry;       ///< which the mesh follows from
 
+  const Triangles& triangles() const { return geometry.frames[0]->mesh.triangles; }
+  TriangleMesh mesh() const;  ///< in world coordinates
   bool operator==(const Obstacle& other) const {
     return geometry == other.geometry && name == other.name && friction == other.friction;
   }
-  /// Places the meshes. On a level with a cage, the obstacle is the cage. Throws std::runtime_error naming
+  /// Chooses the meshes. On a level with a cage, the obstacle is the cage. Throws std::runtime_error naming
   /// the obstacle if its animation has no such frame.
   static Obstacle of(const ObstacleParameters& parameters, int number, const ObstacleMeshes& meshes,
                      int level = std::numeric_limits<int>::max());

@@ -44,10 +44,10 @@ std::vector<char> moving_bodies(const Obstacles& before, const Obstacles& after)
   std::vector<char> moves;
   for (std::size_t i = 0; i < after.bodies.size(); ++i) {
     const Obstacle &from = before.bodies[i], &to = after.bodies[i];
-    if (!same_entries(from.mesh.triangles, to.mesh.triangles))
+    if (!same_entries(from.triangles(), to.triangles()))
       throw std::runtime_error("obstacle \"" + to.name + "\": its mesh changed: it has " +
-                               std::to_string(to.mesh.triangles.rows()) + " triangles instead of " +
-                               std::to_string(from.mesh.triangles.rows()) +
+                               std::to_string(to.triangles().rows()) + " triangles instead of " +
+                               std::to_string(from.triangles().rows()) +
                                "; during a run it may only move, rotate, scale and change its frame");
     moves.push_back(!(from.geometry == to.geometry));
   }

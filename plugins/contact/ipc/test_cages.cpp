@@ -44,13 +44,13 @@ TEST_CASE("ipc: cages enclose each other and have their obstacle's transform") {
   for (int l = 0; l < 5; ++l) levels.push_back(Obstacle::of(p, 0, meshes, l));
   CHECK(levels[0].name == "horned (cage 0)");
   CHECK(levels[3].name == "horned");
-  for (const int l : {3, 4}) CHECK(levels[l].mesh.vertices == itself.mesh.vertices);
+  for (const int l : {3, 4}) CHECK(levels[l].mesh().vertices == itself.mesh().vertices);
   for (int l = 0; l < 3; ++l) {
     INFO(l);
-    const ValidatedMesh outer = placed(levels[l].mesh), inner = placed(levels[l + 1].mesh);
+    const ValidatedMesh outer = placed(levels[l].mesh()), inner = placed(levels[l + 1].mesh());
     CHECK(enclosure_fault(outer, inner).empty());
     CHECK(!enclosure_fault(inner, outer).empty());
-    if (l < 2) CHECK(levels[l].mesh.triangles.rows() < levels[l + 1].mesh.triangles.rows());
+    if (l < 2) CHECK(levels[l].mesh().triangles.rows() < levels[l + 1].mesh().triangles.rows());
   }
   Ipc::Parameters moving;
   moving.obstacles = {p};

@@ -128,7 +128,7 @@ TEST_CASE("ipc: a surface's areas and representative triangles") {
 }
 
 TEST_CASE("ipc: obstacles are scaled, rotated and translated, and without any there is no contact") {
-  const TriangleMesh round = obstacle_of(ball(3, {1, 2, 3}, 0.3)).mesh;
+  const TriangleMesh round = obstacle_of(ball(3, {1, 2, 3}, 0.3)).mesh();
   CHECK(round.triangles.rows() == 20 * 64);
   CHECK(((round.vertices.rowwise() - Eigen::RowVector3d(1, 2, 3)).rowwise().norm().array() - 0.3)
             .abs()
@@ -137,7 +137,7 @@ TEST_CASE("ipc: obstacles are scaled, rotated and translated, and without any th
   ObstacleParameters p = box({1, 2, 4}, {0, 0, 1});
   p.rotate = {0, 90, 0};
   p.scale = 0.5;
-  const TriangleMesh table = obstacle_of(p).mesh;
+  const TriangleMesh table = obstacle_of(p).mesh();
   CHECK((table.vertices.colwise().maxCoeff() - Eigen::RowVector3d(1, 0.5, 1.25)).norm() < 1e-14);
   CHECK(volume_of(table) == Approx(1));
   Ipc::Parameters nothing;

@@ -98,7 +98,7 @@ TEST_CASE("ipc: an animation is interpolated linearly and never passes through t
     p.frame = frame;
     return p;
   };
-  const auto vertices = [&](double frame) { return obstacle_of(with(frame)).mesh.vertices; };
+  const auto vertices = [&](double frame) { return obstacle_of(with(frame)).mesh().vertices; };
   CHECK((vertices(1.25) - 0.75 * vertices(1) - 0.25 * vertices(2)).norm() < 1e-14);
 
   const Level level = square_sheet(9, 0.2);

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <mutex>
+
+namespace drape {
+
+/// A value that is made when it is first asked for. Copies share it, and threads may ask at the same time.
+template <class T>
+class Deferred {
+ public:
+  explicit Deferred(std::function<T()> make) : shared_(std::make_shared<Shared>()) {
+    shared_->make = std::move(make);
+  }
+
+  /// Rethrows an exception of `make`, which the next call calls again.
+  std::shared_ptr<const T> get() const {
+    const std::lock_guard lock(shared_->busy);
+    if (!shared_->value) {
+      shared_->value = std::make_shared<const T>(shared_->make());
+      shared_->make = nullptr;  // and with it what it holds
+    }
+    return shared_->value;
+  }
+
+ private:
+  struct Shared {
+    std::mutex busy;  // guards the others
+    std::function<T()> make;
+    std::shared_ptr<const T> value;
+  };
+  std::shared_ptr<Shared> shared_;
+};
+
+}  // namespace drape
