@@ -152,14 +152,18 @@ TEST_CASE("Many obstacles are checked in time, or refused") {
              return line.str();
            });
   };
-  for (const std::string shape : {"shape: box, size: [0.01, 0.01, 0.01]", "shape: sphere, radius: 0.002"})
-    CHECK(checked_square(scene(10000, "shapes", shape) + rest_of_experiment).exit_code == 0);
+  for (const auto& [count, shape] : {std::pair(10000, "shape: box, size: [0.01, 0.01, 0.01]"),
+                                     {10000, "shape: sphere, radius: 0.002"},
+                                     {4000, "shape: cylinder, radius: 0.002, height: 0.01"}})
+    CHECK(checked_square(scene(count, "shapes", shape) + rest_of_experiment).exit_code == 0);
   CHECK(checked_square(
             scene(5000, "{type: ipc, self_contact: false}", "meshed_shape: box, size: [0.01, 0.01, 0.01]") +
             rest_of_experiment)
             .exit_code == 0);
   CHECK_THAT(checked_square(scene(20000, "shapes", "shape: sphere, radius: 0.002") + rest_of_experiment).err,
              Contains("\"obstacles\" has 20000 entries, of at most 10000"));
+  CHECK_THAT(checked_square(scene(2000, "shapes", "shape: cylinder") + rest_of_experiment).err,
+             Contains("the rims of cylinders have") && Contains("of at most 4000000 in all"));
 }
 
 TEST_CASE("Outlines of very many points or holes are meshed in time, or refused") {

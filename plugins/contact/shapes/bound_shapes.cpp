@@ -39,8 +39,8 @@ class ShapesCandidates final : public CollisionCandidates {
 
   std::unique_ptr<Collisions> build_collisions(const Positions& x) const override {
     return make_collisions(scene_->barrier, vertex_contacts(x),
-                           find_pair_contacts(x, scene_->obstacle_points, candidates_.pairs),
-                           find_rim_contacts(x, scene_->obstacle_points, candidates_.curved_sides));
+                           find_pair_contacts(x, scene_->features->points, candidates_.pairs),
+                           find_rim_contacts(x, scene_->features->points, candidates_.curved_sides));
   }
 
  private:
@@ -162,7 +162,7 @@ class BoundShapes final : public BoundContact {
     Eigen::Vector3d p = point.offset;
     for (int k = 0; k < 3; ++k)
       if (point.vertices[k] >= 0)
-        p += point.weights[k] * from.obstacle_points.row(point.vertices[k]).transpose();
+        p += point.weights[k] * from.features->points.row(point.vertices[k]).transpose();
     return displacement_with(from.solids[point.obstacle], scene_->solids[point.obstacle], p);
   }
 

@@ -33,13 +33,20 @@ Vector3d on_circle(double radius, int k, int sides, double z) {
   return {radius * std::cos(angle), radius * std::sin(angle), z};
 }
 
+/// Sides of a rim's polygon that is nowhere more than `max_inset` [m] inside its circle.
+int sides_of(const Solid& solid, double max_inset) {
+  const double step = std::acos(1 - std::min(0.5, max_inset / solid.radius));
+  return std::max(16, static_cast<int>(std::ceil(M_PI / step)));
+}
+
 /// The rims of a cylinder as polygons nowhere more than `max_inset` [m] inside their circles.
 Features rims(const Solid& solid, double dhat, double max_inset) {
   Features f;
   f.dhat = dhat;
-  const double step = std::acos(1 - std::min(0.5, max_inset / solid.radius));
-  f.sides = std::max(16, static_cast<int>(std::ceil(M_PI / step)));
+  f.sides = sides_of(solid, max_inset);
   f.side = 2 * solid.radius * std::sin(M_PI / f.sides);
+  f.points.reserve(2 * f.sides);
+  f.edges.reserve(2 * f.sides);
   for (const int ring : {0, f.sides})
     for (int k = 0; k < f.sides; ++k) {
       f.points.push_back(on_circle(solid.radius, k, f.sides, ring ? solid.half.z() : -solid.half.z()));
@@ -141,12 +148,38 @@ std::vector<Features> Features::of(const Solid& solid, double dhat) {
       solid.kind, [&] { all = {core}; },
       [&] {
         core.is_axis = true;
-        all = {core, rims(solid, dhat, few_sides_inset * dhat),
-               rims(solid, small_gap * dhat, many_sides_inset * dhat)};
+        all.push_back(std::move(core));
+        all.push_back(rims(solid, dhat, few_sides_inset * dhat));
+        all.push_back(rims(solid, small_gap * dhat, many_sides_inset * dhat));
       },
       [] {});
   for (Features& f : all)
     for (Vector3d& point : f.points) point = solid.to_world(point);
+  return all;
+}
+
+long rim_points(const Solid& cylinder, double dhat) {
+  return 2L * (sides_of(cylinder, few_sides_inset * dhat) + sides_of(cylinder, many_sides_inset * dhat));
+}
+
+SolidFeatures SolidFeatures::of(const std::vector<Solid>& solids, double dhat) {
+  SolidFeatures all;
+  for (const Solid& solid : solids) all.of_solid.push_back(Features::of(solid, dhat));
+  // Rims come last: a larger one has more points, and contacts are identified by point indices.
+  std::vector<Features*> ordered;
+  for (const bool rims : {false, true})
+    for (std::vector<Features>& own : all.of_solid)
+      for (Features& features : own)
+        if ((features.sides > 0) == rims) ordered.push_back(&features);
+  int count = 0;
+  for (Features* features : ordered) {
+    features->first_point = count;
+    count += static_cast<int>(features->points.size());
+  }
+  all.points.resize(count, 3);
+  for (const Features* features : ordered)
+    for (std::size_t i = 0; i < features->points.size(); ++i)
+      all.points.row(features->first_point + i) = features->points[i];
   return all;
 }
 

@@ -13,7 +13,7 @@ namespace drape::shapes {
 /// triangle can make contact with: those of a cylinder's rims as polygons, and of its curved side its axis.
 struct Features {
   double dhat = 0;                        ///< d̂ of their contacts [m]
-  int first_point = 0;                    ///< index of the first point among those of all solids (ShapeScene)
+  int first_point = 0;                    ///< index of the first point among those of SolidFeatures
   std::vector<Eigen::Vector3d> points;    ///< [m]
   std::vector<std::array<int, 2>> edges;  ///< indices of points
   double offset = 0;                      ///< [m]
@@ -37,6 +37,17 @@ struct Features {
   /// Appends the indices of edges within `radius` of `centre`.
   void edges_near(const Solid& solid, const Eigen::Vector3d& centre, double radius,
                   std::vector<int>& found) const;
+};
+
+/// How many points a cylinder's rims have.
+long rim_points(const Solid& cylinder, double dhat);
+
+/// The features of solids.
+struct SolidFeatures {
+  std::vector<std::vector<Features>> of_solid;
+  Positions points;  ///< of all [m]
+
+  static SolidFeatures of(const std::vector<Solid>& solids, double dhat);
 };
 
 /// A closed surface for drawing; for a half-space a square of half side length `half_side` [m].

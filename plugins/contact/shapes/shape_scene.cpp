@@ -218,26 +218,16 @@ class Finder {
 }  // namespace
 
 ShapeScene ShapeScene::of(const Level& level, const std::vector<Solid>& solids,
-                          const BarrierParameters& barrier, double min_gap_fraction) {
+                          std::shared_ptr<const SolidFeatures> features, const BarrierParameters& barrier,
+                          double min_gap_fraction) {
   ShapeScene s;
   s.cloth = Surface::of(level.rest, level.topology);
   s.vertex_area = level.vertex_area;
   s.diagonal = bounding_box_diagonal(level.rest.vertices);
   s.solids = solids;
+  s.features = std::move(features);
   s.barrier = barrier;
   s.min_gap_fraction = min_gap_fraction;
-  for (const Solid& solid : solids) s.features.push_back(Features::of(solid, barrier.dhat));
-  // Rims come last: a larger one has more points, and contacts are identified by point indices.
-  std::vector<Vector3d> points;
-  for (const bool rims : {false, true})
-    for (std::vector<Features>& of_solid : s.features)
-      for (Features& features : of_solid) {
-        if ((features.sides > 0) != rims) continue;
-        features.first_point = static_cast<int>(points.size());
-        points.insert(points.end(), features.points.begin(), features.points.end());
-      }
-  s.obstacle_points.resize(static_cast<Eigen::Index>(points.size()), 3);
-  for (std::size_t i = 0; i < points.size(); ++i) s.obstacle_points.row(i) = points[i];
   return s;
 }
 
@@ -295,8 +285,9 @@ CandidatePairs find_candidates(const ShapeScene& scene, const std::vector<SolidP
       for (const int i : finder.vertices_of(triangles)) c.vertices.push_back({i, k});
     const auto has_edges = [](const Features& f) { return !f.edges.empty(); };
     std::vector<int> edges;
-    if (std::ranges::any_of(scene.features[k], has_edges)) edges = finder.edges_of(triangles);
-    for (const Features& features : scene.features[k]) {
+    const std::vector<Features>& of_solid = scene.features->of_solid[k];
+    if (std::ranges::any_of(of_solid, has_edges)) edges = finder.edges_of(triangles);
+    for (const Features& features : of_solid) {
       if (features.is_axis) {
         finder.add_curved_side(features, edges, c.curved_sides);
         continue;

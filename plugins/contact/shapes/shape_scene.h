@@ -20,12 +20,12 @@ struct ShapeScene {
   double diagonal = 0;          ///< of the rest shape's bounding box [m]
 
   std::vector<Solid> solids;
-  std::vector<std::vector<Features>> features;  ///< of each solid
-  Positions obstacle_points;                    ///< the points of all solids [m]
+  std::shared_ptr<const SolidFeatures> features;  ///< of the solids; all levels share them
   BarrierParameters barrier;
   double min_gap_fraction = 0.1;
 
-  static ShapeScene of(const Level& level, const std::vector<Solid>& solids, const BarrierParameters& barrier,
+  static ShapeScene of(const Level& level, const std::vector<Solid>& solids,
+                       std::shared_ptr<const SolidFeatures> features, const BarrierParameters& barrier,
                        double min_gap_fraction);
 
   Corners corners(int triangle, const Positions& x) const {

@@ -21,6 +21,7 @@ namespace {
 
 /// A rim's polygon has more sides the smaller d̂ is compared with the radius: 700 000 at this ratio.
 constexpr double max_radius_over_dhat = 5e6;
+constexpr long most_rim_points = 4'000'000;
 
 Solid solid_of(const ShapeParameters& p, int index, double friction) {
   Solid s;
@@ -89,17 +90,25 @@ void Shapes::Parameters::declare(Declaration<Parameters>& d) {
 }
 
 Shapes::Shapes(const Parameters& parameters) : p_(parameters) {
+  long points = 0;
   for_all_items("obstacles", p_.obstacles, [&](const ShapeParameters& shape, std::size_t k) {
     const Solid solid = solid_of(shape, static_cast<int>(k), p_.friction);
     if (solid.kind == SolidKind::cylinder && solid.radius > max_radius_over_dhat * p_.dhat)
       throw std::runtime_error(solid.name + " has a radius of more than 5e6 times \"dhat\"; raise \"dhat\"");
+    if (solid.kind == SolidKind::cylinder) points += rim_points(solid, p_.dhat);
     solids_.push_back(solid);
   });
+  if (points > most_rim_points)
+    throw std::runtime_error("the rims of cylinders have " + std::to_string(points) + " points, of at most " +
+                             std::to_string(most_rim_points) +
+                             " in all; raise \"dhat\", or make cylinders fewer");
+  features_.emplace([solids = solids_, dhat = p_.dhat] { return SolidFeatures::of(solids, dhat); });
 }
 
 std::unique_ptr<BoundContact> Shapes::bind(const Level& level, const Material& material) const {
   if (solids_.empty()) return nullptr;
-  return bind_shapes(ShapeScene::of(level, solids_, p_.barrier(material), p_.min_gap_fraction));
+  return bind_shapes(
+      ShapeScene::of(level, solids_, features_->get(), p_.barrier(material), p_.min_gap_fraction));
 }
 
 }  // namespace drape::shapes

@@ -1,9 +1,11 @@
 #pragma once
 
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "core/kernel/interfaces/contact_model.h"
+#include "core/kernel/threads/deferred.h"
 #include "core/numerics/contact/contact_parameters.h"
 #include "plugins/contact/shapes/solid.h"
 
@@ -23,6 +25,8 @@ struct ShapeParameters : CommonObstacleParameters {
 extern const std::vector<std::pair<std::string, SolidKind>> kind_names;
 std::string to_string(SolidKind kind);
 
+struct SolidFeatures;
+
 /// Contact with convex obstacles in closed form (see README.md).
 class Shapes final : public ContactModel {
  public:
@@ -38,6 +42,7 @@ class Shapes final : public ContactModel {
  private:
   Parameters p_;
   std::vector<Solid> solids_;
+  std::optional<Deferred<SolidFeatures>> features_;  // made when a level is first bound
 };
 
 }  // namespace drape::shapes
