@@ -1,6 +1,7 @@
 // STL: triangles of three points each, as text or binary. Points that are equal become one vertex.
 #include <algorithm>
 #include <array>
+#include <boost/algorithm/string/case_conv.hpp>
 #include <cmath>
 #include <cstdint>
 #include <cstring>
@@ -73,21 +74,21 @@ TriangleMesh read_text(const std::filesystem::path& path, std::string_view bytes
   bool is_open = false;
   while (reader.next_line()) {
     const auto& words = reader.words();
-    if (words[0] == "vertex") {
+    const std::string keyword = boost::to_lower_copy(std::string(words[0]));
+    if (keyword == "vertex") {
       if (!is_open) reader.fail("a vertex stands outside a facet");
       if (words.size() != 4) reader.fail("a vertex needs three coordinates");
       if (++corners > 3) reader.fail("a facet has three vertices, not more");
       mesh.add_corner(
           {reader.coordinate(words[1]), reader.coordinate(words[2]), reader.coordinate(words[3])});
-    } else if (words[0] == "facet") {
+    } else if (keyword == "facet") {
       if (is_open) reader.fail("the facet before has no endfacet");
       is_open = true;
       corners = 0;
-    } else if (words[0] == "endfacet") {
+    } else if (keyword == "endfacet") {
       if (!is_open || corners != 3) reader.fail("a facet needs three vertices");
       is_open = false;
-    } else if (words[0] != "solid" && words[0] != "endsolid" && words[0] != "outer" &&
-               words[0] != "endloop") {
+    } else if (keyword != "solid" && keyword != "endsolid" && keyword != "outer" && keyword != "endloop") {
       reader.fail("no line of an STL file begins with '" + excerpt(words[0]) + "'");
     }
   }
@@ -103,7 +104,8 @@ TriangleMesh read_stl(const std::filesystem::path& path, std::string_view bytes)
   if (const std::int64_t count = binary_count(bytes); count >= 0) return read_binary(path, bytes, count);
   const std::string_view text = utf8_text(path, bytes);
   const std::size_t begin = std::min(text.find_first_not_of(" \t\r\n"), text.size());
-  if (bytes.empty() || text.substr(begin).starts_with("solid")) return read_text(path, bytes);
+  if (bytes.empty() || boost::to_lower_copy(std::string(text.substr(begin, 5))) == "solid")
+    return read_text(path, bytes);
   refuse_size(path, bytes);
 }
 

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <array>
+#include <boost/algorithm/string/case_conv.hpp>
 #include <catch2/catch.hpp>
 #include <cstdint>
 #include <cstring>
@@ -225,7 +226,8 @@ TEST_CASE("STL as text and binary, welded at equal points") {
       "endfacet\nfacet normal 0 0 1\nouter loop\nvertex -0 0 0\nvertex 1 1.5 0\nvertex 0 1 -0.25\nendloop\n"
       "endfacet\nendsolid square\n";
   for (const std::string byte_order_mark : {"", "\xEF\xBB\xBF"})
-    check_square("m.stl", byte_order_mark + text);
+    for (const std::string& each : {text, boost::to_upper_copy(text)})
+      check_square("m.stl", byte_order_mark + each);
   const float points[2][9] = {{0, 0, 0, 1, 0, 0, 1, 1.5, 0}, {-0.0f, 0, 0, 1, 1.5, 0, 0, 1, -0.25}};
   std::string binary(80, 's');
   append(binary, std::uint32_t{2});
