@@ -29,6 +29,8 @@ TEST_CASE("malformed OBJ files are refused with their line") {
                 {"v 0 0\n", ":1: a vertex needs three coordinates"},
                 {"v 0 0 0 junk\n", ":1: 'junk' is not a number"},
                 {"v 0 0 0 1 1 1 1 1\n", ":1: the line has too many values"},
+                {"v 0 0 0 1\nv 2 0 0 0.5\n", ":2: a vertex has the weight 0.5, which is of curves"},
+                {"v 0 0 0 2 1 1 1\n", ":1: a vertex has the weight 2, which is of curves"},
                 {"v 0 0 0\nhello\n", ":2: no line of an OBJ file begins with 'hello'"},
                 {"v 0 0 0\nv 1 0 0\n\nf 1 2 3\n", ":4: face names vertex 3, but 2 vertices precede it"},
                 {"v 0 0 0\nv 1 0 0\nf 1 2 -3\n", ":3: face names vertex -3, but 2 vertices precede it"},
