@@ -61,6 +61,10 @@ int begun(const SweepFolder& folder, const Action& action) {
 }
 
 void check_options(const SweepRequest& r) {
+  for (const std::string& option : r.sbatch)
+    if (!option.starts_with('-'))
+      throw std::runtime_error("--sbatch " + option +
+                               ": an option of sbatch begins with -, as in --sbatch=--partition=long");
   if (r.engine == "slurm") return;
   const char* given = r.wait ? "--wait" : r.cancel ? "--cancel" : !r.sbatch.empty() ? "--sbatch" : nullptr;
   if (given) throw std::runtime_error(std::string(given) + " is of --engine slurm; give that too");
