@@ -2,7 +2,7 @@
 
 #include "core/numerics/mesh_files/io.h"
 #include "core/numerics/patterns/generate.h"
-#include "tests/configs/runs.h"
+#include "tests/configs/large.h"
 #include "tests/support/meshes.h"
 #include "tests/support/solve.h"
 
@@ -236,6 +236,23 @@ TEST_CASE("a start with pins, or without a free position, is refused, with the p
                StartsWith("error: e.yaml:4:8: moving the whole start by up to 0.1") &&
                    Contains(" m finds no position without intersections; at the start these intersect: ") &&
                    EndsWith(" on level 0; change the start's shape or place, or the obstacle\n"));
+}
+
+TEST_CASE("a start that crosses itself or an obstacle in very many places is checked in time") {
+  const auto jagged = [](double height) {
+    drape::TriangleMesh sheet = drape::grid({1, 1}, 71, 71, drape::Diagonals::one_way);
+    for (Eigen::Index v = 0; v < sheet.vertices.rows(); ++v) sheet.vertices(v, 2) = v % 2 ? height : -height;
+    return sheet;
+  };
+  const Scratch folder("name: large\nlevels: 1\ncloth: {shape: file, file: cloth.obj}\ncontact: ipc\n" +
+                       rest_of_experiment);
+  write_mesh(folder / "cloth.obj", both_of(jagged(0.02), jagged(-0.02), {0, 0, 0}));
+  CHECK_THAT(checked(folder, 20, repair).err,
+             Contains("more pairs; change the start's shape, or where its pieces lie"));
+  folder.write("e.yaml", text_of(folder / "e.yaml") + "obstacles: [{mesh: spikes.obj}]\n");
+  write_mesh(folder / "cloth.obj", jagged(0));
+  write_mesh(folder / "spikes.obj", jagged(0.5));
+  CHECK_THAT(checked(folder, 20, repair).err, Contains(" m finds no position without intersections"));
 }
 
 TEST_CASE("a cloth drapes over an obstacle that is no surface with one side up, or none at all") {

@@ -161,9 +161,13 @@ void refuse_intersecting_start(const Experiment& e, const LevelModel& model, con
   const auto& pins = e.parameters.pins;
   const bool moved = std::ranges::any_of(pins, &PinParameters::has_transform);
   const std::string remark = moved ? " (pinned vertices begin at their targets)" : "";
-  const std::string remedy =  // repair_start moves no cloth with pins
-      pins.empty() ? "; change the start or the obstacle, or let --allow-start-repair move the start"
-                   : "; change the start, the pins or the obstacle";
+  const auto remedy = [&](const std::vector<Intersection>& found) -> std::string {
+    if (touches_itself(found))  // which no translation mends
+      return "; change the start's shape, or where its pieces" +
+             std::string(pins.empty() ? "" : " and pins") + " lie";
+    if (!pins.empty()) return "; change the start, the pins or the obstacle";
+    return "; change the start or the obstacle, or let --allow-start-repair move the start";
+  };
   const std::string few =
       model.level().cloth_vertices.empty() ? "" : ", or ask for fewer levels below the cloth's mesh";
   for (const auto& contact : model.contacts()) {
@@ -185,7 +189,7 @@ void refuse_intersecting_start(const Experiment& e, const LevelModel& model, con
     if (!unwelded.empty())
       errors.push_back({e.location_of("cloth"), unwelded});
     else if (!found.empty())
-      errors.back().message += remedy + few;
+      errors.back().message += remedy(found) + few;
   }
 }
 

@@ -3,6 +3,8 @@
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <tuple>
+#include <utility>
 
 #include "core/app/files/yaml_file.h"
 #include "core/app/scene/crossed_parts.h"
@@ -142,9 +144,9 @@ class TranslationSearch {
   /// Accepts a translation without intersections if it has fewer contacts than any before, or as few and is
   /// shorter. It must not lead across an obstacle.
   bool is_better(const Vector3d& trial) {
-    const Clearance clearance = clearance_at(trial);
+    Clearance clearance = clearance_at(trial);
     if (!clearance.intersections.empty()) {
-      intersect_persistent(clearance);
+      intersect_persistent(std::move(clearance));
       return false;
     }
     if (found && (clearance.contacts > best_contacts_ ||
@@ -168,12 +170,12 @@ class TranslationSearch {
     }
   }
 
-  void intersect_persistent(const Clearance& other) {
+  void intersect_persistent(Clearance other) {
     if (other.level != persistent_.level) return;  // the triangles of another level are not comparable
+    const auto names = [](const Intersection& pair) { return std::tie(pair.first, pair.second); };
+    std::ranges::sort(other.intersections, {}, names);
     std::erase_if(persistent_.intersections, [&](const Intersection& pair) {
-      return std::ranges::none_of(other.intersections, [&](const Intersection& now) {
-        return now.first == pair.first && now.second == pair.second;
-      });
+      return !std::ranges::binary_search(other.intersections, names(pair), {}, names);
     });
   }
 
@@ -219,8 +221,7 @@ Vector3d repair_start(Experiment& experiment, const Scene& scene, ConfigErrors& 
   const bool intersects = !start.intersections.empty();
   if (!intersects && !(start.smallest_gap < tiny_gap)) return Vector3d::Zero();
   const int level = start.level;
-  if (touches_itself(start.intersections) &&
-      !unwelded_fault(experiment, scene.hierarchy.levels[level]).empty()) {  // which no translation mends
+  if (touches_itself(start.intersections)) {  // which no translation mends
     refuse_intersecting_start(experiment, *scene.model(level), scene.starts[level], errors);
     return Vector3d::Zero();
   }
