@@ -67,8 +67,11 @@ void CrossedParts::add(const Level& level, const TriangleMesh& obstacle, bool ha
   for (int v = 0; v < vertices; ++v)
     if (sides.find(v) == v) ones.push_back(v);
   const Positions at_ones = start_(ones, Eigen::all);
-  const std::vector<char> within = are_inside(at_ones, obstacle),
-                          inwards = are_inside(at_ones, obstacle, true);
+  std::vector<char> within, inwards;
+  if (closed) {
+    within = are_inside(at_ones, obstacle);
+    inwards = are_inside(at_ones, obstacle, true);
+  }
   const SurfaceSearch surface(obstacle);
   const auto is_behind = [&](const Vector3d& p) {
     const NearestPoint near = surface.nearest(p);
