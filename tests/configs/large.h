@@ -6,8 +6,8 @@
 
 inline const std::string rest_of_experiment = "energies: [neo_hookean, hinge]\nmethods: {newton: {}}\n";
 
-/// `drape check e.yaml`, which gets ten times the processor time that it may take, and a small part of what
-/// it would take with a time that grows with the square.
+/// `drape check e.yaml` with these options, which gets ten times the processor time that it may take, and a
+/// small part of what it would take with a time that grows with the square.
 inline Ended checked(const Scratch& folder, int seconds = 20, const std::string& options = "") {
   const Ended ended =
       Command("ulimit -t " + std::to_string(seconds) + "; exec " + drape_command + " check e.yaml " + options,

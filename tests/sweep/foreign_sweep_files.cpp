@@ -114,7 +114,7 @@ TEST_CASE("what sbatch answers is a job's number, or nothing was submitted") {
   CHECK_THAT(said("12;cluster").out, Contains("submitted: 1 runs as job array 12, collected by job 12;"));
 }
 
-TEST_CASE("what is no option of sbatch, which it would take for its script, is refused") {
+TEST_CASE("an --sbatch that does not begin with - is refused, since sbatch would run it as its script") {
   const SmallSweep folder;
   CHECK_THAT(refused_by("sweep s.yaml --engine slurm --out out --sbatch=foo", folder.path),
              Contains("--sbatch foo: an option of sbatch begins with -"));

@@ -161,7 +161,8 @@ class KeyReader {
   /// Appends the faults of the first value of each key that a part of the experiment refuses.
   void check_values() {
     const Load first{e_.parameters.schedule.values_at(0), nullptr, e_.energies, e_.contacts};
-    constexpr std::size_t most_checked = 300'000;  // obstacles × values; faults beyond show in the run
+    constexpr std::size_t most_checked =
+        300'000;  // obstacles × values; the run finds the faults of later ones
     std::size_t begin = 0, checked = 0;
     for (const ScheduleKey& key : keys_) {
       ConfigErrors own;

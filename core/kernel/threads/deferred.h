@@ -3,6 +3,7 @@
 #include <functional>
 #include <memory>
 #include <mutex>
+#include <utility>
 
 namespace drape {
 
@@ -14,19 +15,19 @@ class Deferred {
     shared_->make = std::move(make);
   }
 
-  /// Rethrows an exception of `make`, which the next call calls again.
+  /// If `make` throws, so does this, and the next call tries again.
   std::shared_ptr<const T> get() const {
     const std::lock_guard lock(shared_->busy);
     if (!shared_->value) {
       shared_->value = std::make_shared<const T>(shared_->make());
-      shared_->make = nullptr;  // and with it what it holds
+      shared_->make = nullptr;  // frees what it captured
     }
     return shared_->value;
   }
 
  private:
   struct Shared {
-    std::mutex busy;  // guards the others
+    std::mutex busy;  // guards the other members
     std::function<T()> make;
     std::shared_ptr<const T> value;
   };

@@ -109,11 +109,11 @@ TriangleMesh read_obj(const std::filesystem::path& path, std::string_view bytes,
     if (const auto part = std::ranges::find(parts, words[0], &ObjParts::keyword); part != parts.end()) {
       part->name(words);
     } else if (words[0] == "v") {
-      read_vertex(reader, 1, 4, builder);  // a weight, a colour
+      read_vertex(reader, 1, 4, builder);  // x y z [weight] [red green blue]
       const std::size_t further = words.size() - 4;
       if ((further == 1 || further == 4) && reader.number(words[4]) != 1)
         reader.fail("a vertex has the weight " + excerpt(words[4]) +
-                    ", which is of curves; for a mesh leave it out, or write 1");
+                    ", which only curves use; leave it out, or write 1");
     } else if (words[0] == "vt") {
       if (use == MeshUse::cloth) uv.push_back(obj_uv(reader));
     } else if (words[0] == "f") {

@@ -13,7 +13,7 @@ namespace drape::shapes {
 /// triangle can make contact with: those of a cylinder's rims as polygons, and of its curved side its axis.
 struct Features {
   double dhat = 0;                        ///< d̂ of their contacts [m]
-  int first_point = 0;                    ///< index of the first point among those of SolidFeatures
+  int first_point = 0;                    ///< index of the first point in SolidFeatures::points
   std::vector<Eigen::Vector3d> points;    ///< [m]
   std::vector<std::array<int, 2>> edges;  ///< indices of points
   double offset = 0;                      ///< [m]
@@ -39,13 +39,13 @@ struct Features {
                   std::vector<int>& found) const;
 };
 
-/// How many points a cylinder's rims have.
+/// Number of points of a cylinder's rims at this d̂ [m], as Features::of makes them.
 long rim_points(const Solid& cylinder, double dhat);
 
-/// The features of solids.
+/// Features of all solids, with their points in one matrix.
 struct SolidFeatures {
-  std::vector<std::vector<Features>> of_solid;
-  Positions points;  ///< of all [m]
+  std::vector<std::vector<Features>> of_solid;  ///< by solid
+  Positions points;                             ///< of all features, n×3 [m]
 
   static SolidFeatures of(const std::vector<Solid>& solids, double dhat);
 };

@@ -21,6 +21,7 @@ namespace {
 
 /// A rim's polygon has more sides the smaller d̂ is compared with the radius: 700 000 at this ratio.
 constexpr double max_radius_over_dhat = 5e6;
+/// Of all cylinders together, which take some 300 MB.
 constexpr long most_rim_points = 4'000'000;
 
 Solid solid_of(const ShapeParameters& p, int index, double friction) {

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -35,7 +35,8 @@ class Shapes final : public ContactModel {
     static void declare(Declaration<Parameters>& d);
   };
 
-  /// Throws RefusedParameters if a half-space's normal is zero or a cylinder's radius too large for d̂.
+  /// Throws RefusedParameters if a half-space's normal is zero or a cylinder's radius too large for d̂, and
+  /// std::runtime_error if the rims of all cylinders have too many points.
   explicit Shapes(const Parameters& parameters);
   std::unique_ptr<BoundContact> bind(const Level& level, const Material& material) const override;
 
