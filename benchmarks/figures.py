@@ -458,11 +458,6 @@ def number_above(study, value, other="cascadic"):
     return f"{sum(ratio > 1 for ratio in ratios)} of {len(ratios)}"
 
 
-def flops_of_five_scenes():
-    """The lowest and the highest of the scenes with a fourth level but for the sphere."""
-    return lowest_to_highest([ratio for name, ratio in medians_over("cascadic", "four_levels", TFLOP).items() if name != "sphere"])
-
-
 def drape_coefficient(fabric):
     rows = csv.DictReader((RESULTS / "cusick.csv").read_text().splitlines())
     return with_range([float(r["drape_coefficient"]) for r in rows if r["run"] == fabric], lambda v: f"{v:.1f}")
@@ -532,8 +527,6 @@ VALUES = {
     "previews.distance": lambda: lowest_to_highest([
         100 * distance_of_previews(finished("previews", "pcs", name, "default")) for name in scene_names("previews")]),
     "previews, distance_ratio": lambda: times_as_far("previews"),
-    "garments, previews": lambda: lowest_to_highest(medians_over("cascadic", "garments", PREVIEW_DISTANCE).values()),
-    "garments, farther": lambda: scenes_above("garments", PREVIEW_DISTANCE),
     "garments, distance_ratio": lambda: times_as_far("garments"),
     "garments, share of the preview [%]": lambda: lowest_to_highest([
         100 * median([r["seconds_of_preview"] / r["seconds"] for r in finished("garments", "pcs", name)]) for name in scene_names("garments")]),
@@ -556,7 +549,6 @@ VALUES = {
     "usual conditions": usual_conditions,
     **{f"conditions of {name}": lambda name=name: conditions(name) for _, name in STUDIES},
     "sphere.cascadic_seen": lambda: median_seconds("cascadic", "seconds_of_preview"),
-    "flops of pcs on five scenes, four levels": flops_of_five_scenes,
     **{f"{study}, slower": lambda study=study: number_above(study, COSTS["time to the end"]) for study in STUDIES_OF_SCENES},
     "slowest": lambda: figure(max(ratio for study in STUDIES_OF_SCENES for ratio in medians_over("cascadic", study, COSTS["time to the end"]).values()), 2),
     "iterations of the coarse matrix": lambda: lowest_to_highest([matrix / galerkin for matrix, galerkin in zip(
@@ -573,8 +565,6 @@ VALUES = {
     **{f"{method} on the pinned square, distance": lambda method=method, variant=variant: figure(
         distance_of_previews(finished("previews", method, "pinned_square", variant)) / distance_of_previews(finished("previews", "cascadic", "pinned_square")), 2)
        for method, variant in (("pcs", "default"), ("pcs_loop", None))},
-    **{f"{what} of the sphere, four levels": lambda value=value: figure(medians_over("cascadic", "four_levels", value)["sphere"], 2)
-       for what, value in (("finest iterations", lambda r: r["iterations"][-1]), ("flops", TFLOP))},
     "changes with more iterations": longer_changes,
     **{f"{key} of all changes": lambda key=key: " and ".join(figure(sum_of_changes(method, key)) for method in ("pcs", "newton"))
        for key in ("iterations", "seconds")},
@@ -583,6 +573,7 @@ VALUES = {
     "pins meet, status": lambda: " or ".join(pins_meet("status")),
     **{f"drape's energy over Codim-IPC's, {scene} [%]": lambda scene=scene: energy_over_codim_ipc(scene) for scene in TWO_DRAPES},
     **{f"first iterations beside Codim-IPC, {scene}": lambda scene=scene: first_iterations(scene) for scene in TWO_DRAPES},
+    "processor of CHOLMOD's BLAS": lambda: read("linear_solvers.json")["blas_kernels"],
     "processor of Codim-IPC's BLAS": lambda: read("codim_ipc.json")["runs"][0]["codim_ipc"]["blas_kernels"],
     "iterations of STARK over drape's": lambda: lowest_to_highest(
         [r["stark"]["iterations"] / r["drape"]["iterations"] for r in read("stark.json")["runs"]]),
