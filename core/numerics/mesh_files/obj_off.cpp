@@ -78,8 +78,10 @@ struct ObjParts {
   std::vector<int> of_triangle = {};
   int current = -1;
 
+  /// A material and an object have one name, which may have blanks; of the several groups the first counts.
   void name(const std::vector<std::string_view>& words) {
-    const std::string name(words.size() > 1 ? words[1] : "default");
+    std::string name(words.size() > 1 ? words[1] : "default");
+    for (std::size_t k = 2; keyword != "g" && k < words.size(); ++k) name.append(" ").append(words[k]);
     current = numbers.try_emplace(name, static_cast<int>(names.size())).first->second;
     if (current == std::ssize(names)) names.push_back(name);
   }

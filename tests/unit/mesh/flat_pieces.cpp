@@ -95,6 +95,12 @@ TEST_CASE("OBJ and PLY files keep pieces by name, a PLY the length of texture co
       mesh_in("m.obj", squares + "g all\nf 1 2 3\nusemtl a\nf 1 3 4\nusemtl b\nf 2 5 6 3\n");
   CHECK(materials.piece_names == std::vector<std::string>{"a", "b", "unnamed"});
   CHECK(materials.piece == std::vector<int>{2, 0, 1, 1});
+  for (const std::string keyword : {"usemtl", "o"}) {
+    const auto line = [&](const std::string& name) { return keyword + "  sleeve   " + name + '\n'; };
+    const TriangleMesh blanks =
+        mesh_in("m.obj", squares + line("left") + "f 1 2 3 4\n" + line("right") + "f 2 5 6 3\n");
+    CHECK(blanks.piece_names == std::vector<std::string>{"sleeve left", "sleeve right"});
+  }
   CHECK(mesh_in("m.obj", squares + "f 1 2 3 4\nf 2 5 6 3\n").piece.empty());
 
   TriangleMesh sewn = two_squares();
