@@ -14,6 +14,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "core/kernel/files/number_text.h"
 #include "core/numerics/patterns/delaunay.h"
 
 namespace drape {
@@ -62,14 +63,22 @@ std::vector<Ring> checked_rings(const std::vector<Polygon>& loops) {
     }
     if (loops[i].front() == loops[i].back())
       refuse(i, "ends with its first point again; leave the last one out");
-    if (area(ring) == 0) refuse(i, "crosses or touches itself");
+    if (area(ring) == 0) refuse(i, "crosses or touches itself: its sides enclose no area");
     boxes.push_back(CGAL::bbox_2(ring.begin(), ring.end()));
   }
   const LoopSides all = sides_of(loops);
+  const auto side_text = [&](int side) {
+    const auto point = [&](int end) {
+      const Eigen::Vector2d& p = all.points[all.sides[side][end]];
+      return '(' + general_text(p.x(), 6) + ", " + general_text(p.y(), 6) + ')';
+    };
+    return "side from " + point(0) + " to " + point(1);
+  };
   for (const auto& [one, other] : crossing_segments(all.points, all.sides, 1))
     refuse(all.loop[other],
            "crosses or touches " +
-               (all.loop[one] == all.loop[other] ? "itself" : "loop " + std::to_string(all.loop[one])));
+               (all.loop[one] == all.loop[other] ? "itself" : "loop " + std::to_string(all.loop[one])) +
+               ": its " + side_text(other) + " meets the " + side_text(one) + "; move their points apart");
   for (std::size_t i = 1; i < rings.size(); ++i) {
     if (!contains(rings[0], rings[i][0])) refuse(i, "lies outside loop 0");
     for (std::size_t j = 1; j < i; ++j)
