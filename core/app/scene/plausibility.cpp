@@ -20,6 +20,7 @@ constexpr double shortest_bending = 2e-4, longest_bending = 2;  // bending lengt
 constexpr double fewest_edges = 0.02, most_edges = 1000;        // bending length over an edge
 constexpr double fewest_of_outline = 0.1;                       // the same of a file's pieces or a polygon
 constexpr double least_height = 1e-6;                           // of a triangle over its longest edge
+constexpr double least_edge = 1e-3;                             // over most edges
 constexpr double largest_dhat = 1.5;                            // d̂ over an edge
 constexpr double largest_obstacle = 100;                        // diagonal [m]
 constexpr double largest_ratio = 50;                            // of that to the cloth's
@@ -181,14 +182,23 @@ void check_nearest(const Experiment& e, const std::string& key, const Selections
   }
 }
 
-/// Triangles whose stiffness hides that of the others.
-void check_heights(const TriangleMesh& mesh, const Warn& warn) {
-  for (Eigen::Index t = 0; t < mesh.triangles.rows(); ++t)
-    if (relative_height(rest_corners(mesh, t)) < least_height)
-      return warn("cloth", "triangle " + std::to_string(t) +
-                               " (counted from 0) is lower than a millionth of its longest edge, so that "
-                               "solvers may not reach an equilibrium; move its vertices apart, or mesh the "
-                               "cloth anew there");
+/// Triangles whose stiffness hides that of the others: low ones, and tiny ones.
+void check_triangles(const Level& cloth, const Warn& warn) {
+  const TriangleMesh& mesh = cloth.rest;
+  const double usual = median_edge(cloth);
+  for (Eigen::Index t = 0; t < mesh.triangles.rows(); ++t) {
+    const auto corners = rest_corners(mesh, t);
+    std::string fault;
+    if (relative_height(corners) < least_height) fault = "is lower than a millionth of its longest edge";
+    for (int k = 0; k < 3 && fault.empty(); ++k)
+      if (const double edge = (corners.col(k) - corners.col((k + 1) % 3)).norm(); edge < least_edge * usual)
+        fault = "has an edge of " + length_text(edge) + " at " + point_text(corners.col(k)) +
+                ", and most have " + length_text(usual);
+    if (!fault.empty())
+      return warn("cloth", "triangle " + std::to_string(t) + " (counted from 0) " + fault +
+                               ", so that solvers may not reach an equilibrium; move its vertices apart, or "
+                               "mesh the cloth anew there");
+  }
 }
 
 /// Panels of a file that nothing joins.
@@ -212,7 +222,7 @@ ConfigErrors plausibility_warnings(const Experiment& e, const Scene& scene, cons
   };
   check_size(e.parameters, s, warn);
   const double coarse_edge = std::ldexp(s.median_edge, s.level);
-  check_heights(scene.hierarchy.levels[scene.hierarchy.cloth].rest, warn);
+  check_triangles(scene.hierarchy.levels[scene.hierarchy.cloth], warn);
   check_joined(e, scene.hierarchy.levels[scene.hierarchy.cloth], warn);
   check_material(e.parameters, s, warn);
   check_membrane(e, warn);

@@ -183,6 +183,17 @@ TEST_CASE("A triangle that is too low for solvers gets a warning") {
   }
 }
 
+TEST_CASE("An edge that is tiny beside the others gets a warning") {
+  const auto warnings = [](const std::string& corner) {
+    return warnings_of(
+        scene_yaml("shape: polygon, edge_length: 0.06, loops: [{points: [0, 0, 1, 0, 1, 1, 0, "
+                   "1]}, {points: [" +
+                   corner + ", 0.3, 0.3, 0.3, 0.3, 0.6]}]"));
+  };
+  CHECK(warnings("1e-4") == "");
+  CHECK_THAT(warnings("1e-6"), Contains(" mm at (") && Contains(", and most have "));
+}
+
 TEST_CASE("Measured stiffness that the energies of a scene do not read gets a warning") {
   const auto measured = [&](const std::string& keys, const std::string& energies) {
     return warnings_of(
