@@ -2,6 +2,7 @@
 
 #include <arpa/inet.h>
 #include <httplib.h>
+#include <poll.h>
 #include <sys/socket.h>
 
 #include <algorithm>
@@ -21,6 +22,7 @@
 #include <vector>
 
 #include "core/kernel/threads/held_signals.h"
+#include "core/kernel/threads/stopwatch.h"
 
 namespace drape {
 
@@ -45,6 +47,29 @@ void refuse(Response& response, int status, const std::string& why) {
 
 constexpr std::size_t largest_body = 1024;    // [bytes]; no request of the page has one
 constexpr std::size_t most_connections = 16;  // at a time, each with a thread of its own
+constexpr int longest_headers = 32768;        // [bytes]
+
+/// Waits for the headers of a request, which the library would read without end. Ends the connection where
+/// they are too long, or have not come within `patience` [s].
+void await_headers(int socket, double patience) {
+  std::vector<char> headers(longest_headers);
+  const Stopwatch watch;
+  pollfd events{socket, POLLIN | POLLRDHUP, 0};
+  while (true) {
+    ::poll(&events, 1, 100);
+    if ((events.revents & ~POLLIN) != 0) return;  // the peer has ended it
+    const ssize_t size = ::recv(socket, headers.data(), headers.size(), MSG_PEEK | MSG_DONTWAIT);
+    const std::string_view seen(headers.data(), static_cast<std::size_t>(std::max<ssize_t>(size, 0)));
+    if (size == 0 || seen.find("\r\n\r\n") != seen.npos) return;
+    if (size == longest_headers || watch.seconds() > patience) {
+      ::shutdown(socket, SHUT_RDWR);
+      while (::recv(socket, headers.data(), headers.size(), MSG_DONTWAIT) > 0) {
+      }
+      return;
+    }
+    if (size > 0) std::this_thread::sleep_for(std::chrono::milliseconds(10));  // poll would return at once
+  }
+}
 
 /// The connections to a port of this process: their sockets, by the ports of their peers. The library tells
 /// nobody its sockets; those beyond 1024 cannot be its own, since it has so few. A new socket has the least
@@ -70,7 +95,8 @@ std::map<int, int> connections_to(int port, int highest = 1023) {
 /// The oldest connection that has not asked for anything of the live view makes room: it is ended.
 class ConnectionQueue final : public httplib::ThreadPool {
  public:
-  explicit ConnectionQueue(const int& port) : ThreadPool(most_connections), port_(port) {}
+  ConnectionQueue(const int& port, double patience)
+      : ThreadPool(most_connections), port_(port), patience_(patience) {}
 
   /// Called by the thread that accepts connections, once for each.
   void enqueue(std::function<void()> serve) override {
@@ -81,14 +107,23 @@ class ConnectionQueue final : public httplib::ThreadPool {
     for (const auto& [peer, socket] : sockets)
       if (!sockets_.contains(peer)) idle_.push_back(peer);
     sockets_ = std::move(sockets);
+    const auto accepted = std::ranges::find_if(sockets_, [&](const auto& known) {
+      const auto served = served_.find(known.second);
+      return served == served_.end() || served->second != known.first;
+    });
+    const bool has_ended = accepted == sockets_.end();
+    const int peer = has_ended ? -1 : accepted->first, socket = has_ended ? -1 : accepted->second;
+    served_[socket] = peer;
     const bool several_idle = idle_.size() > 1;  // the newest has had no time to ask
     if (sockets_.size() > most_connections && several_idle) ::shutdown(sockets_.at(idle_.front()), SHUT_RDWR);
     has_room_.wait(lock, [&] { return open_ < most_connections; });
     ++open_;
-    ThreadPool::enqueue([this, serve = std::move(serve)] {
+    ThreadPool::enqueue([this, peer, socket, serve = std::move(serve)] {
+      if (socket >= 0) await_headers(socket, patience_);
       serve();
       {
         const std::lock_guard ended(mutex_);
+        if (served_[socket] == peer) served_.erase(socket);
         --open_;
       }
       has_room_.notify_one();
@@ -103,11 +138,13 @@ class ConnectionQueue final : public httplib::ThreadPool {
 
  private:
   const int& port_;
+  double patience_;  // [s]
   std::mutex mutex_;
   std::condition_variable has_room_;
   std::size_t open_ = 0;        // connections that have a thread
   int highest_ = 0;             // of the sockets so far
   std::map<int, int> sockets_;  // of the connections when the last one came, by the ports of their peers
+  std::map<int, int> served_;   // peers of the sockets that have a thread
   std::vector<int> idle_;       // ports of those that have not asked for anything, the oldest first
 };
 
@@ -136,7 +173,9 @@ struct LiveServer::Impl {
 LiveServer::LiveServer(int port, const LiveAnswers& answers, double patience)
     : impl_(std::make_unique<Impl>()) {
   httplib::Server& server = impl_->server;
-  server.new_task_queue = [this] { return impl_->queue = new ConnectionQueue(impl_->port); };
+  server.new_task_queue = [this, patience] {
+    return impl_->queue = new ConnectionQueue(impl_->port, patience);
+  };
   server.set_keep_alive_max_count(1);
   server.set_read_timeout(std::chrono::duration<double>(patience));
   server.set_write_timeout(std::chrono::duration<double>(patience));
@@ -146,6 +185,8 @@ LiveServer::LiveServer(int port, const LiveAnswers& answers, double patience)
     listening = socket;
     const int yes = 1;
     setsockopt(socket, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);
+    const int received = 2 * longest_headers;  // of each connection, before the library reads it
+    setsockopt(socket, SOL_SOCKET, SO_RCVBUF, &received, sizeof received);
   });
   server.set_payload_max_length(largest_body);
   server.set_default_headers(

@@ -105,6 +105,21 @@ TEST_CASE("a request that does not arrive in time is given up") {
   CHECK(watch.seconds() > 0.5);
 }
 
+TEST_CASE("headers without end are not read, and some that come in parts are") {
+  const Served served(5);
+  const LiveClient flood(served.address.port);
+  flood.send("GET / HTTP/1.1\r\n");
+  const std::string headers = "X-A: " + std::string(8000, 'a') + "\r\n";
+  int sent = 0;
+  while (sent < 2000 && flood.send(headers)) ++sent;  // [8 kB]
+  CHECK(sent < 1500);                                 // of which the system's buffers take several hundred
+  const LiveClient slow(served.address.port);
+  const std::string request = served.address.request("GET", served.address.path);
+  for (const char c : request) CHECK(slow.send(std::string(1, c)));
+  CHECK(slow.answer().ends_with(served.body));
+  CHECK(served.serves_page());
+}
+
 TEST_CASE("a range reaches no byte behind an answer") {
   const Served served(5);
   const auto part = [&](const std::string& range) {
