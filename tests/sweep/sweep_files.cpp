@@ -59,6 +59,16 @@ TEST_CASE("a sweep of very many runs is refused, and a long list is one in memor
             .exit_code == 0);
 }
 
+TEST_CASE("runs whose experiments are long have a bound together, and variations are not kept") {
+  const Scratch folder(small_experiment());
+  const std::string start = "name: s\nbase: e.yaml\nset: {start.perturbation: 1e-3, pins: [";
+  std::string pins = "{region: nearest, point: [0, 0, 0]}";
+  for (int k = 1; k < 300; ++k) pins += ", {region: nearest, point: [0, " + std::to_string(k) + ", 0]}";
+  folder.write("s.yaml", start + pins + "]}\nrepeats: 10000\n");
+  CHECK_THAT(refused_by("check s.yaml", folder.path),
+             Catch::Contains("have more than 500 MB of text together; "));
+}
+
 TEST_CASE("a base that is no text has one fault") {
   const Scratch folder(small_experiment());
   folder.write("s.yaml", "name: s\nbase: [e.yaml]\n");

@@ -19,6 +19,7 @@ namespace {
 using NodeKind = ConfigNode::Kind;
 
 constexpr std::size_t most_runs = 100'000;
+constexpr std::size_t most_text = 500'000'000;  // [bytes] of all runs' experiments
 
 /// Removes the methods that are not chosen from a resolved experiment, and the reference if it is one of
 /// them.
@@ -82,9 +83,12 @@ class Reader {
                              std::to_string(most_runs) + "; take fewer seeds, variations or experiments"});
     if (errors_.size() > before) return sweep_;
     for (const ExperimentSource& experiment : experiments)
+      if (!experiment.label.empty()) keys_["experiment"] = nullptr;
+    for (const Variation& variation : variations)
+      for (const auto& [path, value] : variation.set.entries) keys_[path] = nullptr;
+    for (const ExperimentSource& experiment : experiments)
       for (const Variation& variation : variations)
-        add_variation(experiment, labelled(variation, experiment.label));
-    complete_settings();
+        if (text_ <= most_text) add_variation(experiment, labelled(variation, experiment.label));
     list_faults(experiments.size() * variations.size());
     return sweep_;
   }
@@ -169,31 +173,30 @@ class Reader {
     run.vertices = vertices.empty() ? 0 : vertices.back();
     std::vector<int> seeds = sweep_.parameters.seeds;
     if (seeds.empty()) seeds.push_back(e.start.seed);
+    for (const auto& [key, value] : keys_.items())
+      if (!run.settings.contains(key)) run.settings[key] = setting_at(resolved, key);
     for (const int seed : seeds) {
       set_path(resolved, "start.seed", ConfigNode::of(seed));
       run.seed = seed;
       run.folder = "runs/" + folder_name(variation.name) + "/seed_" + std::to_string(seed);
       run.config = to_yaml(resolved);
+      if (seed == seeds.front()) text_ += seeds.size() * run.config.size();
+      if (text_ > most_text) {
+        errors_.push_back({source_.where, "the experiments of all runs have more than " +
+                                              std::to_string(most_text / 1'000'000) +
+                                              " MB of text together; take fewer seeds or variations, or "
+                                              "have the experiment name less"});
+        return;
+      }
       if (seed == seeds.front() && first_unprintable(run.config) != run.config.npos)
         note({variation.where, "a file of it is in a folder whose name is no UTF-8; rename the folder"},
              run.name);
-      const auto [other, first] = configs_.emplace(run.config, run.name);
-      if (!first && seed == seeds.front())
-        same_.push_back({variation.where, "variations \"" + other->second + "\" and \"" + run.name +
-                                              "\" come to the same experiment; take one of them out"});
+      if (seed == seeds.front())
+        if (const auto [other, first] = configs_.emplace(run.config, run.name); !first)
+          same_.push_back({variation.where, "variations \"" + other->second + "\" and \"" + run.name +
+                                                "\" come to the same experiment; take one of them out"});
       sweep_.runs.push_back(run);
     }
-    resolved_.emplace(run.name, std::move(resolved));
-  }
-
-  /// Gives every run a value for each key that some variation sets.
-  void complete_settings() {
-    Json keys = Json::object();
-    for (const SweepRun& run : sweep_.runs) keys.update(run.settings);
-    for (SweepRun& run : sweep_.runs)
-      for (const auto& [key, value] : keys.items())
-        if (key != "methods" && !run.settings.contains(key))
-          run.settings[key] = setting_at(resolved_.at(run.name), key);
   }
 
   void note(const ConfigError& fault, const std::string& variation) {
@@ -219,7 +222,8 @@ class Reader {
   ConfigErrors& errors_;
   std::optional<int> most_levels_;
   Sweep sweep_;
-  std::map<std::string, ConfigNode> resolved_;  // of each variation
+  Json keys_ = Json::object();  // that some variation sets, for which each run has a value
+  std::size_t text_ = 0;        // [bytes] of the runs' experiments so far
   ConfigNode source_;
   ConfigErrors faults_, same_;
   std::map<std::string, std::vector<std::string>> faulty_;
