@@ -185,6 +185,7 @@ def test_figures_have_the_measures_methods_width_and_style_that_are_asked_for(sw
     for asked in ("--measures=speed", "--methods=multigrid"):
         assert f'there is no {asked[2:].split("s=")[0]} "' in command("figures", sweep, "-o", tmp_path / "out", asked, code=2).stderr
     assert "none_such" in command("figures", sweep, "-o", tmp_path / "out", "--style", "none_such", code=2).stderr
+    assert "nothing is downloaded" in command("figures", sweep, "-o", tmp_path / "out", "--style", "http://localhost:9/a.mplstyle", code=2).stderr
     command("figures", sweep, "-o", tmp_path / "out", "--measures", "seconds", "--methods", "pcs", "--width", "100", "--log", "--style", tmp_path / "mine.mplstyle")
     names = {file.name for file in (tmp_path / "out").iterdir()}
     assert "seconds_by_step_growth.svg" in names and not any(name.startswith("iterations_by") for name in names)

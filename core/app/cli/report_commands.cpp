@@ -124,9 +124,9 @@ int make_figures(const std::string& folder, const std::string& out, const std::v
   // The package lies beside bin/ in the build tree, in lib/ once installed, and around the command in a
   // wheel.
   const fs::path root = own_program().parent_path().parent_path();
-  for (const fs::path& place : {root / "python", root / "lib/python3/dist-packages", root.parent_path()}) {
-    if (!fs::exists(place / "drape/__init__.py")) continue;
-    path = place.string() + ":" + path;
+  for (const fs::path& package : {root / "python/drape", root / "lib/python3/dist-packages/drape", root}) {
+    if (package.filename() != "drape" || !fs::exists(package / "__init__.py")) continue;
+    path = package.parent_path().string() + ":" + path;
     break;
   }
   const char* python = std::getenv("DRAPE_PYTHON");

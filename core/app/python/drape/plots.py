@@ -26,6 +26,8 @@ def use_style(file: str = "", width=None) -> None:
     import matplotlib
     import matplotlib.style
 
+    if "://" in file:
+        raise RuntimeError(f"--style {file}: nothing is downloaded; give a style's name or a file")
     mine: Dict[str, Any] = {**STYLE, "figure.figsize": [(width or 84) / 25.4, 0.72 * (width or 84) / 25.4]}
     default = matplotlib.rcParamsDefault
     matplotlib.rcParams.update({key: value for key, value in mine.items() if matplotlib.rcParams[key] == default[key]})
