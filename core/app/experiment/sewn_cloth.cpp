@@ -40,6 +40,8 @@ double normalised_length(const TriangleMesh& cloth) {
   const UvLength length = UvLength::of(cloth, all);
   const std::string remedy =
       "; export the texture coordinates in a unit of length, and write that as \"uv_unit\"";
+  if (!std::isfinite(length.along_u) || !std::isfinite(length.along_v))
+    throw std::runtime_error("the texture coordinates enclose no area" + remedy);
   if (!similar_lengths(length.along_u, length.along_v))
     throw std::runtime_error(
         "\"uv_unit: normalised\" needs one length for u and v, but by the areas in space u has " +

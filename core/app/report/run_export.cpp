@@ -76,7 +76,10 @@ TriangleMesh mesh_as_read(const RunData& run, int level, TriangleMesh mesh) {
   joined.vertices *= read.scale;
   const std::vector<int> vertex = join_vertices(joined, read.join);
   if (!same_entries(joined.triangles, mesh.triangles))
-    throw std::runtime_error("--as-read: " + read.file + " has other faces than when the run read it");
+    throw std::runtime_error(
+        "--as-read: " + read.file +
+        " has other faces than when the run read it, or the run meshed them anew, by \"edge_length\" or "
+        "\"vertices\"");
   own.vertices = mesh.vertices(vertex, Eigen::all);
   return own;
 }

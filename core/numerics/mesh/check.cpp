@@ -69,9 +69,11 @@ bool check_indices(const TriangleMesh& mesh, Lines& lines) {
 void check_elements(const MeshFaults& faults, const Triangles& triangles, Lines& lines) {
   const auto triangle = [&](int t) { return triangle_text(triangles, t); };
   add_line(lines, faults.loose_vertices,
-           {"vertex belongs", "vertices belong", " to no triangle", "remove them"}, text);
+           {"vertex belongs", "vertices belong", " to no triangle",
+            "remove them, or \"join\" those at the place of another"},
+           text);
   add_line(lines, faults.repeating_triangles,
-           {"triangle repeats", "triangles repeat", " a vertex", "remove them"}, triangle);
+           {"triangle repeats", "triangles repeat", " a vertex", "remove them, or lower \"join\""}, triangle);
   add_line(lines, faults.empty_triangles,
            {"triangle has", "triangles have", " no area", "move their vertices apart, or remove them"},
            triangle);
