@@ -59,7 +59,7 @@ TEST_CASE("a sweep of very many runs is refused, and a long list is one in memor
             .exit_code == 0);
 }
 
-TEST_CASE("runs whose experiments are long have a bound together, and variations are not kept") {
+TEST_CASE("runs whose experiments are long have a bound together") {
   const Scratch folder(small_experiment());
   const std::string start = "name: s\nbase: e.yaml\nset: {start.perturbation: 1e-3, pins: [";
   std::string pins = "{region: nearest, point: [0, 0, 0]}";
