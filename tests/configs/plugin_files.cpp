@@ -77,6 +77,18 @@ DRAPE_FOLD(fold, "A crease.", Crease) { return k * square(theta - rest); }
   CHECK_THAT(folder.refused(listed + "fold.cpp"), Contains("a parameter has the name of a symbol of "));
 }
 
+TEST_CASE("An empty part of a list of folders stands for no folder: the user's has no programs or headers") {
+  const PluginFolder folder;
+  folder.write("vector", "#error taken\n");
+  folder.write("as", "#!/bin/sh\nexit 1\n");
+  fs::permissions(folder / "as", fs::perms::owner_all);
+  const std::string cache = "XDG_CACHE_HOME=" + (folder / "cache").string();
+  const Ended ended = drape_with(listed + "rubber.cpp", folder.path,
+                                 cache + " CPLUS_INCLUDE_PATH=/nowhere: COMPILER_PATH=:/nowhere PATH=:$PATH");
+  INFO(ended.err);
+  CHECK(ended.exit_code == 0);
+}
+
 TEST_CASE("What a plugin throws or fails to return ends a command with a message") {
   const PluginFolder folder;
   folder.write("bad.cpp", R"(#include "core/kernel/interfaces/energy.h"

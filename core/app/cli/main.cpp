@@ -17,6 +17,7 @@
 #include "core/app/run/runner.h"
 #include "core/kernel/files/file.h"
 #include "core/kernel/files/message_text.h"
+#include "core/kernel/files/string_utils.h"
 
 namespace drape {
 
@@ -65,6 +66,24 @@ void keep_freed_memory() {
   std::free(memory);
 }
 
+/// Takes the empty parts out of the lists of folders by which this process, and a compiler that it starts,
+/// find files: each stands for the folder that the user is in, whose files are not to be executed or
+/// included.
+void forget_current_folder() {
+  for (const char* name : {"PATH", "LD_LIBRARY_PATH", "COMPILER_PATH", "LIBRARY_PATH", "CPATH",
+                           "C_INCLUDE_PATH", "CPLUS_INCLUDE_PATH"}) {
+    const char* value = std::getenv(name);
+    if (!value) continue;
+    std::string named;
+    for (const std::string& folder : split(value, ':'))
+      if (!folder.empty()) named += (named.empty() ? "" : ":") + folder;
+    if (named.empty())
+      unsetenv(name);
+    else
+      setenv(name, named.c_str(), 1);
+  }
+}
+
 }  // namespace
 
 void stop_on_signals() {
@@ -94,6 +113,7 @@ int main(int argc, char** argv) {
   std::signal(SIGXFSZ, SIG_IGN);
   open_standard_streams();
   keep_freed_memory();
+  forget_current_folder();
   static bool at_work = true;  // until main returns: who ends the program before is a plugin
   std::atexit([] {
     if (!at_work) return;
