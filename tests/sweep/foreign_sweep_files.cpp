@@ -114,10 +114,11 @@ TEST_CASE("what sbatch answers is a job's number, or nothing was submitted") {
   CHECK_THAT(said("12;cluster").out, Contains("submitted: 1 runs as job array 12, collected by job 12;"));
 }
 
-TEST_CASE("an --sbatch that does not begin with - is refused, since sbatch would run it as its script") {
+TEST_CASE("an --sbatch that is no option is refused, since sbatch would run what follows as its script") {
   const SmallSweep folder;
-  CHECK_THAT(refused_by("sweep s.yaml --engine slurm --out out --sbatch=foo", folder.path),
-             Contains("--sbatch foo: an option of sbatch begins with -"));
+  for (const std::string word : {"foo", "-", "--"})
+    CHECK_THAT(refused_by("sweep s.yaml --engine slurm --out out --sbatch=" + word, folder.path),
+               Contains("--sbatch " + word + ": an option of sbatch begins with -"));
   CHECK_FALSE(fs::exists(folder / "out"));
 }
 

@@ -62,7 +62,7 @@ int begun(const SweepFolder& folder, const Action& action) {
 
 void check_options(const SweepRequest& r) {
   for (const std::string& option : r.sbatch)
-    if (!option.starts_with('-'))
+    if (!option.starts_with('-') || option.find_first_not_of('-') == option.npos)
       throw std::runtime_error("--sbatch " + option +
                                ": an option of sbatch begins with -, as in --sbatch=--partition=long");
   if (r.engine == "slurm") return;
