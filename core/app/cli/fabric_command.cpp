@@ -110,10 +110,9 @@ int print_fabric(const FabricOptions& options) {
   std::cout << "\n";
   print_sheet(own.parameters.material, values);
   const std::string value = printable(options.file.empty() ? options.name : fabric.one_line());
-  std::cout
-      << "Where a figure is not known, the material's default stands for it: material: {fabric: " << value
-      << "}\nDrape coefficient, by simulation: drape run configs/tests/cusick.yaml --set 'material.fabric="
-      << value << "'\n";
+  std::cout << "Where a figure is not known, the material's default stands for it: material: {fabric: "
+            << value << "}\nDrape coefficient, by simulation: drape run configs/tests/cusick.yaml --set "
+            << shell_quoted("material.fabric=" + value) << "\n";
   return exit_done;
 }
 

@@ -10,6 +10,7 @@
 #include "core/app/files/json_file.h"
 #include "core/kernel/files/file.h"
 #include "core/kernel/files/message_text.h"
+#include "core/kernel/files/string_utils.h"
 
 namespace drape {
 
@@ -28,11 +29,6 @@ std::string ranges(const std::vector<std::size_t>& sorted) {
     k = last + 1;
   }
   return text;
-}
-
-/// In single quotes, for a shell.
-std::string quoted(const std::string& text) {
-  return "'" + boost::replace_all_copy(text, "'", "'\\''") + "'";
 }
 
 std::string one_line(const std::string& text) {
@@ -131,7 +127,7 @@ SlurmJobs submit(const Sweep& sweep, const SweepFolder& folder, const std::vecto
 
   const std::string name = "drape-" + sweep.parameters.name;
   const std::string job =
-      quoted(own_program()) + " sweep-job " + quoted(fs::absolute(folder.path()).string());
+      shell_quoted(own_program()) + " sweep-job " + shell_quoted(fs::absolute(folder.path()).string());
   write_file(slurm / "job.sh",
              directives({"--job-name=" + name,
                          "--array=" + ranges(missing) +

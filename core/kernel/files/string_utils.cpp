@@ -1,6 +1,7 @@
 #include "core/kernel/files/string_utils.h"
 
 #include <algorithm>
+#include <boost/algorithm/string/replace.hpp>
 #include <cctype>
 
 #include "core/kernel/files/message_text.h"
@@ -104,6 +105,10 @@ std::string listed(const std::vector<std::string>& words) {
 
 std::string quoted_choice(const std::vector<std::string>& words) {
   return words.empty() ? "" : "\"" + joined(words, "\", \"", "\" or \"") + "\"";
+}
+
+std::string shell_quoted(const std::string& text) {
+  return "'" + boost::replace_all_copy(text, "'", "'\\''") + "'";
 }
 
 std::size_t display_width(const std::string& text) {

@@ -38,6 +38,9 @@ std::string listed(const std::vector<std::string>& words);
 /// `"a", "b" or "c"`
 std::string quoted_choice(const std::vector<std::string>& words);
 
+/// The text as one word of a shell's command, in single quotes.
+std::string shell_quoted(const std::string& text);
+
 /// Columns that UTF-8 text takes on a terminal: its code points, as of "m²".
 std::size_t display_width(const std::string& text);
 
