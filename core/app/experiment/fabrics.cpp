@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <boost/algorithm/string/case_conv.hpp>
 #include <boost/algorithm/string/classification.hpp>
+#include <boost/algorithm/string/replace.hpp>
 #include <boost/algorithm/string/trim.hpp>
 #include <cmath>
 #include <optional>
@@ -72,6 +73,12 @@ constexpr Column columns[] = {
     {"linear diag[si*1e9]", "bias_bending", 1e-9},
 };
 
+/// Takes blanks off both ends, those that spreadsheets keep from a line's end among them.
+void trim(std::string& cell) {
+  boost::replace_all(cell, "\u00a0", " ");
+  boost::trim_if(cell, boost::is_any_of(" \t"));
+}
+
 struct Table {
   std::string file;                 ///< for messages
   std::vector<std::string> header;  ///< in small letters
@@ -79,24 +86,35 @@ struct Table {
 
   Table(std::string name, const std::string& text) : file(std::move(name)) {
     for (CsvRow& row : csv_rows(file, utf8_text(file, text), ",;\t")) {
-      for (std::string& cell : row.cells) boost::trim_if(cell, boost::is_any_of(" \t"));
-      if (row.cells == std::vector<std::string>{""}) continue;
+      for (std::string& cell : row.cells) trim(cell);
       while (!row.cells.empty() && row.cells.back().empty()) row.cells.pop_back();
+      if (row.cells.empty()) continue;
       if (!header.empty() && row.cells.size() > header.size())
         refuse_path(file + ":" + std::to_string(row.line),
                     "has " + std::to_string(row.cells.size()) + " cells, and the first line names " +
                         std::to_string(header.size()) +
                         " columns; write numbers with a point, and a text with a separator in double quotes");
-      (header.empty() ? header : rows.emplace_back()) = std::move(row.cells);
+      if (header.empty())
+        take_header(std::move(row.cells));
+      else
+        rows.push_back(std::move(row.cells));
     }
     if (rows.empty())
       throw std::runtime_error(
           file + (header.empty() ? " is empty" : " has no row below its header") +
           "; a table of fabrics names its columns in the first line, and has a fabric in "
           "each further one");
-    for (std::string& head : header) boost::to_lower(head);
   }
 
+  void take_header(std::vector<std::string> cells) {
+    header = std::move(cells);
+    for (std::string& head : header) boost::to_lower(head);
+    if (std::ranges::none_of(columns, [&](const Column& own) { return is_one_of(own.name, header); }))
+      throw std::runtime_error(file +
+                               ": the first line names no column of a fabric, such as mass, thickness and "
+                               "warp_bending; it is \"" +
+                               excerpt(joined(header)) + '"');
+  }
   /// The column's number, past the last without one. Throws std::runtime_error if there are two.
   std::ptrdiff_t place_of(const std::string& column) const {
     if (std::ranges::count(header, column) > 1)

@@ -227,6 +227,13 @@ TEST_CASE("a table of tabs and of capital heads is read, and one that says somet
   CHECK(m.area_density() == Approx(0.3));
   CHECK(m.warp_bending == 2e-5);
   CHECK(fabric_names(own / "own.csv") == std::vector<std::string>{"twill, blue"});
+  own.write("own.csv", "name,mass\u00a0,warp_bending\ntwill\u00a0,0.3,2e-5\u00a0\n");
+  CHECK(material_of(own.row("twill")).warp_bending == 2e-5);
+  for (const std::string head : {"sep=,\nname,mass,warp_bending", "# cloths of spring", "calico,0.1,1e-6"}) {
+    own.write("own.csv", head + "\ntwill,0.3,2e-5\n");
+    CHECK_THROWS_WITH(material_of(own.row("twill")),
+                      Contains("own.csv: the first line names no column of a fabric, such as mass"));
+  }
   own.write("own.csv",
             "name,mass,warp_bending\ntwill,0.3,2e-5\ncalico,0.1,1e-6\ntwill,0.2,1e-5\n2,0.1,1e-6\n");
   CHECK(material_of(own.row("3")).warp_bending == 1e-5);
@@ -252,4 +259,6 @@ TEST_CASE("drape fabric prints what a laboratory measures, and lists the table")
   const OwnFabrics own("name,mass,thickness,warp_bending\n\"twill, fine\",0.3,5e-4,2e-5\n");
   CHECK_THAT(shown_by("fabric 'twill, fine' --file own.csv", own.path),
              Contains("material: {fabric: {file: own.csv, row: \"twill, fine\"}}"));
+  own.write("own.csv", "name,mass,thickness,warp_bending\nAnna's,0.3,5e-4,2e-5\n");
+  CHECK_THAT(shown_by("fabric \"Anna's\" --file own.csv", own.path), Contains("row: \"Anna'\\''s\"}'\n"));
 }
