@@ -118,6 +118,18 @@ def test_a_path_with_a_nul_character_is_refused(call):
         call("a\0b")
 
 
+@pytest.mark.parametrize("call", [
+    lambda e: e.run(methods="p\0", out="unused"),
+    lambda e: e.solver("p\0"),
+    lambda e: e.set("levels\0", 1),
+    lambda e: e.scene().metric("flat\0", 0, e.scene().start(0)),
+    lambda e: drape.plugins("energy\0"),
+])
+def test_a_name_with_a_nul_character_is_refused_whole(experiment, call):
+    with pytest.raises(ValueError, match="\\\\x00' has a NUL character; take it out"):
+        call(experiment)
+
+
 def test_an_object_whose_init_has_not_run_is_refused(small):
     classes = [value for value in vars(drape._core).values() if isinstance(value, type) and value.__module__ == "drape._core"
                and not issubclass(value, BaseException)]

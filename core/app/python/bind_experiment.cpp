@@ -27,7 +27,7 @@ void check(const ExperimentHandle& e, bool allow_memory) {
 }
 
 /// Faults elsewhere are left to `check`: a value that is set next may mend them.
-void set(ExperimentHandle& e, const std::string& key, const py::object& value) {
+void set(ExperimentHandle& e, const Text& key, const py::object& value) {
   ConfigNode changed = with_value(e.source, key, value);
   ConfigErrors errors;
   read_experiment(changed, registry(), errors);

@@ -49,7 +49,7 @@ Positions gradient(const ModelHandle& m, const State& state) {
   });
 }
 
-BlockMatrix hessian(const ModelHandle& m, const State& state, const std::string& kind, double blend) {
+BlockMatrix hessian(const ModelHandle& m, const State& state, const Text& kind, double blend) {
   const Positions& x = state_of_model(m, state);
   const Projection projection = projection_of(kind, blend);
   return without_gil([&] { return m.model().energy_hessian(x, projection); });

@@ -117,14 +117,14 @@ RunOptions options_of(const fs::path& out, bool progress, bool report) {
   return options;
 }
 
-void run(const ExperimentHandle& handle, const std::vector<std::string>& methods, const fs::path& out,
+void run(const ExperimentHandle& handle, const std::vector<Text>& methods, const fs::path& out,
          const py::object& on_iteration, const py::object& on_level, bool progress, bool report,
          bool overwrite, bool allow_memory) {
   Callbacks callbacks(on_iteration, on_level);
   const SceneHandle scene = handle.scene(allow_memory);
   warn_of_implausible(scene);
   RunOptions options = options_of(out, progress, report);
-  options.methods = chosen_methods(*scene.experiment, methods);
+  options.methods = chosen_methods(*scene.experiment, {methods.begin(), methods.end()});
   options.overwrite = overwrite;
   observed(callbacks, options,
            [&](const RunOptions& all) { run_experiment(*scene.experiment, *scene.scene, all); });
@@ -181,7 +181,7 @@ void bind_results(py::module_& m) {
       "_run_page", [](const fs::path& folder) { return viewer_page(read_run(folder)); }, py::arg("folder"));
   m.def(
       "_draw",
-      [](const fs::path& folder, const fs::path& file, const std::string& method, std::optional<int> level,
+      [](const fs::path& folder, const fs::path& file, const Text& method, std::optional<int> level,
          bool outline, std::optional<int> width, bool edges) {
         export_run(folder, file,
                    {.method = method,

@@ -117,7 +117,7 @@ void bind_level(py::module_& m) {
       .def_readonly("vertex_area", &Level::vertex_area, "n areas, a third of the adjacent rest areas [m²].");
 }
 
-py::dict evaluate_metric(const SceneHandle& s, const std::string& name, int level, const State& state,
+py::dict evaluate_metric(const SceneHandle& s, const Text& name, int level, const State& state,
                          const std::optional<State>& other) {
   const LevelModel& model = *s.scene->models[s.checked(level)];
   const int n = model.level().vertex_count();

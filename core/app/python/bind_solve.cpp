@@ -105,7 +105,7 @@ class Solve {
 
   /// Goes on from the present state on its level: Dirichlet vertices move from there to their targets.
   /// Several changes in a row go on from the same state.
-  void set(const std::string& key, const py::object& value) {
+  void set(const Text& key, const py::object& value) {
     const bool iterated = idle().x().rows() > 0;
     if (!iterated && level_ < 0)
       throw std::runtime_error("nothing is iterated yet; set " + key + " in the experiment");
@@ -196,7 +196,7 @@ void bind_solve(py::module_& m) {
   py::class_<ExperimentHandle> experiment(py::object(m.attr("ExperimentBase")));
   experiment.def(
       "solver",
-      [](const ExperimentHandle& e, const std::string& method, const std::optional<Checkpoint>& start) {
+      [](const ExperimentHandle& e, const Text& method, const std::optional<Checkpoint>& start) {
         return std::make_unique<Solve>(e, method, start);
       },
       py::arg("method") = "", py::arg("start") = py::none(),

@@ -28,7 +28,7 @@ Registry& mutable_registry() {
   return *all;
 }
 
-std::vector<std::pair<std::string, std::string>> plugins(const std::string& kind) {
+std::vector<std::pair<std::string, std::string>> plugins(const Text& kind) {
   const std::vector<std::string>& kinds = plugin_kinds();
   if (!is_one_of(kind, kinds))
     throw py::value_error("there is no kind \"" + kind + "\"; the kinds are " + joined(kinds));

@@ -33,18 +33,6 @@ constexpr int max_depth = 100;
   throw py::value_error(shown(value) + " has a NUL character; take it out");
 }
 
-/// A str's text, which a config.yaml can hold.
-std::string text_of(const py::handle& value) {
-  std::string text;
-  try {
-    text = value.cast<std::string>();
-  } catch (const py::cast_error&) {
-    throw py::value_error(shown(value) + " is no text that UTF-8 can hold");
-  }
-  if (text.find('\0') != std::string::npos) refuse_nul(value);
-  return text;
-}
-
 ConfigNode nested_node(const py::handle& value, int depth) {
   if (depth > max_depth) throw py::value_error("the experiment is nested too deeply");
   if (value.is_none()) return {};
@@ -72,6 +60,17 @@ ConfigNode nested_node(const py::handle& value, int depth) {
 }
 
 }  // namespace
+
+std::string text_of(const py::handle& value) {
+  std::string text;
+  try {
+    text = value.cast<std::string>();
+  } catch (const py::cast_error&) {
+    throw py::value_error(shown(value) + " is no text that UTF-8 can hold");
+  }
+  if (text.find('\0') != std::string::npos) refuse_nul(value);
+  return text;
+}
 
 py::array_t<double> real_array(const py::handle& values, const std::string& name) {
   return py::array_t<double>::ensure(array_of_kind(values, "fiu", name, "real numbers"));

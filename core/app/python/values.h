@@ -51,6 +51,12 @@ State state_of(const py::handle& values);
 /// A symmetric matrix of 3×3 blocks as a scipy.sparse.bsr_matrix with both triangles.
 py::object bsr_matrix(const BlockMatrix& matrix);
 
+/// A str's text, which a config.yaml can hold. Throws ValueError for one with a NUL character, at which a
+/// message would end, or that UTF-8 cannot hold.
+std::string text_of(const py::handle& value);
+/// A name or a key, as text_of reads it.
+struct Text : std::string {};
+
 /// A Python value as a node of a config: None, bool, int, float, str, a path, dicts, lists, tuples and numpy
 /// arrays of them. Throws TypeError for anything else.
 ConfigNode node_of(const py::handle& value);
@@ -96,6 +102,16 @@ struct type_caster<std::filesystem::path> {
   PYBIND11_TYPE_CASTER(std::filesystem::path, const_name("os.PathLike"));
   bool load(handle source, bool) {
     value = drape::python::path_of(source);
+    return true;
+  }
+};
+
+template <>
+struct type_caster<drape::python::Text> {
+  PYBIND11_TYPE_CASTER(drape::python::Text, const_name("str"));
+  bool load(handle source, bool) {
+    if (PyUnicode_Check(source.ptr()) == 0) return false;
+    value = {drape::python::text_of(source)};
     return true;
   }
 };
