@@ -7,6 +7,7 @@
 
 #include "core/kernel/files/message_text.h"
 #include "core/kernel/files/number_text.h"
+#include "core/kernel/files/string_utils.h"
 #include "core/numerics/mesh/mesh_builder.h"
 #include "core/numerics/mesh/texture_coordinates.h"
 #include "core/numerics/mesh_files/io_formats.h"
@@ -86,6 +87,19 @@ struct ObjParts {
     if (current == std::ssize(names)) names.push_back(name);
   }
 };
+
+/// The pieces' names as OBJ can hold them, each of one word, and no two the same.
+std::vector<std::string> obj_names(const std::vector<std::string>& pieces) {
+  std::vector<std::string> names;
+  for (const std::string& piece : pieces) {
+    std::string name = printable(piece);
+    std::ranges::replace_if(
+        name, [](char c) { return c == ' ' || c == '#' || c == '\\'; }, '_');
+    while (is_one_of(name, names)) name += '_';
+    names.push_back(std::move(name));
+  }
+  return names;
+}
 
 /// Whether OBJ defines such a keyword, other than those of vertices, faces and lines.
 bool is_other_obj_line(std::string_view word) {
@@ -193,14 +207,13 @@ std::string obj_text(const TriangleMesh& mesh) {
   for (int v = 0; v < mesh.vertices.rows(); ++v)
     text += "v " + exact_text(mesh.vertices(v, 0)) + ' ' + exact_text(mesh.vertices(v, 1)) + ' ' +
             exact_text(mesh.vertices(v, 2)) + '\n';
+  const std::vector<std::string> names = obj_names(mesh.piece_names);
   const UvVertices corners = split_at_seams(mesh);
   for (Eigen::Index i = 0; i < corners.uv.rows(); ++i)
     text += "vt " + exact_text(corners.uv(i, 0)) + ' ' + exact_text(corners.uv(i, 1)) + '\n';
   for (int t = 0; t < mesh.triangles.rows(); ++t) {
     if (!mesh.piece.empty() && (t == 0 || mesh.piece[t] != mesh.piece[t - 1])) {
-      std::string name = printable(mesh.piece_names[mesh.piece[t]]);
-      const auto ends_word = [](char c) { return c == ' ' || c == '#' || c == '\\'; };
-      std::ranges::replace_if(name, ends_word, '_');
+      const std::string& name = names[mesh.piece[t]];
       text += "g " + name + "\nusemtl " + name + '\n';  // Blender keeps materials, and loses groups of faces
     }
     text += 'f';

@@ -118,6 +118,9 @@ TEST_CASE("OBJ and PLY files keep pieces by name, a PLY the length of texture co
   sewn.piece_names = {"a\x1b[2J b", "c#d\\"};
   write_mesh(folder / "odd.obj", sewn);
   CHECK(read_mesh(folder / "odd.obj").piece_names == std::vector<std::string>{"a_x1b[2J_b", "c_d_"});
+  sewn.piece_names = {"a b", "a_b"};
+  write_mesh(folder / "odd.obj", sewn);
+  CHECK(read_mesh(folder / "odd.obj").piece == sewn.piece);
   CHECK_THAT(vtp_text(sewn), Catch::Contains("Name=\"piece\""));
 }
 
