@@ -11,6 +11,7 @@
 #include "core/kernel/files/message_text.h"
 #include "core/kernel/files/number_text.h"
 #include "core/kernel/files/string_utils.h"
+#include "core/numerics/mesh_files/text_reader.h"
 
 namespace drape {
 namespace {
@@ -160,6 +161,8 @@ std::optional<ConfigNode> parse_value(const std::string& text, const std::string
       faults = {{documents.roots[1], "a second document begins here; a config is one"}};
   } catch (const YAML::Exception& error) {
     faults = {{place(name, error.mark), "not valid YAML: " + error.msg}};
+    if (error.msg.find(YAML::ErrorMsg::INVALID_UNICODE) != std::string::npos)
+      faults[0].message += "; write the character itself";
     if (is_indented_by_tab(text, std::size_t(error.mark.line)))
       faults[0].message += "; tabs cannot indent, use spaces";
   } catch (const ConfigError& endless) {
@@ -235,11 +238,15 @@ ConfigNode parse_yaml(const std::string& text, const std::string& name, ConfigEr
 
 ConfigNode read_yaml(const std::filesystem::path& file, ConfigErrors& errors) {
   try {
-    return parse_yaml(read_file(file, largest_config), file.string(), errors);
+    const std::string text = read_file(file, largest_config);
+    utf8_text(file, text);
+    return parse_yaml(text, file.string(), errors);
   } catch (const FileError& fault) {
     errors.push_back({{file.string(), 0, 0}, fault.cause});
-    return {};
+  } catch (const std::runtime_error& fault) {
+    errors.push_back({{}, fault.what()});
   }
+  return {};
 }
 
 std::string to_yaml(const ConfigNode& node) {

@@ -62,6 +62,8 @@ TEST_CASE("invalid configs are reported with the location") {
       {"a: !color 5\n", "1:4: tag \"!color\" is not supported; take it out"},
       {"a: &a [*a, *a]\n", "1:4: too many nested or repeated nodes; check the aliases"}};
   for (const auto& [yaml, fault] : faults) CHECK(fault_of_yaml(yaml) == "f:" + fault);
+  CHECK_THAT(fault_of_yaml("{\"a\": \"\\ud83d\\ude00\"}"),
+             Catch::Contains("invalid unicode") && Catch::EndsWith("; write the character itself"));
   CHECK(fault_of_yaml("# only a comment\n") == "f: is empty; a config is a map of keys and values");
   // Newer versions of yaml-cpp name it.
   CHECK_THAT(fault_of_yaml("a: *none\n"),
@@ -72,6 +74,17 @@ TEST_CASE("invalid configs are reported with the location") {
     laughs += "a" + n + ": &a" + n + " [" + m + ", " + m + ", " + m + ", " + m + "]\n";
   }
   CHECK_THAT(fault_of_yaml(laughs), Catch::Contains("too many nested or repeated nodes; check the aliases"));
+}
+
+TEST_CASE("a config in UTF-16 is refused by its encoding") {
+  const Scratch folder;
+  folder.write("e.yaml", {"\xFF\xFE"
+                          "a\0:\0",
+                          6});
+  ConfigErrors errors;
+  read_yaml(folder / "e.yaml", errors);
+  CHECK(texts_of_errors(errors) ==
+        (folder / "e.yaml").string() + ": is in UTF-16 or UTF-32; save it as UTF-8");
 }
 
 TEST_CASE("a byte of a text is found in its file, however the text is written") {
