@@ -174,8 +174,12 @@ bool is_grid(const ClothParameters& c) {
 int vertices_within(const OutlineSize& outline, double edge_length) {
   const double count = outline.vertices(edge_length);
   if (count > bounds::most_vertices)
-    throw std::runtime_error("\"edge_length\" would give about " + about(count) +
-                             " vertices; a coarsest level has at most " + about(bounds::most_vertices));
+    throw std::runtime_error(
+        "\"edge_length\" of " + three_digits(edge_length) + " m would give about " + about(count) +
+        " vertices within " + three_digits(outline.area) + " m²; a coarsest level has at most " +
+        about(bounds::most_vertices) + ": take " +
+        three_digits(1.01 * even_spacing(outline.area, outline.border, bounds::most_vertices)) +
+        " m or more, if the unit is right");
   return static_cast<int>(std::lround(std::max(count, 3.0)));
 }
 
