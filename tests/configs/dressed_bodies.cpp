@@ -164,3 +164,18 @@ TEST_CASE("A pattern that is meshed finely starts smoothed over as long a way as
   write_dressed(folder, "", "tshirt", 0.007, 1);
   CHECK(scene_of(experiment_in(folder / "e.yaml"))->dressing->smoothing > 4);  // as far as coarse meshes need
 }
+
+TEST_CASE("A garment beside its body gets a warning, and one around it none") {
+  const Scratch folder;
+  const auto warnings = [&](double beside) {
+    TubeDress tube{.columns = 8, .rows = 5, .facets = 24};
+    tube.at.x() = beside;
+    tube.write(folder,
+               "material: {density: 300, thickness: 5e-4, membrane_modulus: 4e5, bending_modulus: "
+               "1e5}\nenergies: [neo_hookean, hinge, gravity]\n");
+    return drape_ends("check e.yaml", folder).err;
+  };
+  const std::string warning = "the garment encloses hardly anything of its body";
+  CHECK_THAT(warnings(0), !Catch::Contains(warning));
+  CHECK_THAT(warnings(0.23), Catch::Contains(warning));  // where the boxes of both still meet
+}

@@ -182,5 +182,9 @@ TEST_CASE("a pattern is meshed to a length of edges, or to about a number of ver
                       folder.path),
              Catch::Matches("[^]*Vertices by level: 4[0-9][0-9]\n[^]*"));
   check_error(refused(folder, "check e.yaml --set cloth.edge_length=1e-6"),
-              "e.yaml:3:8: \"edge_length\" would give about 9.2e+10 vertices; a coarsest level has at most");
+              "e.yaml:3:8: \"edge_length\" of 1e-06 m would give about 9.2e+10 vertices within 0.08 m²; a "
+              "coarsest level has at most 1e+07: take 9.71e-05 m or more, if the unit is right");
+  folder.write("p.yaml", replaced(pattern({}), "units_in_meter: 100", "units_in_meter: 0.1"));
+  CHECK_THAT(drape_ends("check e.yaml --set cloth.edge_length=40", folder).err,
+             Contains("the cloth is 200 × ") && Contains("check \"units_in_meter\" in the pattern's file"));
 }

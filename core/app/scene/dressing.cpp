@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <map>
 #include <set>
 
@@ -47,6 +48,29 @@ TriangleMesh body_of(const Experiment& e, const LevelModel& model) {
   const std::vector<std::string> names = e.obstacle_names();
   const auto index = std::ranges::find(names, e.parameters.dress.obstacle) - names.begin();
   return model.obstacles().at(index);
+}
+
+/// The largest winding number of the garment around those points of a contracted body that are within its
+/// box; some hundreds of them tell.
+double enclosure(const TriangleMesh& garment, const TriangleMesh& body) {
+  constexpr std::size_t most_tried = 400;
+  const Eigen::AlignedBox3d box = bounding_box(garment.vertices);
+  const double spacing = 0.05 * box.sizes().norm();
+  std::vector<Eigen::Vector3d> within;
+  for (const auto& t : body.triangles.rowwise()) {
+    const Eigen::Matrix3d corners = body.vertices(t, Eigen::all).transpose();
+    const Eigen::Vector3d u = corners.col(1) - corners.col(0), v = corners.col(2) - corners.col(0);
+    const double longest = std::max({u.norm(), v.norm(), (u - v).norm()});
+    const int n = static_cast<int>(std::clamp(std::ceil(longest / spacing), 1.0, 30.0));
+    for (int i = 0; i <= n; ++i)
+      for (int j = 0; i + j <= n; ++j)
+        if (const Eigen::Vector3d p = corners.col(0) + (i * u + j * v) / n; box.contains(p))
+          within.push_back(p);
+  }
+  double largest = 0;
+  for (std::size_t k = 0; k < within.size(); k += within.size() / most_tried + 1)
+    largest = std::max(largest, std::abs(winding_number(garment, within[k])));
+  return largest;
 }
 
 /// Makes a garment without intersections the scene's start, on every level.
@@ -131,6 +155,7 @@ void find_dressing_start(const Experiment& e, Scene& scene, ConfigErrors& errors
           continue;
         }
         if (found.empty()) {
+          shapes[k].enclosure = enclosure({x, level.rest.triangles}, small);
           take(std::move(shapes[k]), contraction, scene);
           return;
         }

@@ -16,6 +16,7 @@ namespace {
 constexpr double smallest_cloth = 5e-3, largest_cloth = 50;     // diagonal [m]
 constexpr double least_garment = 0.3, largest_garment = 3;      // longest extent of most garments [m]
 constexpr double least_weight = 3e-3, largest_weight = 10;      // [kg/m²]
+constexpr double thinnest = 1e-5, thickest = 0.02;              // [m]
 constexpr double shortest_bending = 2e-4, longest_bending = 2;  // bending length [m]
 constexpr double fewest_edges = 0.02, most_edges = 1000;        // bending length over an edge
 constexpr double fewest_of_outline = 0.1;                       // the same of a file's pieces or a polygon
@@ -25,6 +26,7 @@ constexpr double largest_dhat = 1.5;                            // d̂ over an e
 constexpr double largest_obstacle = 100;                        // diagonal [m]
 constexpr double largest_ratio = 50;                            // of that to the cloth's
 constexpr double largest_stretch = 2;                           // of the start, or its inverse
+constexpr double least_enclosure = 0.15;                        // winding number of a garment about its body
 
 /// Warns of the value at a key.
 using Warn = std::function<void(const std::string& key, const std::string& message)>;
@@ -60,7 +62,9 @@ std::string other_units(const ClothParameters& cloth, double longest) {
 void check_size(const ExperimentParameters& p, const SceneSummary& s, const Warn& warn) {
   const double size = s.size.norm();
   if (size >= smallest_cloth && size <= largest_cloth) return;
-  std::string remedy = size > largest_cloth ? other_units(p.cloth, s.size.maxCoeff()) : "";
+  std::string remedy = p.cloth.shape == "pattern" ? "check \"units_in_meter\" in the pattern's file"
+                       : size > largest_cloth     ? other_units(p.cloth, s.size.maxCoeff())
+                                                  : "";
   if (remedy.empty())
     remedy = p.cloth.shape == "file" ? "choose the file's \"unit\" or \"scale\""
              : size > largest_cloth  ? "choose a smaller size"
@@ -75,6 +79,11 @@ void check_material(const ExperimentParameters& p, const SceneSummary& s, const 
     warn("material", "a square metre of the cloth has " + rounded_text(weight, 2) +
                          " kg (density × thickness); fabric usually has 0.02 to 2 kg; density is in "
                          "kg/m³, and thickness in metres: 0.3 mm is 3e-4");
+  if (const double t = p.material.thickness; t < thinnest || t > thickest)
+    warn("material",
+         "the cloth is " + length_text(t) +
+             " thick; fabric is usually 0.1 to 3 mm; \"thickness\" is in metres, also in a table of "
+             "fabrics: 0.3 mm is 3e-4");
   if (!s.bending_length) return;
   const double length = *s.bending_length, edges = length / s.median_edge;
   const std::string on = " of level " + std::to_string(s.level);
@@ -142,8 +151,12 @@ void check_membrane(const Experiment& e, const Warn& warn) {
          "no energy resists stretching, so that the cloth may stretch without end; add neo_hookean");
 }
 
-void check_start(const Experiment& e, const SceneSummary& s, const Warn& warn) {
+void check_start(const Experiment& e, const Scene& scene, const SceneSummary& s, const Warn& warn) {
   if (e.parameters.dress.is_asked()) {  // whose seams start long
+    if (scene.dressing && scene.dressing->enclosure < least_enclosure)
+      warn("dress",
+           "the garment encloses hardly anything of its body, as if it were beside it or the body on its "
+           "side: are \"up\", \"translate\" and \"unit\" of the body right?");
     if (e.parameters.pins.empty() && e.parameters.friction == 0)
       warn("dress",
            "no pin and no friction holds the garment: it stays only where the body's shape carries it, "
@@ -156,11 +169,13 @@ void check_start(const Experiment& e, const SceneSummary& s, const Warn& warn) {
   const double stretch = s.start_stretch;
   if (stretch <= largest_stretch && stretch >= 1 / largest_stretch) return;
   const StartParameters& start = e.parameters.start;
-  warn("start", "the start has " + rounded_text(stretch, 2) +
-                    " times the lengths of the rest shape, so the cloth begins strained; 1 is usual; " +
-                    (start.file.empty() ? "\"scale\" of a mesh file belongs to cloth, which scales the "
-                                          "rest shape too"
-                                        : "give the \"unit\" of the start's file, or its \"scale\""));
+  warn("start",
+       "the start has " + rounded_text(stretch, 2) +
+           " times the lengths of the rest shape, so the cloth begins strained; 1 is usual; " +
+           (e.parameters.cloth.rest == "uv" ? "check \"uv_unit\", the unit of the texture coordinates"
+            : start.file.empty()            ? "\"scale\" of a mesh file belongs to cloth, which scales the "
+                                              "rest shape too"
+                                            : "give the \"unit\" of the start's file, or its \"scale\""));
 }
 
 /// A pin or handle "nearest" to a point that lies far from the cloth's rest shape.
@@ -229,7 +244,7 @@ ConfigErrors plausibility_warnings(const Experiment& e, const Scene& scene, cons
   for (ConfigError& warning : unread_measures(e, s.median_edge)) all.push_back(std::move(warning));
   check_nearest(e, "pins", e.parameters.pins, scene.hierarchy.levels[0], coarse_edge, all);
   check_nearest(e, "handles", e.parameters.handles, scene.hierarchy.levels[0], coarse_edge, all);
-  check_start(e, s, warn);
+  check_start(e, scene, s, warn);
   check_contact(s, warn);
   check_obstacles(e, s, warn);
   return all;

@@ -30,6 +30,7 @@ struct DressingStart {
   double smoothing = 0;             ///< of the placed garment [1]
   double inflation = 0;             ///< of the smoothed garment, along its normals [m]
   std::vector<Positions> garments;  ///< of every level, n×3 [m]
+  double enclosure = 0;             ///< the largest winding number around a point of the contracted body
 };
 
 /// The problem of an experiment, and what it was made from.
@@ -74,6 +75,9 @@ bool touches_itself(const std::vector<Intersection>& pairs);
 void refuse_intersecting_start(const Experiment& experiment, const LevelModel& model, const Positions& start,
                                ConfigErrors& errors);
 
+/// The generalised winding number of the mesh around p [m]: 1 inside a closed mesh that faces outwards, -1 in
+/// one that faces inwards, 0 outside (solid angles: van Oosterom and Strackee 1983).
+double winding_number(const TriangleMesh& mesh, const Eigen::Vector3d& p);
 /// Which of the points (n×3) [m] lie inside a closed mesh that faces outwards, or, if that is asked, inwards.
 std::vector<char> are_inside(const Positions& points, const TriangleMesh& mesh, bool facing_inwards = false);
 /// Whether one does. Of a cloth that intersects nothing, a vertex of each connected part will do.

@@ -37,20 +37,6 @@ struct Clearance {
   double smallest_gap = std::numeric_limits<double>::infinity();
 };
 
-/// The generalised winding number of the mesh around p: 1 inside a closed mesh that faces outwards, -1 in one
-/// that faces inwards, 0 outside (solid angles: van Oosterom and Strackee 1983).
-double winding_number(const TriangleMesh& mesh, const Vector3d& p) {
-  double angle = 0;
-  for (Eigen::Index t = 0; t < mesh.triangles.rows(); ++t) {
-    Vector3d c[3];
-    for (int k = 0; k < 3; ++k) c[k] = mesh.vertices.row(mesh.triangles(t, k)).transpose() - p;
-    const double l0 = c[0].norm(), l1 = c[1].norm(), l2 = c[2].norm();
-    angle += 2 * std::atan2(c[0].dot(c[1].cross(c[2])),
-                            l0 * l1 * l2 + c[0].dot(c[1]) * l2 + c[1].dot(c[2]) * l0 + c[2].dot(c[0]) * l1);
-  }
-  return angle / (4 * M_PI);
-}
-
 /// The gaps of a level's obstacles, in their order.
 std::vector<double> gaps_at(const LevelModel& model, const Positions& x) {
   std::vector<double> gaps;
@@ -192,6 +178,18 @@ class TranslationSearch {
 };
 
 }  // namespace
+
+double winding_number(const TriangleMesh& mesh, const Vector3d& p) {
+  double angle = 0;
+  for (Eigen::Index t = 0; t < mesh.triangles.rows(); ++t) {
+    Vector3d c[3];
+    for (int k = 0; k < 3; ++k) c[k] = mesh.vertices.row(mesh.triangles(t, k)).transpose() - p;
+    const double l0 = c[0].norm(), l1 = c[1].norm(), l2 = c[2].norm();
+    angle += 2 * std::atan2(c[0].dot(c[1].cross(c[2])),
+                            l0 * l1 * l2 + c[0].dot(c[1]) * l2 + c[1].dot(c[2]) * l0 + c[2].dot(c[0]) * l1);
+  }
+  return angle / (4 * M_PI);
+}
 
 std::vector<char> are_inside(const Positions& points, const TriangleMesh& mesh, bool facing_inwards) {
   std::vector<char> inside;

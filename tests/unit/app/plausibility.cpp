@@ -151,6 +151,8 @@ TEST_CASE("What no fabric or scene has gets a warning that says what is usual, b
       {edited_scene(thickness, "thickness: 0.318"),  // in millimetres
        "4: a square metre of the cloth has 150 kg (density × thickness); fabric usually has 0.02 to 2 kg"},
       {edited_scene(thickness, "thickness: 2e-6"), "has 0.00095 kg"},
+      {edited_scene("density: 472.6, thickness: 3.18e-4", "density: 0.4726, thickness: 0.318"),
+       "4: the cloth is 0.32 m thick; fabric is usually 0.1 to 3 mm; \"thickness\" is in metres"},
       {edited_scene(bending, "bending_modulus: 0"), ""},
       {edited_scene(bending, "bending_modulus: 8e6"), ""},
       {edited_scene(bending, "bending_modulus: 8e12"), "4: weight bends this cloth over a length of "},
