@@ -70,10 +70,12 @@ void check_elements(const MeshFaults& faults, const Triangles& triangles, Lines&
   const auto triangle = [&](int t) { return triangle_text(triangles, t); };
   add_line(lines, faults.loose_vertices,
            {"vertex belongs", "vertices belong", " to no triangle",
-            "remove them, or \"join\" those at the place of another"},
+            "remove them, or merge those at the place of another, as a cloth's \"join\" does"},
            text);
   add_line(lines, faults.repeating_triangles,
-           {"triangle repeats", "triangles repeat", " a vertex", "remove them, or lower \"join\""}, triangle);
+           {"triangle repeats", "triangles repeat", " a vertex",
+            "remove them; if a cloth's \"join\" made them, lower it"},
+           triangle);
   add_line(lines, faults.empty_triangles,
            {"triangle has", "triangles have", " no area", "move their vertices apart, or remove them"},
            triangle);

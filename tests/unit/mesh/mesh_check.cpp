@@ -73,8 +73,8 @@ TriangleMesh moebius_band() {
 
 TEST_CASE("every fault is one line that names the elements") {
   check_fault(strip_with({{5, 5, 5}}, {}),
-              "1 vertex belongs to no triangle: 4 (counted from 0); remove them, or \"join\" those at the "
-              "place of another");
+              "1 vertex belongs to no triangle: 4 (counted from 0); remove them, or merge those at "
+              "the place of another, as a cloth's \"join\" does");
   std::vector<Eigen::Vector3d> far;
   for (int k = 0; k < 100; ++k) far.emplace_back(k, 5, 5);
   check_fault(strip_with(far, {}), "100 vertices belong to no triangle: 4, 5, 6, 7, 8, … (counted from 0)");
