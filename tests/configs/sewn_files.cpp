@@ -1,6 +1,7 @@
 // OBJ files of sewn cloth as garment tools write them: they drape, or are refused in a sentence.
 
 #include <cmath>
+#include <regex>
 
 #include "core/numerics/mesh/flat_pieces.h"
 #include "core/numerics/mesh/seams.h"
@@ -174,6 +175,9 @@ TEST_CASE("OBJ files that are no sewn cloth are refused in a sentence") {
   };
   set_uv(flat, 1, "vt 0 0");
   CHECK_THAT(refused_cushion(flat, "uv_unit: m"), Catch::Contains("no area in texture coordinates"));
+  CHECK_THAT(
+      refused_cushion(std::regex_replace(cushion, std::regex("vt .*"), "vt 0 0"), "uv_unit: normalised"),
+      Catch::Contains("the texture coordinates enclose no area; export the texture coordinates in a unit"));
   set_uv(over, n + 1, "vt 0.12 0.05");
   CHECK_THAT(refused_cushion(over, "uv_unit: m"), Catch::Contains("turned over in texture coordinates"));
   CHECK_THAT(refused_cushion(cushion, "uv_unit: m}\nrefiner: loop\nstart: {perturbation: 0"),
@@ -238,4 +242,14 @@ TEST_CASE("A sewn run can be run again from its own config, and goes out as its 
   REQUIRE(mesh["primitives"].size() == 2);
   CHECK(glb.json["materials"][mesh["primitives"][1]["material"].get<int>()]["name"] == "back");
   CHECK(mesh["extras"]["uv_length"].get<double>() == Approx(2.5 * side));
+}
+
+TEST_CASE("A mesh that was made anew within a file's outline does not go out as the file came") {
+  const Scratch folder(
+      "name: anew\nlevels: 1\ncloth: {shape: file, file: square.obj, edge_length: 0.3}\n"
+      "pins: [{region: border}]\nenergies: [stvk, gravity]\nmethods: {newton: {}}\n");
+  folder.write("square.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n");
+  run_into("out", folder, "-j 1 --method newton");
+  CHECK_THAT(refused(folder, "export out --to back.obj --as-read"),
+             Contains("or the run meshed them anew, by \"edge_length\" or \"vertices\""));
 }
