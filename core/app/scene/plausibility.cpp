@@ -200,7 +200,7 @@ void check_nearest(const Experiment& e, const std::string& key, const Selections
 /// Triangles whose stiffness hides that of the others: low ones, and tiny ones.
 void check_triangles(const Level& cloth, const Warn& warn) {
   const TriangleMesh& mesh = cloth.rest;
-  const double usual = median_edge(cloth);
+  const double usual = median_rest_edge(cloth);
   for (Eigen::Index t = 0; t < mesh.triangles.rows(); ++t) {
     const auto corners = rest_corners(mesh, t);
     std::string fault;

@@ -66,6 +66,7 @@ void add_contacts(const LevelModel& model, const Positions& start, SceneSummary&
     if (gaps.empty()) continue;
     const std::vector<TriangleMesh> meshes = contact->obstacles();
     for (std::size_t k = 0; k < gaps.size(); ++k) {
+      summary.obstacle_triangles += static_cast<double>(meshes[k].triangles.rows());
       if (is_inside(points, meshes[k])) summary.enclosing = gaps[k].obstacle;
       summary.obstacles.push_back({std::move(gaps[k]), extents(meshes[k].vertices),
                                    start.col(2).minCoeff() - meshes[k].vertices.col(2).maxCoeff()});
@@ -117,6 +118,8 @@ std::optional<double> estimated_seconds(const SceneSummary& s, double vertices) 
   constexpr double each = 1.1e-5, with_contact = 2;  // [s], [1]
   return each * vertices * s.size.maxCoeff() / *s.bending_length * (s.dhat > 0 ? with_contact : 1);
 }
+
+double median_rest_edge(const Level& level) { return median(rest_lengths(level)); }
 
 double median_edge(const Level& level) { return median(edge_lengths(level, level.rest.vertices)); }
 

@@ -19,9 +19,10 @@ struct ObstacleSummary {
 
 /// The quantities of a scene that a person can judge, and that a wrong unit or axis changes.
 struct SceneSummary {
-  Eigen::Vector3d size;  ///< of the rest shape's bounding box on the coarsest level [m]
-  int parts = 0;         ///< number of connected parts
-  int level = 0;         ///< the finest, whose edges at rest these are [m]:
+  Eigen::Vector3d size;           ///< of the rest shape's bounding box on the coarsest level [m]
+  int parts = 0;                  ///< number of connected parts
+  double obstacle_triangles = 0;  ///< of all obstacles' meshes
+  int level = 0;                  ///< the finest, whose edges at rest these are [m]:
   double shortest_edge = 0, median_edge = 0, longest_edge = 0;
   double mass = 0;  ///< [kg]
   /// (D/(ρ d g))^⅓ [m], D the sum of Energy::plate_stiffness; none without it or uniform gravity
@@ -44,8 +45,10 @@ SceneSummary summary_of(const Scene& scene);
 std::optional<double> estimated_seconds(const SceneSummary& summary, double vertices);
 inline constexpr const char* estimate_processor = "an AMD EPYC (AVX-512)";
 
-/// The median length of a level's edges at rest [m].
+/// The median length of a level's edges [m], of flat pieces as they are placed.
 double median_edge(const Level& level);
+/// The median length of a level's edges at rest [m].
+double median_rest_edge(const Level& level);
 
 /// One line such as "0.62 × 0.7 m, 1 part, edges 8–31 mm, 0.19 kg, bending length 12 mm (2.1 edges), d̂ 1 mm
 /// (0.04 edges), starts 20 mm above body". Leaves out what the scene does not have.

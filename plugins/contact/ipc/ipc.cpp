@@ -1,12 +1,28 @@
 #include "plugins/contact/ipc/ipc.h"
 
 #include <algorithm>
+#include <cmath>
+#include <stdexcept>
 
+#include "core/kernel/files/message_text.h"
 #include "core/kernel/plugin/plugin.h"
 #include "core/kernel/plugin/refused_parameters.h"
 #include "plugins/contact/ipc/bound_ipc.h"
 
 namespace drape::ipc {
+
+namespace {
+
+constexpr double most_triangles = 5e6;  ///< of all obstacles; each takes some 500 bytes and 1 µs
+
+void refuse_too_many(double triangles) {
+  if (triangles > most_triangles)
+    throw std::runtime_error("with this one the obstacles have " + three_digits(triangles / 1e6) +
+                             " million triangles, and at most " + three_digits(most_triangles / 1e6) +
+                             " million are taken; simplify their meshes, or lower \"subdivisions\"");
+}
+
+}  // namespace
 
 void Ipc::Parameters::declare(Declaration<Parameters>& d) {
   using P = Parameters;
@@ -19,10 +35,16 @@ void Ipc::Parameters::declare(Declaration<Parameters>& d) {
 
 Ipc::Ipc(const Parameters& parameters, const Ipc* before) : p_(parameters) {
   std::size_t levels = 1;
+  double triangles = 0;  // of all obstacles together
   for_all_items("obstacles", p_.obstacles, [&](const ObstacleParameters& p, std::size_t k) {
+    if (triangles > most_triangles) return;  // an obstacle before this one is refused
+    const double own = 20 * std::pow(4, p.subdivisions);
+    if (p.meshed_shape == "sphere") refuse_too_many(triangles += own);
     const bool same =
         before && k < before->meshes_.size() && ObstacleMeshes::are_same(p, before->p_.obstacles[k]);
     meshes_.push_back(same ? before->meshes_[k] : ObstacleMeshes::of(p, static_cast<int>(k)));
+    if (p.meshed_shape != "sphere")
+      refuse_too_many(triangles += static_cast<double>(meshes_[k].frames[0]->mesh.triangles.rows()));
     levels = std::max<std::size_t>(levels, p.cages.count + 1);
   });
   for (std::size_t level = 0; level < levels; ++level) {

@@ -43,9 +43,16 @@ std::string difference(const TriangleMesh& first, const TriangleMesh& other) {
 /// the files and their faults.
 ObstacleMeshes load_meshes(const std::vector<std::string>& files, const FileCoordinates& coordinates,
                            bool strict) {
+  constexpr double most_vertices = 1e7;  // of all frames together
   std::vector<TriangleMesh> frames;
   for (const std::string& file : files) {
     frames.push_back(read_surface(file));
+    if (const auto all = static_cast<double>(files.size() * frames[0].vertices.rows());
+        files.size() > 1 && all > most_vertices)
+      throw std::runtime_error("its " + std::to_string(files.size()) + " frames have " +
+                               three_digits(all / 1e6) + " million vertices together, and at most " +
+                               three_digits(most_vertices / 1e6) +
+                               " million are taken; leave out frames, between which it moves linearly");
     frames.back().sewing.reset();  // an obstacle is as it lies, also where a run's rest/l0.ply is one
     coordinates.convert(frames.back().vertices);
     refuse(file, strict ? check_mesh(frames.back()) : check_coordinates(frames.back().vertices));
