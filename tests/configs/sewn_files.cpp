@@ -178,6 +178,10 @@ TEST_CASE("OBJ files that are no sewn cloth are refused in a sentence") {
   CHECK_THAT(
       refused_cushion(std::regex_replace(cushion, std::regex("vt .*"), "vt 0 0"), "uv_unit: normalised"),
       Catch::Contains("the texture coordinates enclose no area; export the texture coordinates in a unit"));
+  CHECK_THAT(
+      refused_cushion(std::regex_replace(cushion, std::regex("vt ([^ ]*) (.*)"), "vt $1e15 $2e15"),
+                      "uv_unit: m"),
+      Catch::Contains("m across by their texture coordinates, and 1e-09 to 1e+09 m can be computed with"));
   set_uv(over, n + 1, "vt 0.12 0.05");
   CHECK_THAT(refused_cushion(over, "uv_unit: m"), Catch::Contains("turned over in texture coordinates"));
   CHECK_THAT(refused_cushion(cushion, "uv_unit: m}\nrefiner: loop\nstart: {perturbation: 0"),
@@ -252,4 +256,11 @@ TEST_CASE("A mesh that was made anew within a file's outline does not go out as 
   run_into("out", folder, "-j 1 --method newton");
   CHECK_THAT(refused(folder, "export out --to back.obj --as-read"),
              Contains("or the run meshed them anew, by \"edge_length\" or \"vertices\""));
+}
+
+TEST_CASE("A wrong unit of texture coordinates is named, and no edge is called tiny for it") {
+  const Scratch folder(sewn_experiment("uv_unit: mm"));
+  folder.write("cushion.obj", obj_of({}));
+  CHECK_THAT(drape_ends("check e.yaml", folder).err,
+             Contains("check \"uv_unit\"") && !Contains("has an edge of"));
 }

@@ -192,6 +192,11 @@ std::vector<std::string> check_mesh(const TriangleMesh& mesh) {
 }
 
 std::vector<std::string> check_pieces(const TriangleMesh& mesh) {
+  const double across = mesh.sewing->uv_length * (mesh.uv.maxCoeff() - mesh.uv.minCoeff());
+  if (across < bounds::smallest_diagonal || across > bounds::largest_coordinate)
+    return {"the pieces are " + three_digits(across) + " m across by their texture coordinates, and " +
+            three_digits(bounds::smallest_diagonal) + " to " + three_digits(bounds::largest_coordinate) +
+            " m can be computed with; check \"uv_unit\""};
   Lines lines;
   constexpr double flat = 1e-12;  // height over the longest side
   std::vector<int> empty;
