@@ -42,6 +42,12 @@ TEST_CASE("a data set has the garments that pass, and names where the others are
   CHECK_THAT(drape_ends("export out --to set", folder, 2).err,
              Contains("set: exists already; name another folder"));
   drape_ends("export out --to set --overwrite", folder, 1);
+  const std::string before = text_of(folder / "set/index.csv") + "\n";
+  folder.write("set/index.csv", before);
+  folder.write("set/index.html", "<p>mine</p>");  // nothing is written beside it
+  CHECK_THAT(drape_ends("export out --to set --overwrite", folder, 2).err,
+             Contains("set/index.html: is there already, and no report of drape; move it"));
+  CHECK(text_of(folder / "set/index.csv") == before);
 }
 
 TEST_CASE("a data set replaces nothing of its sweep, and no variation's name is that of an obstacle") {

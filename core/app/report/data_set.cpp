@@ -54,6 +54,7 @@ RunTable export_data_set(const fs::path& sweep, const fs::path& folder, const Ex
     refuse_path(folder, "is in the sweep's own folder, whose files it would replace; name another folder");
   if (!options.overwrite && fs::exists(folder) && !fs::is_empty(folder))
     refuse_path(folder, "exists already; name another folder, or write into it with --overwrite");
+  refuse_other_file(folder / "index.html", "move it, or name another folder");
   make_folder(folder);
   const RunCollection collection = read_runs({sweep});
   RunTable table = table_of(collection);

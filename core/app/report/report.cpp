@@ -109,12 +109,6 @@ Json run_json(const RunRecord& run, const fs::path& from) {
   return entry;
 }
 
-/// Only a page of drape's may be replaced: its title says so.
-void refuse_other_file(const fs::path& page, const std::string& remedy) {
-  if (fs::exists(page) && read_file(page).find(" – drape</title>") == std::string::npos)
-    refuse_path(page, "is there already, and no report of drape; " + remedy);
-}
-
 /// Before anything is drawn or written.
 void refuse_unwritable(const fs::path& folder, const std::string& remedy) {
   if (access(folder.c_str(), W_OK) != 0)
@@ -122,6 +116,11 @@ void refuse_unwritable(const fs::path& folder, const std::string& remedy) {
 }
 
 }  // namespace
+
+void refuse_other_file(const fs::path& page, const std::string& remedy) {
+  if (fs::exists(page) && read_file(page).find(" – drape</title>") == std::string::npos)
+    refuse_path(page, "is there already, and no report of drape; " + remedy);
+}
 
 bool is_current(const fs::path& page, const fs::path& results) {
   std::error_code error;

@@ -20,6 +20,10 @@ std::vector<std::string> write_report(const std::filesystem::path& run_directory
                                       const std::function<bool()>& cancelled = {},
                                       std::optional<int> picture_width = {});
 
+/// Throws std::runtime_error, which ends in the remedy, for a page that is there and not one of drape's: its
+/// title says so.
+void refuse_other_file(const std::filesystem::path& page, const std::string& remedy);
+
 /// Writes a page about several runs and sweeps. Throws std::runtime_error with one line for a folder that is
 /// neither, and for a page that is there and not one of drape's.
 void write_runs_report(const std::vector<std::filesystem::path>& folders, const std::filesystem::path& page);
