@@ -114,12 +114,12 @@ def test_files_that_are_there_stay_unless_they_are_to_be_replaced(small_run, tmp
     out.mkdir()
     victim.write_text("mine")
     (out / name).write_text("mine")
-    assert f"{name}: exists already; " in command("figures", small_run, "-o", out, code=2).stderr
+    assert f"{name}: exists already; name another file, or replace it with --overwrite" in command("figures", small_run, "-o", out, code=2).stderr
     assert [file.name for file in out.iterdir()] == [name] and (out / name).read_text() == "mine"
     (out / name).unlink()
     (out / name).symlink_to(victim)
     (out / f"{name}.part").symlink_to(victim)
-    assert f"{name}: exists already; " in command("figures", small_run, "-o", out, code=2).stderr
+    assert f"{name}: exists already; name another file, or replace it with --overwrite" in command("figures", small_run, "-o", out, code=2).stderr
     command("figures", small_run, "-o", out, "--overwrite")
     assert victim.read_text() == "mine" and not (out / name).is_symlink()
 

@@ -249,9 +249,11 @@ def main() -> int:
             cause = cause.__cause__ if cause.__suppress_context__ else cause.__context__
         if isinstance(cause, OSError) and cause.strerror and not cause.filename:
             reason = f"a file cannot be written: {cause.strerror}"
+        elif isinstance(cause, OSError) and cause.strerror:
+            reason = f"cannot write {cause.filename}: {cause.strerror}; name another folder with --out"
         else:
             reason = str(cause or f"the results are not as drape writes them ({type(error).__name__}: {error})")
-        print("error: " + _printable(reason), file=sys.stderr)
+        print("error: " + _printable(reason.replace("overwrite=True", "--overwrite")), file=sys.stderr)
         return 3 if isinstance(error, _core.RunAborted) else 2
     return 0
 
