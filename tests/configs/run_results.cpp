@@ -272,3 +272,15 @@ TEST_CASE("a metric that throws leaves a note, and the run continues") {
                StartsWith("curvature: the triangles around vertex 0 "));
   }
 }
+
+TEST_CASE("a run that ended before its first method did has a row that does not pass") {
+  const Scratch folder(small_experiment());
+  run_into("out", folder, "--method pcs");
+  nlohmann::json all = results_in(folder / "out");
+  all["methods"] = nlohmann::json::object();
+  all["complete"] = false;
+  folder.write("out/results.json", all.dump());
+  CHECK_THAT(drape_ends("table out", folder, 1).out,
+             Contains("no result") && Contains("before its first method"));
+  drape_ends("report out", folder);
+}

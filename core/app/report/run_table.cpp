@@ -229,7 +229,9 @@ RunTable table_of(const RunCollection& collection) {
       row["pass"] = passes(run, status, row);
     };
     table.has_results = table.has_results || run.data;
-    if (run.data)
+    if (run.data && run.data->methods.empty())
+      add("", {{"method", ""}, {"status", "no result"}, {"message", "it ended before its first method did"}});
+    else if (run.data)
       for (const MethodRecord& method : run.data->methods) add(method.status, row_of(*run.data, method));
     else
       add(status_without_results(run),
