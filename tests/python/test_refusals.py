@@ -92,6 +92,7 @@ def test_what_a_schedule_sets_is_refused(small, key):
     (lambda _: drape.Level(numpy.eye(3), [[0, 1, 3]]), ValueError, ""),
     (lambda _: drape.Level([[0, 0, 0]], [0, 1, 2]), ValueError, "shape"),
     (lambda _: drape.Level(numpy.eye(3), [[0.0, 1.0, 2.0]]), TypeError, "integers"),
+    (lambda e: drape.bind_energy("hinge", None), TypeError, "incompatible function arguments"),
 ])
 def test_what_the_module_cannot_use_is_refused(experiment, call, error, message):
     with pytest.raises(error, match=message):

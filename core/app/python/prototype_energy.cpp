@@ -274,7 +274,8 @@ void bind_bound_energy(py::module_& m) {
   m.def("_check_energy", &check_energy, py::arg("bound"), py::arg("x"), py::arg("step"));
   m.def("_checked_level", [] { return std::make_shared<Level>(checked_level()); });
   m.def(
-      "bind_energy", &bind_energy, py::arg("energy"), py::arg("level"), py::arg("material") = Material(),
+      "bind_energy", &bind_energy, py::arg("energy"), py::arg("level").none(false),
+      py::arg("material") = Material(),
       "An energy on a level: of a plugin's name, of {\"type\": name, parameter: value}, or of a drape.Energy "
       "object. Raises ConfigError.");
 }
