@@ -66,8 +66,8 @@ std::string json_text(const Json& json, int indent) {
   return json.dump(indent, ' ', false, Json::error_handler_t::replace);
 }
 
-std::string ascii_json_text(const Json& json) {
-  return json.dump(-1, ' ', true, Json::error_handler_t::replace);
+std::string ascii_json_text(const Json& json, int indent) {
+  return json.dump(indent, ' ', true, Json::error_handler_t::replace);
 }
 
 std::string fault_of_file_name(const std::string& name) {

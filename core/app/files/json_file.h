@@ -58,7 +58,7 @@ Json parse_json(const std::string& text);
 std::string json_text(const Json& json, int indent = -1);
 /// The JSON's text on one line of ASCII, other characters escaped: for scripts of a page, whatever its
 /// encoding.
-std::string ascii_json_text(const Json& json);
+std::string ascii_json_text(const Json& json, int indent = -1);
 
 /// The node as JSON; unquoted scalars become numbers or booleans if they spell one.
 Json json_value(const ConfigNode& node);

@@ -117,7 +117,9 @@ class TreeBuilder : public YAML::EventHandler {
     for (const auto& [key, value] : node.entries) count(value, depth + 1);
   }
   [[noreturn]] static void refuse(const ConfigNode& node) {
-    throw ConfigError{node.where, "too many nested or repeated nodes; check the aliases"};
+    throw ConfigError{node.where,
+                      "the file has more than 200,000 values or 100 levels of nesting, those that aliases "
+                      "repeat included; shorten its lists, or check its aliases"};
   }
 
   const std::string& file_;

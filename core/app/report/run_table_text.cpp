@@ -74,7 +74,7 @@ std::string table_text(const RunTable& table, std::vector<std::string> columns, 
       Json& one = chosen.emplace_back(Json::object());
       for (const std::string& column : columns) one[column] = member_of(row, column);
     }
-    return json_text(chosen, 1) + "\n";
+    return ascii_json_text(chosen, 1) + "\n";
   }
   const bool csv = format == TableFormat::csv;
   const auto line = [&](const auto& cell_of) {

@@ -22,7 +22,7 @@ std::size_t utf8_length(std::string_view text, std::uint32_t& code) {
 
 /// Whether a terminal would interpret the character or reorder the text around it.
 bool acts_on_terminal(std::uint32_t code) {
-  return code < 0x20 || (code >= 0x7f && code < 0xa0) || code == 0x200e || code == 0x200f ||
+  return code < 0x20 || (code >= 0x7f && code < 0xa0) || code == 0x61c || code == 0x200e || code == 0x200f ||
          (code >= 0x2028 && code <= 0x202e) || (code >= 0x2066 && code <= 0x2069);
 }
 
