@@ -24,6 +24,8 @@ ConfigNode absolute_path(ConfigNode path) {
   return path;
 }
 
+constexpr std::size_t most_hints = 100;  // no more errors are listed
+
 /// "did you mean …?" or the known keys, for an unknown one of this map. --set names constants as if they were
 /// keys.
 std::string hint_for(const std::string& key, const Schema& schema, const ConfigNode& map) {
@@ -57,8 +59,8 @@ void Schema::read(void* object, const ConfigNode& map, ConfigErrors& errors) con
       errors.push_back({map.key_locations[i], "repeated key \"" + excerpt(key) + "\"" + in +
                                                   "; it is first set at " + map.key_locations[first].text()});
     } else if (!known) {
-      errors.push_back({map.key_locations[i],
-                        "unknown key \"" + excerpt(key) + "\"" + in + "; " + hint_for(key, *this, map)});
+      const std::string hint = errors.size() < most_hints ? "; " + hint_for(key, *this, map) : "";
+      errors.push_back({map.key_locations[i], "unknown key \"" + excerpt(key) + "\"" + in + hint});
     } else {
       const size_t before = errors.size();
       read_parameter(*known, object, node, errors);
