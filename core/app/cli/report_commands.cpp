@@ -74,6 +74,7 @@ int export_sweep(const std::string& folder, const fs::path& to, const ExportOpti
 }
 
 int export_states(const std::string& folder, const fs::path& file, const ExportOptions& options) {
+  if (!file.has_extension()) require_run_or_sweep(folder);  // else a format would be asked for
   if (is_sweep(folder)) return export_sweep(folder, file, options);
   const Folders files = export_run(folder, file, options);
   std::cout << "written: " << printable(files.front().string());

@@ -112,7 +112,7 @@ struct Table {
     if (std::ranges::none_of(columns, [&](const Column& own) { return is_one_of(own.name, header); }))
       throw std::runtime_error(file +
                                ": the first line names no column of a fabric, such as mass, thickness and "
-                               "warp_bending; it is \"" +
+                               "warp_bending, without a unit; it is \"" +
                                excerpt(joined(header)) + '"');
   }
   /// The column's number, past the last without one. Throws std::runtime_error if there are two.
@@ -188,7 +188,9 @@ ConfigNode material_of(const Table& table, std::size_t row, const std::string& n
     if (!value || (is_positive && !(*value > 0)))
       refuse("has \"" + excerpt(text) + "\" in column \"" + column.name + "\", which is not a finite number" +
              (is_positive ? " above 0" : "") +
-             (text.find(',') == std::string::npos ? "" : "; write a point for a decimal comma"));
+             (text.find(',') == std::string::npos
+                  ? ""
+                  : "; write a point for a decimal comma, and nothing between thousands"));
     else if (is_mass)
       add("density", *value / in_force, column.name);
     else

@@ -148,7 +148,11 @@ void check_selection(const ExperimentParameters& parameters, bool handles, std::
                                         (p.piece ? ": the cloth has no piece \"" + excerpt(*p.piece) + "\""
                                                  : " needs \"piece\", the name of a piece") +
                                         "; it has " +
-                                        (pieces.empty() ? "none with a name" : listed(pieces))});
+                                        (!pieces.empty() ? listed(pieces)
+                                         : parameters.cloth.is_meshed_anew()
+                                             ? "none, since its outlines are meshed anew: leave out "
+                                               "\"vertices\" or \"edge_length\" in cloth"
+                                             : "none with a name")});
   if (p.region == "seam" && !coarsest.rest.sewing)
     return errors.push_back(
         {where, name + " selects seams, which only a cloth of flat pieces has (\"rest: uv\" in cloth)"});

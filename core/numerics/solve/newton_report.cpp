@@ -73,8 +73,8 @@ std::string max_steps_text(const LevelResult& so_far, const NewtonParameters& p,
   const bool falls = steps < falling_fraction * p.max_steps;
   return begin + "force residual " + three_digits(so_far.force_residual) +
          (falls ? ", which still falls: raise max_steps"
-                : ", which was " + three_digits(check.state().lowest_residual) + " " + std::to_string(steps) +
-                      " steps before and has not been lower since: more steps are unlikely to help");
+                : ", which was lowest " + std::to_string(steps) + " steps before, at " +
+                      three_digits(check.state().lowest_residual) + ": more steps are unlikely to help");
 }
 
 std::string drift_text(double drift, double most, const LevelModel& model) {

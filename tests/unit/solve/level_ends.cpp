@@ -171,10 +171,9 @@ TEST_CASE("A level that ends at max_steps tells its force residual and whether t
     const bool falls = since < 0.1 * max_steps;
     ++(falls ? falling : risen);
     CHECK_THAT(r.message, Catch::EndsWith(falls ? ", which still falls: raise max_steps"
-                                                : ", which was " + three_digits(lowest->second) + " " +
-                                                      std::to_string(since) +
-                                                      " steps before and has not been lower since: more "
-                                                      "steps are unlikely to help"));
+                                                : ", which was lowest " + std::to_string(since) +
+                                                      " steps before, at " + three_digits(lowest->second) +
+                                                      ": more steps are unlikely to help"));
   }
   CHECK(falling + risen > 10);
   CHECK(risen > 0);
