@@ -281,6 +281,9 @@ TEST_CASE("a run that ended before its first method did has a row that does not 
   all["complete"] = false;
   folder.write("out/results.json", all.dump());
   CHECK_THAT(drape_ends("table out", folder, 1).out,
-             Contains("no result") && Contains("before its first method"));
+             Contains("running") && Contains("no method has begun; if the run has ended"));
+  all["aborted"] = "the disk is full";
+  folder.write("out/results.json", all.dump());
+  CHECK_THAT(drape_ends("table out", folder, 1).out, Contains("| aborted | the disk is full |"));
   drape_ends("report out", folder);
 }
