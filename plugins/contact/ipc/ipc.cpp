@@ -1,7 +1,6 @@
 #include "plugins/contact/ipc/ipc.h"
 
 #include <algorithm>
-#include <cmath>
 #include <stdexcept>
 
 #include "core/kernel/files/message_text.h"
@@ -38,13 +37,10 @@ Ipc::Ipc(const Parameters& parameters, const Ipc* before) : p_(parameters) {
   double triangles = 0;  // of all obstacles together
   for_all_items("obstacles", p_.obstacles, [&](const ObstacleParameters& p, std::size_t k) {
     if (triangles > most_triangles) return;  // an obstacle before this one is refused
-    const double own = 20 * std::pow(4, p.subdivisions);
-    if (p.meshed_shape == "sphere") refuse_too_many(triangles += own);
     const bool same =
         before && k < before->meshes_.size() && ObstacleMeshes::are_same(p, before->p_.obstacles[k]);
     meshes_.push_back(same ? before->meshes_[k] : ObstacleMeshes::of(p, static_cast<int>(k)));
-    if (p.meshed_shape != "sphere")
-      refuse_too_many(triangles += static_cast<double>(meshes_[k].frames[0]->mesh.triangles.rows()));
+    refuse_too_many(triangles += static_cast<double>(meshes_.back().frames[0]->mesh.triangles.rows()));
     levels = std::max<std::size_t>(levels, p.cages.count + 1);
   });
   for (std::size_t level = 0; level < levels; ++level) {
