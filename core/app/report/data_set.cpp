@@ -63,7 +63,7 @@ RunTable export_data_set(const fs::path& sweep, const fs::path& folder, const Ex
   std::map<std::string, std::string> obstacles;  // names of their files, by what these hold
   std::size_t next = 0;
   for (const RunRecord& run : collection.runs) {
-    if (!run.data || run.data->methods.empty()) ++next;
+    if (!run.has_methods()) ++next;
     for (std::size_t m = 0; run.data && m < run.data->methods.size(); ++m) {
       const MethodRecord& method = run.data->methods[m];
       TableRow& row = table.rows[next++];

@@ -96,7 +96,7 @@ Json run_json(const RunRecord& run, const fs::path& from) {
       {"seed", json_of(run.seed)},
       {"status", run.status},
       {"error", run.error},
-      {"count", run.data ? std::max<std::size_t>(1, run.data->methods.size()) : 1},  // rows of the table
+      {"count", run.has_methods() ? run.data->methods.size() : 1},
       {"report", fs::is_regular_file(report) ? Json(url_path(report.lexically_relative(from))) : Json()},
       {"pictures", run.data ? thumbnails(*run.data) : Json::array()},
       {"errors", csv_json(run.data ? run.data->errors : Csv())},

@@ -23,6 +23,9 @@ struct RunRecord {
   std::string expected = "converged", expected_message;  ///< expected outcome, and a part of the message
   std::filesystem::path folder;                          ///< relative to the current folder
   std::optional<RunData> data;                           ///< empty without results
+
+  /// Whether a method has results; otherwise the run has one row in tables, without a method.
+  bool has_methods() const { return data && !data->methods.empty(); }
 };
 
 /// Runs that are reported together: those of a sweep, or of several folders.

@@ -229,14 +229,14 @@ RunTable table_of(const RunCollection& collection) {
       row["pass"] = passes(run, status, row);
     };
     table.has_results = table.has_results || run.data;
-    if (run.data && run.data->methods.empty()) {
+    if (run.has_methods()) {
+      for (const MethodRecord& method : run.data->methods) add(method.status, row_of(*run.data, method));
+    } else if (run.data) {
       const Json& cause = member_of(run.data->results, "aborted");
       add("",
           {{"method", ""},
            {"status", cause.is_null() ? "running" : "aborted"},
            {"message", cause.is_null() ? "no method has begun; if the run has ended, run it again" : cause}});
-    } else if (run.data) {
-      for (const MethodRecord& method : run.data->methods) add(method.status, row_of(*run.data, method));
     } else {
       add(status_without_results(run),
           {{"method", ""}, {"status", status_without_results(run)}, {"message", run.error}});
