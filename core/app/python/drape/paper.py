@@ -202,7 +202,10 @@ def figures(results, out, overwrite: bool = False, *, measures=(), methods=(), w
         for name in asked:
             if name not in known:
                 raise RuntimeError(f"there is no {what} \"{name}\"; there are {', '.join(known)}")
-    out.mkdir(parents=True, exist_ok=True)
+    try:
+        out.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise RuntimeError(f"{out}: cannot be made ({error.strerror}); name another folder") from error
     _core._refuse_target(out / "table.csv", overwrite)  # before anything is drawn
     with matplotlib.rc_context(), tempfile.TemporaryDirectory(prefix="drape_figures_") as made:
         use_style(style, width)
@@ -249,8 +252,6 @@ def main() -> int:
             cause = cause.__cause__ if cause.__suppress_context__ else cause.__context__
         if isinstance(cause, OSError) and cause.strerror and not cause.filename:
             reason = f"a file cannot be written: {cause.strerror}"
-        elif isinstance(cause, OSError) and cause.strerror:
-            reason = f"cannot write {cause.filename}: {cause.strerror}; name another folder with --out"
         else:
             reason = str(cause or f"the results are not as drape writes them ({type(error).__name__}: {error})")
         print("error: " + _printable(reason.replace("overwrite=True", "--overwrite")), file=sys.stderr)
