@@ -10,6 +10,7 @@
 #include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <vector>
 
 #include "core/app/cli/commands.h"
 #include "core/app/cli/config_arguments.h"
@@ -74,13 +75,12 @@ void forget_current_folder() {
                            "C_INCLUDE_PATH", "CPLUS_INCLUDE_PATH"}) {
     const char* value = std::getenv(name);
     if (!value) continue;
-    std::string named;
-    for (const std::string& folder : split(value, ':'))
-      if (!folder.empty()) named += (named.empty() ? "" : ":") + folder;
-    if (named.empty())
+    std::vector<std::string> folders = split(value, ':');
+    std::erase(folders, "");
+    if (folders.empty())
       unsetenv(name);
     else
-      setenv(name, named.c_str(), 1);
+      setenv(name, joined(folders, ":", ":").c_str(), 1);
   }
 }
 

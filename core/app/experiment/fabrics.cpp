@@ -73,7 +73,7 @@ constexpr Column columns[] = {
     {"linear diag[si*1e9]", "bias_bending", 1e-9},
 };
 
-/// Takes blanks off both ends, those that spreadsheets keep from a line's end among them.
+/// Makes the no-break blanks that spreadsheets write plain ones, and takes blanks off both ends.
 void trim(std::string& cell) {
   boost::replace_all(cell, "\u00a0", " ");
   boost::trim_if(cell, boost::is_any_of(" \t"));

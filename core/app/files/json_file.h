@@ -56,8 +56,8 @@ Json parse_json(const std::string& text);
 /// The JSON's text, on one line without `indent`. Bytes that are not UTF-8, as in a file's name, are
 /// replaced; a number that is not finite, which JSON does not have, becomes null.
 std::string json_text(const Json& json, int indent = -1);
-/// The JSON's text on one line of ASCII, other characters escaped: for scripts of a page, whatever its
-/// encoding.
+/// The JSON's text in ASCII, other characters escaped, on one line without an indent: for scripts of a page,
+/// whatever its encoding, and for terminals.
 std::string ascii_json_text(const Json& json, int indent = -1);
 
 /// The node as JSON; unquoted scalars become numbers or booleans if they spell one.

@@ -241,7 +241,7 @@ ConfigNode parse_yaml(const std::string& text, const std::string& name, ConfigEr
 ConfigNode read_yaml(const std::filesystem::path& file, ConfigErrors& errors) {
   try {
     const std::string text = read_file(file, largest_config);
-    utf8_text(file, text);
+    utf8_text(file, text);  // refuses other encodings by name
     return parse_yaml(text, file.string(), errors);
   } catch (const FileError& fault) {
     errors.push_back({{file.string(), 0, 0}, fault.cause});
