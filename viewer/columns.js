@@ -4,8 +4,9 @@ import {formula} from './text.js';
 const titles = {
   iterations: 'Newton iterations', shortened_steps: 'shortened steps', seconds: 'time [s]', cpu_seconds: 'CPU time [s]', preview_seconds: 'preview after [s]',
   energy_released: 'energy released [J]', smallest_gap: 'smallest gap [m]', force_residual: 'force residual', decrement: 'decrement [m/s]', peak_memory_bytes: 'peak memory [B]',
-  stretch_warp: 'stretch along warp [%]', largest_stretch_warp: 'largest along warp [%]', stretch_weft: 'stretch along weft [%]', largest_stretch_weft: 'largest along weft [%]',
-  ease: 'ease [mm]', pressure: 'pressure [kPa]', pressure_mmhg: 'pressure [mmHg]', largest_pressure: 'largest pressure [kPa]',
+  stretch_warp: 'stretch along warp [%]', stretch_warp_95: 'along warp, 95 % of the area below [%]', largest_stretch_warp: 'largest along warp [%]',
+  stretch_weft: 'stretch along weft [%]', stretch_weft_95: 'along weft, 95 % of the area below [%]', largest_stretch_weft: 'largest along weft [%]',
+  ease: 'ease [mm]', pressure: 'pressure [kPa]', pressure_mmhg: 'pressure [mmHg]', pressure_95: 'pressure, 95 % of the area below [kPa]', largest_pressure: 'largest pressure [kPa]',
   lowest_eigenvalue: 'lowest eigenvalue of M⁻¹H [1/s²]', curvature_ratio: 'curvature ratio',
 };
 export const costs = {seconds: 'time [s]', iterations: 'Newton iterations', flops: 'flops of factorisations'};

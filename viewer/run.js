@@ -172,7 +172,7 @@ function convergence(run) {
   return h('section', {id: 'convergence-section'}, h('h2', {}, 'On the way'),
     pieces.length ? fold('The garment, by piece', dataTable('pieces', 'of pieces', columnsOf(Object.keys(pieces[0]), Object.keys(pieces[0]), run.of), pieces)) : null,
     phases.length ? fold('Phases', dataTable('phases', 'of phases', columnsOf(Object.keys(phases[0]), Object.keys(phases[0]), run.of), phases)) : null,
-    increments.length ? fold('Load stepping', under('increment-energy', 'energy_released', 'energy released [J]'), under('increment-steps', 'steps', 'steps')) : null,
+    increments.length ? fold('Load stepping', increments.some(row => known(row.energy_released)) ? under('increment-energy', 'energy_released', 'energy released [J]') : '', under('increment-steps', 'steps', 'steps')) : null,
     fold('Convergence', h('p', {class: 'controls'}, choice('plot', Object.fromEntries(Object.entries(plots).map(([k, [title]]) => [k, title])), 'residual_seconds', draw, 'convergence-kind')), chart.element),
     fold('Settings: the experiment with all defaults', h('pre', {tabindex: 0}, run.config || 'config.yaml was not stored.')));
 }

@@ -118,6 +118,25 @@ TEST_CASE("A dressing that is killed by the system in each phase resumes to the 
   }
 }
 
+TEST_CASE("Energies of a garment are measured by its elastic energy, not by the strain of its placement") {
+  const Scratch folder;
+  small_tube().write(folder, replaced(held, "gravity]\n", "gravity]\nsnapshots: 4\n"));
+  drape_ends("run e.yaml -o out --set levels=2 --no-report --measure -q", folder);
+  const Json method = read_results(folder / "out")["methods"]["newton"];
+  for (const Json& level : method["levels"]) {
+    CHECK(level["energy_released"].is_null());
+    CHECK(level["energy_parts_released"].is_null());
+  }
+  for (const Json& increment : method["increments"]) CHECK(increment["energy_released"].is_null());
+  const Json &coarse = method["levels"][0], &finest = method["levels"][1], &parts = finest["energy_parts"];
+  const double above = coarse["energy_on_finest"].get<double>() - finest["energy_on_finest"].get<double>(),
+               elastic = parts["neo_hookean"].get<double>() + parts["hinge"].get<double>();
+  REQUIRE(elastic > 0);
+  const Json rows = Json::parse(drape_ends("table out --format json", folder).out);
+  CHECK(rows[0]["preview_energy_gap"].get<double>() == Approx(above / elastic).epsilon(1e-6));
+  CHECK(rows[0]["pass"] == true);
+}
+
 TEST_CASE("A garment that is narrower than its body is sewn without a struggle") {
   TubeDress narrow = small_tube();
   narrow.width = 0.22;

@@ -183,8 +183,7 @@ std::vector<ErrorMeasure> error_measures(const std::vector<DeclaredMetric>& metr
   }
   std::stable_partition(measures.begin(), measures.end(),
                         [](const ErrorMeasure& m) { return m.use == ErrorUse::ranking; });
-  measures.push_back(
-      {energy_gap, "energy gap, over the energy released", ErrorUse::summary, "", Better::lower});
+  measures.push_back({energy_gap, "relative energy gap", ErrorUse::summary, "", Better::lower});
   return measures;
 }
 

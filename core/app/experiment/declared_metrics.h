@@ -56,8 +56,7 @@ struct ErrorMeasure {
   Better better = Better::lower;  ///< of that value: if higher, the error is 1 − value
 };
 
-/// The energy above the target's, over what the cloth releases from the start to the target; the run itself
-/// measures it.
+/// The energy above the target's, relative to ErrorTarget::scale; the run itself measures it.
 inline constexpr const char* energy_gap = "energy_gap";
 
 /// The measures that metrics declare, those that rank first, and the energy gap, last.

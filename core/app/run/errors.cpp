@@ -32,7 +32,15 @@ std::vector<Snapshot> SnapshotRecorder::end_level(const Cost& cost, const Positi
   return std::exchange(snapshots, {});
 }
 
-double energy_of_start(const Scene& scene) { return scene.finest_model().value(scene.placed.back()); }
+std::optional<double> energy_released(const Scene& scene, double energy) {
+  if (scene.dressing) return std::nullopt;
+  return scene.finest_model().value(scene.placed.back()) - energy;
+}
+
+double energy_scale(const Scene& scene, const Positions& x, double energy) {
+  const std::optional<double> released = energy_released(scene, energy);
+  return released ? *released : scene.finest_model().value(x, {EnergyRole::membrane, EnergyRole::bending});
+}
 
 StateError state_error(const std::vector<ErrorMeasure>& measures, const Experiment& experiment,
                        const Scene& scene, const Positions& x, double energy, const ErrorTarget& target,
@@ -51,7 +59,7 @@ StateError state_error(const std::vector<ErrorMeasure>& measures, const Experime
       fault(name + ": " + message_in_flight());
     }
   }
-  if (target.released > 0) error.back() = (energy - target.energy) / target.released;
+  if (target.scale > 0) error.back() = (energy - target.energy) / target.scale;
   return error;
 }
 

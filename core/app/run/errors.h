@@ -54,15 +54,20 @@ using StateError = std::vector<std::optional<double>>;
 /// A state on the finest level that others are measured against.
 struct ErrorTarget {
   Positions x;
-  double energy = 0;    ///< of the finest level there, without limits and contact [J]
-  double released = 0;  ///< what the cloth releases of that energy from the scene's start to there [J]
+  double energy = 0;  ///< of the finest level there, without limits and contact [J]
+  double scale = 0;   ///< what energy gaps are over, energy_scale [J]
 };
 
-/// The finest level's energy at the scene's start, without noise and with pins where they begin [J].
-double energy_of_start(const Scene& scene);
+/// What a cloth releases of the finest level's energy from the scene's start, without noise and with pins
+/// where they begin, to a state with this `energy` [J]. None of a garment that is dressed: its start has the
+/// strain of its placement, of which nothing remains.
+std::optional<double> energy_released(const Scene& scene, double energy);
+/// What energy gaps at a target x of the finest level, with this `energy`, are over: energy_released; of a
+/// garment that is dressed the elastic energy there [J].
+double energy_scale(const Scene& scene, const Positions& x, double energy);
 
-/// The error of a state x of the finest level, whose energy is given [J]. A target that releases no energy
-/// has no energy gap. A metric that throws is reported to `fault`; its values stay absent.
+/// The error of a state x of the finest level, whose energy is given [J]. A target whose scale is not
+/// positive has no energy gap. A metric that throws is reported to `fault`; its values stay absent.
 StateError state_error(const std::vector<ErrorMeasure>& measures, const Experiment& experiment,
                        const Scene& scene, const Positions& x, double energy, const ErrorTarget& target,
                        const std::function<void(const std::string&)>& fault);

@@ -5,6 +5,8 @@
 
 #include "core/app/experiment/declared_metrics.h"
 #include "core/app/report/run_data.h"
+#include "core/app/report/run_table.h"
+#include "core/app/run/garment_pieces.h"
 #include "core/app/run/recorder_files.h"
 #include "core/app/scene/dressing.h"
 #include "core/kernel/files/file.h"
@@ -246,13 +248,13 @@ Json Recorder::state_entry(const LevelResult& r, const Cost& cost) {
           {"energy", model.energy(r.x)},
           {"energy_parts", parts},
           {"energy_on_finest", on_finest},
-          {"energy_released", energy_of_start(scene_) - on_finest},
-          {"energy_parts_released", released_parts},
+          {"energy_released", json_of(energy_released(scene_, on_finest))},
+          {"energy_parts_released", scene_.dressing ? Json() : released_parts},
           {"decrement", r.decrement},
           {"force_residual", r.force_residual},
           {"stability", stability_entry(r)},
           {"intersections", crossing ? Json(*crossing) : Json()},
-          {"smallest_gap", r.smallest_gap ? Json(*r.smallest_gap) : Json()},
+          {"smallest_gap", json_of(r.smallest_gap)},
           {"contact_stiffness", r.contact_stiffness},
           {"mesh", level_file(s_.method, r.level, ".ply")}};
 }
@@ -263,16 +265,18 @@ void Recorder::increment_finished(const IncrementRow& r, const Positions& x) {
   const double seconds = std::max(s_.last.seconds - s_.increments, 0.0);  // without what recording took
   s_.increments += seconds;
   Json& increments = method_entry()["increments"];
-  increments.push_back({{"level", r.level},
-                        {"increment", r.increment},
-                        {"time", r.time},
-                        {"steps", r.steps},
-                        {"iterations", r.iterations},
-                        {"seconds", seconds},
-                        {"energy", r.energy},
-                        {"energy_released", model.value(scene_.placed[r.level]) - model.value(x)},
-                        {"force_residual", r.force_residual},
-                        {"max_constraint_violation", r.max_constraint_violation}});
+  increments.push_back(
+      {{"level", r.level},
+       {"increment", r.increment},
+       {"time", r.time},
+       {"steps", r.steps},
+       {"iterations", r.iterations},
+       {"seconds", seconds},
+       {"energy", r.energy},
+       {"energy_released",
+        scene_.dressing ? Json() : Json(model.value(scene_.placed[r.level]) - model.value(x))},
+       {"force_residual", r.force_residual},
+       {"max_constraint_violation", r.max_constraint_violation}});
   const std::string phase = scene_.load_stepping->phase();
   if (!phase.empty()) increments.back()["phase"] = phase;
   if (scene_.dressing && phase != dressing_phase(experiment_.parameters.dress, r.increment + 1) &&
@@ -299,7 +303,7 @@ void Recorder::level_finished(const LevelResult& r) {
                                  {"mesh_checksum", mesh_checksum}});
   if (scene_.dressing)
     entry["levels"].back()["pieces"] =
-        garment_pieces(scene_.hierarchy.levels[r.level], garment, state.contact_pressure);
+        garment_pieces(scene_.hierarchy.levels[r.level], r.x, garment.back().values, state.contact_pressure);
   if (experiment_.parameters.snapshots > 0)
     entry["levels"].back()["snapshots"] = add_snapshots(r, cost, state);
   s_.states.push_back(std::move(state));

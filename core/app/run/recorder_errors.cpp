@@ -123,9 +123,8 @@ void Recorder::write_errors(const Positions* reference, const std::function<bool
   for (const char* target : {",own_", ",reference_"})
     for (const ErrorMeasure& measure : measures) text += target + measure.name;
   text += "\n";
-  const double start = energy_of_start(scene_);
   const auto target_at = [&](const Positions& x, double energy) {
-    return ErrorTarget{x, energy, start - energy};
+    return ErrorTarget{x, energy, energy_scale(scene_, x, energy)};
   };
   std::optional<ErrorTarget> standard;
   if (reference) standard = target_at(*reference, scene_.finest_model().value(*reference));

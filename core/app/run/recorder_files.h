@@ -33,10 +33,6 @@ std::vector<std::string> write_rest(const std::filesystem::path& folder, const S
 /// The warning that names files of a run that were written again.
 std::string written_again_text(const std::vector<std::string>& files);
 
-/// Means over each piece of the cloth, and the largest stretches: an entry for each, with its name. `fields`
-/// are garment_fields_at, `pressure` is LevelModel::contact_pressure or empty.
-Json garment_pieces(const Level& level, const VertexFields& fields, const Eigen::VectorXd& pressure);
-
 /// Throws std::runtime_error if iterations.csv or log.jsonl is shorter than in the state.
 void refuse_short_files(const RunFolder& folder, const Recorder::State& state);
 

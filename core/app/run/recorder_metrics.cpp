@@ -1,7 +1,6 @@
 // The recorder's job at the end of a method: metrics of its levels and of pairs of them.
 
 #include <algorithm>
-#include <cmath>
 #include <optional>
 
 #include "core/app/experiment/exit_codes.h"
@@ -14,22 +13,6 @@
 namespace drape {
 
 namespace {
-
-constexpr double pascals_in_mmhg = 133.322;
-
-/// Weighted mean and largest of the finite values.
-struct Mean {
-  double sum = 0, weight = 0;
-  std::optional<double> largest;
-
-  void add(double value, double own) {
-    if (!std::isfinite(value)) return;
-    sum += own * value, weight += own;
-    largest = std::max(largest.value_or(value), value);
-  }
-  Json mean() const { return weight > 0 ? Json(sum / weight) : Json(); }
-  Json most() const { return largest ? Json(*largest) : Json(); }
-};
 
 /// The member of an object with a dotted name: "a.b" is member b of member a.
 Json& at_dotted(Json& object, const std::string& name) {
@@ -49,35 +32,6 @@ std::string fields_file(const std::string& method, int coarse, int fine) {
 }
 
 }  // namespace
-
-Json garment_pieces(const Level& level, const VertexFields& fields, const Eigen::VectorXd& pressure) {
-  const TriangleMesh& cloth = level.rest;
-  Json pieces = Json::array();
-  for (std::size_t p = 0; p < cloth.piece_names.size(); ++p) {
-    Eigen::VectorXd weight = Eigen::VectorXd::Zero(level.vertex_count());
-    for (int t = 0; t < level.triangle_count(); ++t)
-      for (int k = 0; k < 3; ++k)
-        if (cloth.piece[t] == static_cast<int>(p)) weight[cloth.triangles(t, k)] += 1;
-    const auto over_piece = [&](const Eigen::VectorXd& values) {
-      Mean mean;
-      for (Eigen::Index i = 0; i < values.size(); ++i)
-        if (weight[i] > 0) mean.add(values[i], weight[i]);
-      return mean;
-    };
-    Json& entry = pieces.emplace_back(Json{{"piece", cloth.piece_names[p]}});
-    for (const VertexField& field : fields) {
-      const Mean mean = over_piece(field.values);
-      entry[field.name] = mean.mean();
-      if (field.name != "ease") entry["largest_" + field.name] = mean.most();
-    }
-    if (pressure.size() == 0) continue;
-    const Mean mean = over_piece(pressure);
-    entry["pressure"] = mean.sum / mean.weight / 1000;
-    entry["pressure_mmhg"] = mean.sum / mean.weight / pascals_in_mmhg;
-    entry["largest_pressure"] = mean.largest.value_or(0) / 1000;
-  }
-  return pieces;
-}
 
 Positions Recorder::prolonged(const std::string& method, const Positions& x, int from, int to) const {
   const Interpolation interpolation = experiment_.solver_of(method).interpolation();

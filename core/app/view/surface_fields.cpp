@@ -66,10 +66,13 @@ std::vector<FieldKind> field_kinds(bool worn) {
       {"gap", "contact gap", "m", "near",
        "distance to an obstacle or another part of the cloth; farther away in cloth colour"},
       {"contact_pressure", "contact force", "Pa", "force",
-       "force of contact on a vertex over its area; without one in cloth colour; known for the ends of "
-       "levels"},
-      {"stretch_warp", "stretch along warp", "%", "diverging", "of the triangles around; 0 is unstretched"},
-      {"stretch_weft", "stretch along weft", "%", "diverging", "of the triangles around; 0 is unstretched"},
+       "force of contact on a vertex over its area as it is stretched; without one in cloth colour; known "
+       "for "
+       "the ends of levels"},
+      {"stretch_warp", "stretch along warp", "%", "diverging",
+       "of the triangles around, on both sides of a seam; 0 is unstretched"},
+      {"stretch_weft", "stretch along weft", "%", "diverging",
+       "of the triangles around, on both sides of a seam; 0 is unstretched"},
       {"ease", "ease", "mm", "force", "distance to the body; beyond 60 mm in cloth colour"}};
   if (!worn) kinds.resize(kinds.size() - 3);  // without those of garments
   return kinds;
@@ -101,19 +104,31 @@ std::pair<double, double> field_range(const FieldKind& kind,
   return {1, std::max(1.001, magnitude_quantile(values, 1))};
 }
 
-VertexFields garment_fields_at(const Level& level, const Positions& x,
-                               const std::vector<TriangleMesh>& obstacles) {
+Eigen::MatrixX2d stretch_percent(const Level& level, const Positions& x) {
   const std::vector<MaterialTriangle> rest = material_triangles(level);
-  Eigen::VectorXd warp = Eigen::VectorXd::Zero(x.rows()), weft = warp, area = warp;
+  Eigen::MatrixX2d stretch(level.triangle_count(), 2);
   for (int t = 0; t < level.triangle_count(); ++t) {
     const auto v = level.rest.triangles.row(t);
     const Eigen::RowVector3d e1 = x.row(v[1]) - x.row(v[0]), e2 = x.row(v[2]) - x.row(v[0]);
     const MaterialTriangle& m = rest[t];
-    const double along = (m[0] * e1 + m[1] * e2).norm() - 1, across = (m[2] * e1 + m[3] * e2).norm() - 1;
-    for (int k = 0; k < 3; ++k) warp[v[k]] += m[4] * along, weft[v[k]] += m[4] * across, area[v[k]] += m[4];
+    stretch.row(t) << (m[0] * e1 + m[1] * e2).norm(), (m[2] * e1 + m[3] * e2).norm();
   }
-  return {{"stretch_warp", 100 * warp.cwiseQuotient(area)},
-          {"stretch_weft", 100 * weft.cwiseQuotient(area)},
+  return 100 * (stretch.array() - 1);
+}
+
+VertexFields garment_fields_at(const Level& level, const Positions& x,
+                               const std::vector<TriangleMesh>& obstacles) {
+  const std::vector<MaterialTriangle> rest = material_triangles(level);
+  const Eigen::MatrixX2d stretch = stretch_percent(level, x);
+  Eigen::MatrixX2d around = Eigen::MatrixX2d::Zero(x.rows(), 2);
+  Eigen::VectorXd area = Eigen::VectorXd::Zero(x.rows());
+  for (int t = 0; t < level.triangle_count(); ++t)
+    for (const int v : level.rest.triangles.row(t)) {
+      around.row(v) += rest[t][4] * stretch.row(t);
+      area[v] += rest[t][4];
+    }
+  return {{"stretch_warp", around.col(0).cwiseQuotient(area)},
+          {"stretch_weft", around.col(1).cwiseQuotient(area)},
           {"ease", 1000 * obstacle_distance(x, obstacles, ease_range)}};
 }
 

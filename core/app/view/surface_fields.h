@@ -34,8 +34,11 @@ Eigen::VectorXd contact_gap(const Level& level, const Positions& x,
 std::pair<double, double> field_range(const FieldKind& kind,
                                       const std::vector<const Eigen::VectorXd*>& values, double gap_range);
 
+/// m×2 stretches of the triangles along warp and along weft [%]; 0 is unstretched.
+Eigen::MatrixX2d stretch_percent(const Level& level, const Positions& x);
+
 /// Fields of a worn cloth: `stretch_warp` and `stretch_weft` [%], means over the triangles around a vertex,
-/// and `ease` [mm], the distance to the body, NaN beyond 60 mm.
+/// on both sides of a seam, and `ease` [mm], the distance to the body, NaN beyond 60 mm, the last.
 VertexFields garment_fields_at(const Level& level, const Positions& x,
                                const std::vector<TriangleMesh>& obstacles);
 

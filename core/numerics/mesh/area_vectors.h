@@ -18,6 +18,15 @@ inline Positions area_vectors(const TriangleMesh& mesh) {
   return areas;
 }
 
+/// n thirds of the area of the triangles at each vertex [m²].
+inline Eigen::VectorXd vertex_areas(const TriangleMesh& mesh) {
+  const Positions areas = area_vectors(mesh);
+  Eigen::VectorXd thirds = Eigen::VectorXd::Zero(mesh.vertices.rows());
+  for (Eigen::Index t = 0; t < areas.rows(); ++t)
+    for (const int v : mesh.triangles.row(t)) thirds[v] += areas.row(t).norm() / 6;
+  return thirds;
+}
+
 /// The height of a triangle over its longest edge, which is its base; its corners are the columns.
 inline double relative_height(const Eigen::Matrix3d& corners) {
   const Eigen::Vector3d a = corners.col(1) - corners.col(0), b = corners.col(2) - corners.col(0);

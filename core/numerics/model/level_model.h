@@ -98,8 +98,9 @@ class LevelModel {
   double energy(const Positions& x) const { return energy_without_contact(x) + barrier(x); }
   /// Overwrites g (n×3) with the gradient of energy(x) [N], fixed vertices included, and returns energy(x).
   double energy_gradient(const Positions& x, Positions& g) const;
-  /// Norm of the contacts' forces on each vertex at x, without friction, over its area at rest (n) [Pa];
-  /// empty for a model without contact.
+  /// Norm of the contacts' forces on each vertex at x, without friction, over a third of its triangles' area
+  /// at x (n) [Pa]: on a cylinder of radius R under tension T [N/m] it is T / R. Empty for a model without
+  /// contact.
   Eigen::VectorXd contact_pressure(const Positions& x) const;
   /// The Hessian of energy(x) [N/m], projected per element. Its pattern has the contacts at x, so every call
   /// builds it again: solvers take an Objective.

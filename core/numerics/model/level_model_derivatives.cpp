@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "core/kernel/threads/parallel.h"
+#include "core/numerics/mesh/area_vectors.h"
 #include "core/numerics/model/hessian_assembler.h"
 #include "core/numerics/model/level_model.h"
 #include "core/numerics/model/required.h"
@@ -82,7 +83,8 @@ Eigen::VectorXd LevelModel::contact_pressure(const Positions& x) const {
   if (contacts_.empty()) return {};
   Positions g = Positions::Zero(x.rows(), 3);
   add_barrier_gradient(x, g);
-  return g.rowwise().norm().cwiseQuotient(level_->vertex_area);
+  const Eigen::VectorXd area = vertex_areas({x, level_->rest.triangles});
+  return (area.array() > 0).select(g.rowwise().norm().cwiseQuotient(area), 0);
 }
 
 BlockMatrix LevelModel::energy_hessian(const Positions& x, Projection projection) const {
