@@ -55,6 +55,12 @@ std::vector<LevelResult> Progression::resume(const Problem& problem, const Metho
       run.hierarchy = &problem.hierarchy;
       if (!anew) run.stiffness = results.back().contact_stiffness;
       result = minimise(*objective(problem, l), std::move(start), newton, run);
+      if (!anew && has_converged(result.outcome) && results.back().outcome == Outcome::infeasible) {
+        result.outcome = Outcome::infeasible;
+        result.message += (result.message.empty() ? "" : "; ") +
+                          std::string("at equilibrium, but it began from level ") + std::to_string(l - 1) +
+                          ", which had come to no end";
+      }
     }
     result.from_initial_state = anew;
     results.push_back(std::move(result));

@@ -178,3 +178,23 @@ TEST_CASE("A level that ends at max_steps tells its force residual and whether t
   CHECK(falling + risen > 10);
   CHECK(risen > 0);
 }
+
+TEST_CASE("A level that goes on from one that nothing held is not called converged") {
+  const Solved s = solve_yaml(R"(
+name: far_away
+cloth: {shape: square, side: 0.01, vertices: 25}
+levels: 2
+energies:
+  - neo_hookean
+  - hinge
+  - {type: formula, name: well, per: vertex, constants: {k: {value: 100, unit: N/m^3},
+     far: {value: 2, unit: m}}, energy: "k*area*((x-far)^2 + y^2 + z^2)/2"}
+methods: {cascadic: {}}
+)");
+  REQUIRE(s.levels.size() == 2);
+  REQUIRE(s.levels[0].outcome == Outcome::infeasible);  // a distance of 141 diagonals
+  INFO(s.levels[1].message);
+  CHECK(s.levels[1].force_residual < 1e-3);  // it is at equilibrium where the other level had come to
+  CHECK(s.levels[1].outcome == Outcome::infeasible);
+  CHECK(s.levels[1].message == "at equilibrium, but it began from level 0, which had come to no end");
+}
