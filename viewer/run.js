@@ -14,7 +14,7 @@ function sentence(run, row) {
   const rest = !last ? null : !converged(status) ? `not at rest: ${statusText(status)}, force residual ${number(last.force_residual)}`
     : status !== 'converged' || !tolerance ? 'at rest to rounding'
     : tolerance < 1 ? `at rest: unbalanced force below ${Number((100 * tolerance).toPrecision(3))} % of the load` : `ended at force residual ${number(last.force_residual)}`;  // 1: no balance is asked for
-  const stability = last?.stability && converged(status) ? last.stability.verdict : null;
+  const stability = !last?.stability || !converged(status) ? null : last.stability.verdict === 'untested' ? 'stability not tested' : last.stability.verdict;
   const way = !last ? method.status || 'no level is complete' : finished || status === method.status ? null : method.status === 'running' ? 'still running' : `then ${method.status}`;
   const crossing = known(row.intersections) ? counted(row.intersections, 'intersection') : null;
   const preview = known(row.preview_seconds) ? h('span', {}, 'preview after ', h('b', {class: 'preview-time'}, seconds(row.preview_seconds))) : null;

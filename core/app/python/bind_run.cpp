@@ -147,7 +147,7 @@ void resume(const fs::path& folder, const py::object& on_iteration, const py::ob
   });
 }
 
-/// A number or word of a level's stability test, or None.
+/// A number of a level's stability test, or None.
 template <class Of>
 auto of_stability(const Of& of) {
   return [of](const MethodLevelResult& r) {
@@ -252,8 +252,12 @@ void bind_run(py::module_& m) {
       .def_readonly("seconds_by_phase", &MethodLevelResult::seconds_by_phase)
       .def_readonly("force_residual", &MethodLevelResult::force_residual, "Of the objective [1].")
       .def_property_readonly(
-          "stability", of_stability([](const auto& s) { return std::string(to_string(s.verdict)); }),
-          "stable, marginal or unstable; None if the level did not end at an equilibrium that was tested.")
+          "stability",
+          [](const MethodLevelResult& r) {
+            const std::string word = stability_word(r);
+            return word.empty() ? std::nullopt : std::optional(word);
+          },
+          "stable, marginal, unstable or untested; None if the level did not end at an equilibrium.")
       .def_property_readonly("lowest_eigenvalue",
                              of_stability([](const auto& s) { return s.lowest_eigenvalue; }),
                              "Of M⁻¹H [1/s²].")

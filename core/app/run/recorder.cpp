@@ -19,10 +19,11 @@ namespace drape {
 
 namespace {
 
-/// Null for a level that did not end at an equilibrium that was tested.
+/// Null for a level that did not end at an equilibrium; the verdict alone for one that was not tested.
 Json stability_entry(const LevelResult& r) {
-  if (!r.stability) return {};
-  return {{"verdict", to_string(r.stability->verdict)},
+  const std::string verdict = stability_word(r);
+  if (!r.stability) return verdict.empty() ? Json() : Json{{"verdict", verdict}};
+  return {{"verdict", verdict},
           {"lowest_eigenvalue", r.stability->lowest_eigenvalue},
           {"curvature_ratio", r.stability->curvature_ratio},
           {"extent", r.stability->extent},

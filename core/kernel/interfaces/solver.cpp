@@ -18,4 +18,9 @@ const char* to_string(Stability::Verdict verdict) {
   return index < std::size(names) ? names[index] : "";
 }
 
+const char* stability_word(const LevelResult& result) {
+  if (result.stability) return to_string(result.stability->verdict);
+  return has_converged(result.outcome) ? "untested" : "";
+}
+
 }  // namespace drape

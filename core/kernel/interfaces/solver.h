@@ -94,6 +94,10 @@ struct LevelResult {
   int saddles_left = 0;                ///< unstable equilibria from which the level went on
 };
 
+/// The stability of a level's end in results: the verdict, `untested` for an equilibrium that was not judged,
+/// empty for an end that is none.
+const char* stability_word(const LevelResult& result);
+
 struct NewtonState;
 struct MethodState;
 

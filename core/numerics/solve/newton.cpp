@@ -219,6 +219,7 @@ class Newton {
     if (dirichlet_.infeasible())
       return {Outcome::infeasible, "", is_balanced ? "the rest of the cloth is at equilibrium" : rounding};
     if (is_balanced && saddle_exit_.at_saddle()) return {Outcome::saddle, saddle_exit_.text()};
+    if (!saddle_exit_.fault().empty()) add_to_message("stability not tested: " + saddle_exit_.fault());
     if (in_tolerance) return {Outcome::converged};
     return {is_balanced ? Outcome::converged_to_rounding : Outcome::stalled, rounding};
   }

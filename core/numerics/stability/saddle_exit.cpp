@@ -77,20 +77,22 @@ bool SaddleExit::leave(bool at_end) {
   LevelResult& result = iterate_.result();
   if (p_.stability == StabilityMode::off || !iterate_.objective().has_exact_hessian()) return false;
   const OwnPhase phase(iterate_, observed_);
-  const std::optional<StabilityTest> test = test_stability(iterate_, factor_, !at_end);
+  const StabilityTest test = test_stability(iterate_, factor_, !at_end);
+  const bool is_known = test.fault.empty();
   result.stability.reset();
-  if (test && (at_end || test->stability.verdict != Stability::stable)) result.stability = test->stability;
+  fault_ = at_end ? test.fault : "";
+  if (is_known && (at_end || test.stability.verdict != Stability::stable)) result.stability = test.stability;
   if (!at_saddle() || s_.exits == most_exits) return false;
   // Both ways are equally good for a symmetric saddle. Forces decide if they are clear, else the largest
   // entry.
   Eigen::Index row = 0, column = 0;
-  test->mode.cwiseAbs().maxCoeff(&row, &column);
-  double sign = test->mode(row, column) < 0 ? -1 : 1;
-  const double slope = iterate_.gradient().cwiseProduct(test->mode).sum();
-  if (std::abs(slope) > clear_slope * free_norm(iterate_.gradient(), iterate_.fixed()) * test->mode.norm())
+  test.mode.cwiseAbs().maxCoeff(&row, &column);
+  double sign = test.mode(row, column) < 0 ? -1 : 1;
+  const double slope = iterate_.gradient().cwiseProduct(test.mode).sum();
+  if (std::abs(slope) > clear_slope * free_norm(iterate_.gradient(), iterate_.fixed()) * test.mode.norm())
     sign = slope > 0 ? -1 : 1;
   factor_serves_ = false;
-  const bool falls = walk(*test, sign) || (!stopped_ && walk(*test, -sign));
+  const bool falls = walk(test, sign) || (!stopped_ && walk(test, -sign));
   if (stopped_)
     result.stability.reset();  // a fall may have followed
   else if (!falls)

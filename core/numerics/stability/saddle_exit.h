@@ -54,6 +54,8 @@ class SaddleExit {
   bool at_saddle() const;
   /// A message on it.
   std::string text() const;
+  /// Why the equilibrium at the end of the level could not be judged; empty if it was, or is not tested.
+  const std::string& fault() const { return fault_; }
 
  private:
   bool walk(const StabilityTest& test, double sign);
@@ -69,6 +71,7 @@ class SaddleExit {
   const std::function<bool()> stop_;
   bool stopped_ = false;
   bool factor_serves_ = false;  // the walk's
+  std::string fault_;
   double observed_ = 0;         // seconds that observers of relaxations took
   LineSearch line_search_;
   State s_;

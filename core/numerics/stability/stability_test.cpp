@@ -81,7 +81,7 @@ bool is_visible(const Stability& s) {
 
 }  // namespace
 
-std::optional<StabilityTest> test_stability(Iterate& iterate, FactorCache& factor, bool verdict_only) {
+StabilityTest test_stability(Iterate& iterate, FactorCache& factor, bool verdict_only) {
   StabilityTest test;
   if (iterate.free_count() == 0) return test;
   Stability& s = test.stability;
@@ -89,7 +89,8 @@ std::optional<StabilityTest> test_stability(Iterate& iterate, FactorCache& facto
   const Eigen::VectorXd& masses = iterate.model().masses();
   BlockMatrix hessian = factor.hessian(Projection::none);
   Eigen::VectorXd shift = neutral * masses + round_off(iterate, hessian);
-  if (!shift.allFinite()) return std::nullopt;
+  const auto faulty = [&](const std::string& fault) { return StabilityTest{fault, {}, {}, 0}; };
+  if (!shift.allFinite()) return faulty("the Hessian is not finite");
   s.by_factorisation = !factor.prefers_cycle();
   const bool is_definite = s.by_factorisation && factor.prepare(hessian, shift);
   if (is_definite && verdict_only) return test;
@@ -100,7 +101,7 @@ std::optional<StabilityTest> test_stability(Iterate& iterate, FactorCache& facto
     projected = &factor.hessian(Projection::clamp);
   }
   for (int k = 0; !is_definite && !factor.prepare(*projected, shift); ++k) {
-    if (k == most_larger_shifts) return std::nullopt;
+    if (k == most_larger_shifts) return faulty("the projected Hessian has no factor");
     shift *= 10;
   }
 
@@ -132,7 +133,9 @@ std::optional<StabilityTest> test_stability(Iterate& iterate, FactorCache& facto
   const bool is_stable = s.by_factorisation ? is_definite : weakest.value >= 0;
   const bool is_zero = std::abs(weakest.value) < -visible_ratio_of_large;  // but for round-off
   const bool is_found = is_definite || is_zero || (weakest.converged && is_stable == (weakest.value >= 0));
-  if (!is_found) return std::nullopt;
+  if (!is_found)
+    return faulty("no lowest eigenvalue was found in " + std::to_string(wanted.max_iterations) +
+                  " iterations");
   if (is_stable && verdict_only) return test;
   starts[1] = weakest.vector;
   const LowestMode slowest = lowest_mode(h, m, inverse, starts, eigenvalue_accuracy);
