@@ -95,6 +95,15 @@ TEST_CASE("A method's result does not rest on its word") {
   CHECK(levels[1]["status"] == "stalled");
   CHECK_THAT(levels[1]["message"].get<std::string>(), StartsWith(says + "the force residual is "));
   CHECK_FALSE(results_in(quick / "out").contains("reference"));
+  // Neither a residual that it admits nor one that it excuses by round-off makes a start an end.
+  for (const char* reports : {"residual", "rounding"}) {
+    INFO(reports);
+    const FailingExperiment admits(std::string("level: 1, reports: ") + reports);
+    CHECK_THAT(admits.message(1), StartsWith(says + "the force residual is "));
+  }
+  // A method has its own tolerance.
+  FailingExperiment("level: 9, newton: {force_tolerance: 1e6}")
+      .with("run e.yaml --out out --no-report --method odd", drape::exit_done);
   CHECK(moved.message(0, lowest) == says + "a pin is 0.173 m off its target");
   CHECK(quick.message(
             0,

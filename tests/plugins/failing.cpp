@@ -80,6 +80,8 @@ struct FailingSolver final : drape::Solver {
       if (reported == "no_vertices") result.x.resize(0, 3);
       if (reported == "not_a_number") result.x(0, 0) = std::nan("");
       if (reported == "moved_pins") result.x.array() += 0.1;
+      if (reported == "residual") result.force_residual = 1;
+      if (reported == "rounding") result.outcome = drape::Outcome::converged_to_rounding;
       results.push_back(result);
       if (reported != "to_nobody") observer.level_finished(result);
     }

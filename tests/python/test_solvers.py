@@ -72,6 +72,20 @@ def test_a_solver_reports_finite_states_of_levels_that_exist(small):
     assert [(level.status, level.message) for level in levels] == [("saddle", ""), ("infeasible", "not tried")]
 
 
+@pytest.mark.parametrize("told", [None, 0.0, 1.0])
+def test_a_start_that_is_called_the_end_is_not_at_rest_whatever_residual_is_told(small, told):
+    def solve(problem):
+        for level in range(problem.level_count):
+            problem.begin(level)
+            if told is not None:
+                problem.iteration(problem.start(level), force_residual=told)
+            problem.end(problem.start(level), "converged")
+
+    finest = run(solved_by(small, solve))["own_solver"].levels[-1]
+    assert finest.status == "stalled"
+    assert finest.message.startswith("the method says that it converged; the force residual is ")
+
+
 @pytest.mark.parametrize("solve, error", [
     (lambda problem: None, "has ended no level"),
     (lambda problem: problem.begin(0), "has not ended level 0"),

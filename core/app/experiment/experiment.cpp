@@ -178,6 +178,10 @@ std::string Experiment::solver_type(const std::string& method) const {
   return resolved.find("methods")->find(method)->plugin_name();
 }
 
+double Experiment::force_tolerance(const std::string& method) const {
+  return newton_number(resolved, method, "force_tolerance").value_or(parameters.newton.force_tolerance);
+}
+
 std::optional<double> newton_number(const ConfigNode& config, const std::string& method, const char* key) {
   const ConfigNode* own = config.find("methods");
   for (const char* part : {method.c_str(), "newton", key}) own = own ? own->find(part) : own;

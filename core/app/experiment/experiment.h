@@ -40,6 +40,8 @@ struct Experiment {
   const Solver& solver_of(const std::string& method) const;
   /// The type of that solver, which is not always the method's name.
   std::string solver_type(const std::string& method) const;
+  /// The force residual below which this method is at rest [1].
+  double force_tolerance(const std::string& method) const;
   /// The location of a key's value in the file; without the key, the file's beginning.
   const Location& location_of(const std::string& key) const { return source.where_of(key); }
   /// Indices in `obstacles` of the contact models' obstacles, model by model, as obstacles_of has them; and

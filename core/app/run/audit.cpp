@@ -10,6 +10,7 @@
 #include "core/numerics/contact_forces/friction.h"
 #include "core/numerics/contact_forces/friction_balance.h"
 #include "core/numerics/model/required.h"
+#include "core/numerics/step/rounding_floor.h"
 
 namespace drape {
 
@@ -17,7 +18,7 @@ namespace {
 
 /// Pins further off than this fraction of the cloth's diagonal are not at their targets.
 constexpr double max_pin_distance = 1e-6;
-/// How far forces may be out of balance, over what the method claims.
+/// How far forces may be out of balance, over what a state at rest may have.
 constexpr double residual_slack = 10;
 
 double distance_of_pins(const LevelModel& model, const Positions& x) {
@@ -37,6 +38,14 @@ double residual_beyond_friction(const LevelModel& model, const Positions& x, dou
     for (const auto& group : friction_contacts(*collisions_at(*contact, x)))
       frictions.insert(frictions.end(), group.begin(), group.end());
   return norm_beyond_friction(frictions, std::move(g), model.fixed(), enough * scale) / scale;
+}
+
+/// Bound on the force residual by round-off [1].
+double rounding_residual(const LevelModel& model, const Positions& x) {
+  Positions g;
+  model.energy_gradient(x, g);
+  const BlockMatrix hessian = model.energy_hessian(x, Projection::none);
+  return rounding_floor(hessian, x, g, model.fixed()).norm / model.residual_scale(x, g);
 }
 
 }  // namespace
@@ -71,10 +80,11 @@ LevelResult audited(const Scene& scene, LevelResult result, double force_toleran
   } else if (const double distance = distance_of_pins(model, result.x);
              !(distance <= max_pin_distance * bounding_box_diagonal(result.x))) {
     refuse(Outcome::infeasible, "a pin is " + three_digits(distance) + " m off its target");
-  } else if (result.level == scene.finest() && result.outcome == Outcome::converged) {
-    const double enough = residual_slack * std::max(result.force_residual, force_tolerance),
-                 residual = residual_beyond_friction(model.with_stiffness(result.contact_stiffness), result.x,
-                                                     enough);
+  } else if (result.level == scene.finest()) {
+    const LevelModel pressed = model.with_stiffness(result.contact_stiffness);
+    const double rounding = result.outcome == Outcome::converged ? 0 : rounding_residual(pressed, result.x),
+                 enough = residual_slack * std::max(rounding, force_tolerance),
+                 residual = residual_beyond_friction(pressed, result.x, enough);
     if (!(residual <= enough)) refuse(Outcome::stalled, "the force residual is " + three_digits(residual));
   }
   return result;

@@ -27,8 +27,8 @@ class RunObserver : public Observer {
   /// `begun` is the run's state at its beginning.
   RunObserver(const Experiment& experiment, const Scene& scene, const RunFolder& folder, Recorder& recorder,
               Progress& progress, const RunOptions& options, Checkpoint begun)
-      : scene_(scene),
-        force_tolerance_(experiment.parameters.newton.force_tolerance),
+      : experiment_(experiment),
+        scene_(scene),
         folder_(folder.path()),
         recorder_(recorder),
         options_(options),
@@ -74,7 +74,8 @@ class RunObserver : public Observer {
   }
   void level_finished(const LevelResult& reported) override {
     const WorkClock watch;
-    const LevelResult result = audited(scene_, reported, force_tolerance_);
+    const LevelResult result =
+        audited(scene_, reported, experiment_.force_tolerance(now_.methods.at(now_.method)));
     const Work audit = watch.work();
     if (const auto& before = now_.state.finished; !before.empty() && result.level <= before.back().level)
       throw std::runtime_error("the method reported level " + std::to_string(result.level) + " after level " +
@@ -119,8 +120,8 @@ class RunObserver : public Observer {
     since_ = Stopwatch();
   }
 
+  const Experiment& experiment_;
   const Scene& scene_;
-  const double force_tolerance_;
   const std::filesystem::path folder_;
   Recorder& recorder_;
   const RunOptions& options_;

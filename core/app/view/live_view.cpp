@@ -34,8 +34,7 @@ LiveView::LiveView(const Experiment& experiment, const Scene& scene, const std::
     if (!methods.empty() && !is_one_of(name, methods)) continue;
     methods_.push_back(name);
     looks[name] = {{"style", solver_style(experiment.solver_type(name))},
-                   {"tolerance", newton_number(experiment.resolved, name, "force_tolerance")
-                                     .value_or(experiment.parameters.newton.force_tolerance)}};
+                   {"tolerance", experiment.force_tolerance(name)}};
   }
   server_ = std::make_unique<LiveServer>(
       port, LiveAnswers{page(title_ + ", live", {{"kind", "live"}, {"title", title_}, {"methods", looks}}),
