@@ -5,9 +5,10 @@ import {sweepPage} from './sweep.js';
 import {h} from './text.js';
 import {View} from './view.js';
 
-function statesPage({view}) {
+function statesPage({view, notes = []}) {
   const shown = window.drapeViewer = new View(view);
-  return [h('header', {}, h('h1', {}, view.title || 'States')), h('section', {}, shown.element, shown.controls)];
+  return [h('header', {}, h('h1', {}, view.title || 'States')), h('section', {}, shown.element, shown.controls),
+    notes.length ? h('ul', {class: 'remarks', id: 'remarks'}, notes.map(note => h('li', {}, note))) : null];
 }
 
 const data = JSON.parse(document.getElementById('data').textContent);

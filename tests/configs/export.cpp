@@ -215,6 +215,49 @@ TEST_CASE("snapshots that are damaged are neither exported nor shown") {
   CHECK_THAT(text_of(folder / "out/report.html"), Contains(damaged));
 }
 
+TEST_CASE("meshes of levels that are damaged are neither exported nor shown") {
+  const CopiedRun folder;
+  const std::string name = "out/levels/pcs_l1.ply", damaged = "levels/pcs_l1.ply: is damaged: its checksum";
+  std::string bytes = text_of(folder / name);
+  bytes[bytes.find("end_header\n") + 20] ^= 1;  // of a coordinate: the file is still a PLY
+  folder.write(name, bytes);
+  REQUIRE(read_mesh(folder / name).vertices.allFinite());
+  for (const std::string to : {"a.glb", "a.obj", "a.ply", "a.vtp", "a.png"}) {
+    INFO(to);
+    CHECK_THAT(refused(folder, "export out --to " + to), Contains(damaged));
+  }
+  drape_ends("export out --level 0 --to a.obj", folder);
+  CHECK_THAT(drape_ends("report out --width 90", folder).err, StartsWith("warning: out/" + damaged));
+  CHECK_THAT(text_of(folder / "out/report.html"), Contains(damaged));
+  CHECK_FALSE(fs::exists(folder / "out/pictures/pcs_l1.png"));
+}
+
+TEST_CASE("fields that are damaged are not shown") {
+  const CopiedRun folder;
+  folder.damage("out/fields/pcs_l0_l1.ply");
+  drape_ends("report out --width 90", folder);
+  CHECK_THAT(text_of(folder / "out/report.html"), Contains("fields/pcs_l0_l1.ply: is damaged: its checksum"));
+}
+
+TEST_CASE("a name in results.json that leads out of its folder is refused") {
+  const CopiedRun folder;
+  fs::copy_file(folder / "out/levels/pcs_l1.ply", folder / "mine.ply");
+  for (const std::string& name :
+       std::vector<std::string>{"../mine.ply", "levels/../../mine.ply", folder / "mine.ply"}) {
+    edit_json(folder / "out/results.json", [&](auto& results) {
+      auto& level = results["methods"]["pcs"]["levels"][1];
+      level["mesh"] = name;
+      level.erase("mesh_checksum");
+    });
+    for (const std::string command :
+         {"export out --to a.obj", "export out --to a.png", "report out", "table out"}) {
+      INFO(command << " with " << name);
+      check_error(refused(folder, command), "out/results.json: \"");
+      CHECK_THAT(refused(folder, command), Contains("leads out of the folder"));
+    }
+  }
+}
+
 TEST_CASE("an export is refused before any work where its file cannot be written, or is there") {
   const Scratch folder;
   CHECK(export_refusal("nowhere/a.png", folder) ==

@@ -1,5 +1,6 @@
 """What an experiment refuses, and where it says the faults are."""
 
+import json
 import pathlib
 import pickle
 
@@ -105,6 +106,28 @@ def test_what_the_module_can_use():
     assert level.edges.shape == (3, 2) and level.hinges.shape == (0, 4)
     for count in (2, 0):
         drape.set_threads(count)
+
+
+def test_a_state_whose_file_is_damaged_or_elsewhere_is_refused(small, tmp_path):
+    folder = tmp_path / "r"
+    mesh = folder / run(small, methods=["pcs"], out=folder, report=False)["pcs"].levels[-1].mesh
+    whole = mesh.read_bytes()
+    place = whole.index(b"end_header\n") + 20  # in a coordinate
+    mesh.write_bytes(whole[:place] + bytes([whole[place] ^ 1]) + whole[place + 1:])
+    level = drape.read_run(folder)["pcs"].levels[-1]
+    for use in (lambda: level.x, lambda: level.triangles, lambda: drape.read_run(folder)._repr_png_()):
+        with pytest.raises(RuntimeError, match="pcs_l1.ply: is damaged: its checksum does not fit"):
+            use()
+    assert "pcs_l1.ply: is damaged" in drape.read_run(folder).page.text
+    mesh.write_bytes(whole)
+    assert numpy.isfinite(drape.read_run(folder)["pcs"].levels[-1].x).all()
+    mesh.rename(tmp_path / "elsewhere.ply")
+    for name in ("../elsewhere.ply", str(tmp_path / "elsewhere.ply")):
+        results = json.loads((folder / "results.json").read_text())
+        results["methods"]["pcs"]["levels"][-1]["mesh"] = name
+        (folder / "results.json").write_text(json.dumps(results))
+        with pytest.raises(RuntimeError, match="leads out of the folder"):
+            drape.read_run(folder)["pcs"].levels[-1].x
 
 
 @pytest.mark.parametrize("call", [

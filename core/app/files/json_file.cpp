@@ -89,12 +89,17 @@ void refuse_links(const std::filesystem::path& folder, const std::filesystem::pa
   }
 }
 
-std::filesystem::path JsonFile::place(const Json& object, const std::string& key) const {
+std::filesystem::path JsonFile::inside(const Json& object, const std::string& key) const {
   const std::filesystem::path way = std::filesystem::path(at<std::string>(object, key)).lexically_normal();
   if (way.empty() || way.is_absolute() || *way.begin() == "..")
     refuse("\"" + excerpt(way.string()) + "\" leads out of the folder");
-  refuse_links(path_.parent_path(), way);
   return path_.parent_path() / way;
+}
+
+std::filesystem::path JsonFile::place(const Json& object, const std::string& key) const {
+  const std::filesystem::path place = inside(object, key), folder = path_.parent_path();
+  refuse_links(folder, place.lexically_relative(folder));
+  return place;
 }
 
 template <class T>
@@ -109,10 +114,10 @@ std::optional<T> JsonFile::find(const Json& object, const std::string& key) cons
   } else if constexpr (std::is_same_v<T, std::string>) {
     require(value.is_string(), "a text");
   } else {
-    constexpr bool whole = std::is_same_v<T, int>;
+    constexpr bool whole = std::is_integral_v<T>;
     const double number = value.is_number() ? value.get<double>() : std::nan("");
     const bool fits =
-        whole ? number >= 0 && number <= std::numeric_limits<int>::max() && number == std::floor(number)
+        whole ? number >= 0 && number <= std::numeric_limits<T>::max() && number == std::floor(number)
               : std::isfinite(number);
     require(fits, whole ? "a whole number" : "a number");
   }
@@ -121,6 +126,7 @@ std::optional<T> JsonFile::find(const Json& object, const std::string& key) cons
 
 template std::optional<bool> JsonFile::find(const Json& object, const std::string& key) const;
 template std::optional<int> JsonFile::find(const Json& object, const std::string& key) const;
+template std::optional<std::uint32_t> JsonFile::find(const Json& object, const std::string& key) const;
 template std::optional<double> JsonFile::find(const Json& object, const std::string& key) const;
 template std::optional<std::string> JsonFile::find(const Json& object, const std::string& key) const;
 

@@ -20,7 +20,8 @@ class JsonFile {
   JsonFile(std::filesystem::path path, std::string remedy)
       : path_(std::move(path)), remedy_(std::move(remedy)) {}
 
-  /// T is bool, int (not negative), double (finite) or std::string. Empty if the key is absent or null.
+  /// T is bool, int (not negative), std::uint32_t, double (finite) or std::string. Empty if the key is absent
+  /// or null.
   template <class T>
   std::optional<T> find(const Json& object, const std::string& key) const;
   /// The value of a required key; refuses the file without one.
@@ -29,8 +30,9 @@ class JsonFile {
     if (const std::optional<T> value = find<T>(object, key)) return *value;
     refuse("\"" + key + "\" is missing");
   }
-  /// The place below the file's folder that a required text names; refuses one that leads out of the folder,
-  /// also by a link.
+  /// The place below the file's folder that a required text names; refuses one that leads out of the folder.
+  std::filesystem::path inside(const Json& object, const std::string& key) const;
+  /// The same, to be written to: refuses one that leads through a link.
   std::filesystem::path place(const Json& object, const std::string& key) const;
   [[noreturn]] void refuse(const std::string& fault) const;
 

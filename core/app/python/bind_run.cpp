@@ -12,7 +12,6 @@
 #include "core/app/view/page.h"
 #include "core/kernel/files/file.h"
 #include "core/kernel/files/number_text.h"
-#include "core/numerics/mesh_files/io.h"
 
 namespace drape::python {
 
@@ -194,11 +193,12 @@ void bind_results(py::module_& m) {
       "As `drape export` of a .png.");
   m.def(
       "_read_mesh",
-      [](const fs::path& file) {
-        TriangleMesh mesh = read_mesh(file);
+      [](const fs::path& folder, const Text& level) {
+        TriangleMesh mesh = level_mesh(results_file(folder), parse_json(level)).mesh();
         return std::pair(std::move(mesh.vertices), std::move(mesh.triangles));
       },
-      py::arg("file"));
+      py::arg("folder"), py::arg("level"),
+      "The mesh of a level that the folder's results.json describes so.");
   m.def("_uncomputed", &uncomputed, py::arg("text"));
   m.def("_refuse_target", &refuse_target, py::arg("file"), py::arg("overwrite"));
   m.def(

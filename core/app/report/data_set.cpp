@@ -38,7 +38,7 @@ Json description_of(const RunData& run, const LevelRecord& end, const TableRow& 
   all["pieces"] = member_of(end.values, "pieces");
   all["experiment"] = json_value(run.config);
   all["fields"] = Json::object();
-  for (const VertexField& field : read_ply_fields(run.folder / end.mesh)) {
+  for (const VertexField& field : end.mesh.fields()) {
     Json& values = all["fields"][field.name] = Json::array();
     for (const double value : field.values)
       values.push_back(std::isfinite(value) ? Json(parse_number(general_text(value, 6)).value()) : Json());
@@ -78,7 +78,7 @@ RunTable export_data_set(const fs::path& sweep, const fs::path& folder, const Ex
       description["obstacles"] = Json::array();
       for (const ObstacleRecord& obstacle : run.data->obstacles) {
         const std::string next = "obstacle_" + std::to_string(obstacles.size()) + ".obj";
-        const auto [file, is_new] = obstacles.try_emplace(obj_text(run.data->mesh(obstacle.mesh)), next);
+        const auto [file, is_new] = obstacles.try_emplace(obj_text(obstacle.mesh.mesh()), next);
         if (is_new) write_file(folder / next, file->first, options.existing());
         description["obstacles"].push_back(file->second);
       }

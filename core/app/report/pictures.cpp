@@ -33,12 +33,11 @@ Positions near_cloth(const Positions& obstacle, const Eigen::AlignedBox3d& cloth
   return obstacle(chosen, Eigen::all);
 }
 
-/// A mesh of the run's folder; none, with a note, if it cannot be read.
-std::optional<TriangleMesh> mesh_or_note(const RunData& run, const std::string& name,
-                                         std::vector<std::string>& notes) {
-  if (name.empty()) return {};
+/// The mesh of a file; none, with a note, if it cannot be read.
+std::optional<TriangleMesh> mesh_or_note(const RunFile& file, std::vector<std::string>& notes) {
+  if (!file.is_named()) return {};
   try {
-    return run.mesh(name);
+    return file.mesh();
   } catch (const std::exception& error) {
     add_new(notes, reason_of(error));
     return {};
@@ -74,11 +73,11 @@ PictureScene::PictureScene(const RunData& run, std::vector<std::string>& notes, 
   std::vector<const Positions*> all = further;
   for (const MethodRecord& method : run.methods)
     for (const LevelRecord& level : method.levels)
-      if (auto mesh = mesh_or_note(run, level.mesh, notes))
+      if (auto mesh = mesh_or_note(level.mesh, notes))
         all.push_back(&states_.emplace(&level, *mesh).first->second.vertices);
   std::vector<std::string> unread;  // rest shapes, which the 3D view notes
   for (int level = 0; level <= run.finest_level(); ++level) {
-    const auto rest = mesh_or_note(run, rest_file(level), unread);
+    const auto rest = mesh_or_note(run.rest(level), unread);
     if (!rest || !rest->sewing) break;
     seams_.emplace(rest->triangles.rows(), seam_sides(*rest));
   }
@@ -86,7 +85,7 @@ PictureScene::PictureScene(const RunData& run, std::vector<std::string>& notes, 
   for (const Positions* x : all) box.extend(bounding_box(*x));
   std::list<Positions> near;
   for (const ObstacleRecord& obstacle : run.obstacles)
-    if (auto mesh = mesh_or_note(run, obstacle.mesh, notes)) {
+    if (auto mesh = mesh_or_note(obstacle.mesh, notes)) {
       all.push_back(&near.emplace_back(near_cloth(mesh->vertices, box)));
       obstacles_.push_back(std::move(*mesh));
     }

@@ -41,8 +41,8 @@ void add_declared(const RunData& run, const MethodRecord& method, int level, Sta
   const ConsistencyRecord* pair = nullptr;
   for (const ConsistencyRecord& each : method.consistency)
     if (each.fine == finest && (is_finest || each.coarse == level)) pair = &each;
-  if (!pair || pair->fields.empty() || !std::filesystem::is_regular_file(run.folder / pair->fields)) return;
-  const std::vector<VertexField> fields = read_ply_fields(run.folder / pair->fields);
+  if (!pair || !pair->fields.exists()) return;
+  const VertexFields fields = pair->fields.fields();
   for (const DeclaredMetric& metric : run.metrics)
     for (const MetricColours& colours : metric.declaration.colours) {
       const bool difference = colours.other_field.empty();
@@ -61,12 +61,12 @@ States read_states(const RunData& run, const std::vector<Level>& levels, const V
   States states;
   for (const MethodRecord& method : run.methods)
     for (const LevelRecord& level : method.levels) {
-      if (level.mesh.empty() || !std::filesystem::is_regular_file(run.folder / level.mesh)) continue;
+      if (!level.mesh.exists()) continue;
       try {
-        State state{run.mesh(level.mesh).vertices, {}};
+        State state{level.mesh.mesh().vertices, {}};
         if (state.x.rows() != levels[level.level].vertex_count()) continue;
         Eigen::VectorXd pressure;
-        for (VertexField& field : read_ply_fields(run.folder / level.mesh))
+        for (VertexField& field : level.mesh.fields())
           if (field.name == "contact_pressure") pressure = std::move(field.values);
         state.fields = document.fields(level.level, state.x, pressure);
         try {
@@ -75,8 +75,8 @@ States read_states(const RunData& run, const std::vector<Level>& levels, const V
           add_new(notes, "3D viewer: " + reason_of(damaged));
         }
         states.emplace(&level, std::move(state));
-      } catch (const std::exception&) {
-        continue;  // the pictures name it
+      } catch (const std::exception& damaged) {
+        add_new(notes, reason_of(damaged));  // as the pictures name it
       }
     }
   return states;
@@ -111,9 +111,9 @@ Json states_json(const RunData& run, const LevelRecord& level, const State& last
 ReportView view_of(const RunData& run, std::vector<std::string>& notes) {
   ReportView view;
   std::vector<Level> levels;
-  for (int l = 0; l <= run.finest_level(); ++l) levels.push_back(Level::of(l, run.mesh(rest_file(l))));
+  for (int l = 0; l <= run.finest_level(); ++l) levels.push_back(Level::of(l, run.rest(l).mesh()));
   std::vector<TriangleMesh> obstacles;
-  for (const ObstacleRecord& obstacle : run.obstacles) obstacles.push_back(run.mesh(obstacle.mesh));
+  for (const ObstacleRecord& obstacle : run.obstacles) obstacles.push_back(obstacle.mesh.mesh());
   ViewDocument document(levels, obstacles, run.has_contact(), embedded_in(view.blocks), declared_fields(run));
   const States states = read_states(run, levels, document, notes);
   if (states.empty()) return {};
@@ -155,7 +155,7 @@ std::string viewer_page(const RunData& run) {
   if (view.document.is_null())
     throw std::runtime_error(notes.empty() ? run.folder.string() + ": the run has no state to show"
                                            : notes.front());
-  return page(run.experiment, {{"kind", "states"}, {"view", view.document}}, view.blocks);
+  return page(run.experiment, {{"kind", "states"}, {"view", view.document}, {"notes", notes}}, view.blocks);
 }
 
 std::string viewer_page(const std::string& title, const Level& level, const Positions& x,

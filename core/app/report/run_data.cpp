@@ -9,7 +9,6 @@
 #include "core/kernel/files/file.h"
 #include "core/kernel/interfaces/solver.h"
 #include "core/kernel/plugin/config_node.h"
-#include "core/numerics/mesh_files/io.h"
 
 namespace drape {
 
@@ -25,7 +24,7 @@ LevelRecord level_of(const Json& json, std::size_t position, const JsonFile& fil
   return {.level = file.find<int>(json, "level").value_or(static_cast<int>(position)),
           .status = text_member(json, "status"),
           .message = text_member(json, "message"),
-          .mesh = text_member(json, "mesh"),
+          .mesh = level_mesh(file, json),
           .from_initial_state = member_of(json, "from_initial_state") == true,
           .values = json};
 }
@@ -41,7 +40,8 @@ MethodRecord method_of(const std::string& name, const Json& json, const JsonFile
     const int coarse = file.find<int>(pair, "coarse").value_or(-1),
               fine = file.find<int>(pair, "fine").value_or(-1);
     if (coarse >= 0 && fine > coarse)
-      method.consistency.push_back({coarse, fine, pair, text_member(pair, "fields")});
+      method.consistency.push_back(
+          {coarse, fine, pair, RunFile::of(file, pair, "fields", "fields_checksum")});
   }
   std::ranges::stable_sort(method.levels, {}, &LevelRecord::level);
   return method;
@@ -61,7 +61,7 @@ int MethodRecord::first_level() const {
 std::vector<const LevelRecord*> MethodRecord::recorded_levels() const {
   std::vector<const LevelRecord*> recorded;
   for (const LevelRecord& level : levels)
-    if (!level.mesh.empty()) recorded.push_back(&level);
+    if (level.mesh.is_named()) recorded.push_back(&level);
   return recorded;
 }
 
@@ -93,19 +93,16 @@ int RunData::finest_level() const {
   return finest;
 }
 
-TriangleMesh RunData::mesh(const std::string& name) const { return read_mesh(folder / name); }
+RunFile RunData::rest(int level) const { return {folder / rest_file(level), {}}; }
 
 SnapshotFile RunData::snapshots(const LevelRecord& level, Eigen::Index n) const {
-  const std::string name = text_member(level.snapshots(), "file");
-  if (name.empty()) return {};
+  const RunFile file = RunFile::of(results_file(folder), level.snapshots(), "file", "checksum");
+  if (!file.is_named()) return {};
   const Json &iterations = list(member_of(level.snapshots(), "iterations")),
-             &seconds = list(member_of(level.snapshots(), "seconds")),
-             &checksum = member_of(level.snapshots(), "checksum");
+             &seconds = list(member_of(level.snapshots(), "seconds"));
   if (iterations.size() != seconds.size())
-    throw std::runtime_error((folder / name).string() +
-                             ": results.json has other numbers of iterations and seconds");
-  return {folder / name, iterations.size(), n,
-          checksum.is_number_unsigned() ? std::optional(checksum.get<std::uint32_t>()) : std::nullopt};
+    refuse_path(file.path, "results.json has other numbers of iterations and seconds");
+  return {file.path, iterations.size(), n, file.checksum};
 }
 
 bool is_file_of_run(const std::string& folder, const std::string& name) {
@@ -113,6 +110,14 @@ bool is_file_of_run(const std::string& folder, const std::string& name) {
   return std::ranges::any_of(own_folders, [&](const auto& own) {
     return folder == own.first && std::regex_match(name, std::regex(own.second));
   });
+}
+
+JsonFile results_file(const std::filesystem::path& folder) {
+  return {folder / "results.json", "run the experiment again"};
+}
+
+RunFile level_mesh(const JsonFile& results, const Json& level) {
+  return RunFile::of(results, level, "mesh", "mesh_checksum");
 }
 
 std::string rest_file(int level) { return "rest/l" + std::to_string(level) + ".ply"; }
@@ -144,11 +149,12 @@ RunData read_run(const std::filesystem::path& folder) {
   run.folder = folder;
   run.results = read_results(folder);
   const Json& json = run.results;
+  const JsonFile file = results_file(folder);
 
   run.experiment = text_member(json, "experiment");
   run.complete = member_of(json, "complete") == true;
   for (const Json& obstacle : list(member_of(json, "obstacles")))
-    run.obstacles.push_back({text_member(obstacle, "mesh"), text_member(obstacle, "name")});
+    run.obstacles.push_back({RunFile::of(file, obstacle, "mesh"), text_member(obstacle, "name")});
   run.reference = text_member(member_of(json, "reference"), "method");
   run.metrics = declared_metrics(member_of(json, "metrics"));
   if (const std::filesystem::path config = folder / "config.yaml"; std::filesystem::is_regular_file(config)) {
@@ -156,7 +162,6 @@ RunData read_run(const std::filesystem::path& folder) {
     ConfigErrors unread;
     run.config = parse_yaml(run.configuration, "config.yaml", unread);
   }
-  const JsonFile file(folder / "results.json", "run the experiment again");
   for (const auto& [name, value] : member_of(json, "methods").items())
     run.methods.push_back(method_of(name, value, file));
   // The progressive method comes first; the others stay in file order.

@@ -9,7 +9,7 @@
 #include "core/app/files/csv.h"
 #include "core/app/files/json_file.h"
 #include "core/app/files/snapshot_file.h"
-#include "core/kernel/interfaces/triangle_mesh.h"
+#include "core/app/report/run_file.h"
 
 namespace drape {
 
@@ -32,7 +32,7 @@ bool is_file_of_run(const std::string& folder, const std::string& name);
 struct LevelRecord {
   int level = 0;
   std::string status, message;
-  std::string mesh;                 ///< relative to the run's folder; may be empty
+  RunFile mesh;                     ///< of the final state; none if the level failed
   bool from_initial_state = false;  ///< earlier levels do not contribute
   Json values;                      ///< costs, quantities and state metrics, in SI units
 
@@ -44,7 +44,7 @@ struct LevelRecord {
 struct ConsistencyRecord {
   int coarse = 0, fine = 0;
   Json values;
-  std::string fields;  ///< relative to the run's folder; may be empty
+  RunFile fields;  ///< of the finest state; may be none
 };
 
 struct MethodRecord {
@@ -62,7 +62,7 @@ struct MethodRecord {
 };
 
 struct ObstacleRecord {
-  std::string mesh;  ///< relative to the run's folder
+  RunFile mesh;
   std::string name;  ///< may be empty
 };
 
@@ -86,12 +86,18 @@ struct RunData {
   bool has_contact() const;
   int finest_level() const;  ///< over all methods; -1 without levels
 
-  /// A mesh of the run's folder. Throws std::runtime_error if it cannot be read.
-  TriangleMesh mesh(const std::string& name) const;
+  /// A level's rest shape.
+  RunFile rest(int level) const;
   /// The snapshots of a level of n vertices, in order; none if the run has recorded none. Throws
   /// std::runtime_error for a file that is missing or damaged.
   SnapshotFile snapshots(const LevelRecord& level, Eigen::Index n) const;
 };
+
+/// For faults of what a run's results.json says.
+JsonFile results_file(const std::filesystem::path& folder);
+
+/// The mesh that a level's record in it names. Throws std::runtime_error as RunFile::of.
+RunFile level_mesh(const JsonFile& results, const Json& level);
 
 /// A level's rest shape, relative to a run's folder.
 std::string rest_file(int level);

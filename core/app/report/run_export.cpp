@@ -50,12 +50,12 @@ std::vector<const LevelRecord*> chosen_levels(const MethodRecord& method, std::o
 /// shape, its own plane's, which are the same on every level. Throws std::runtime_error if the rest shape has
 /// other triangles.
 TriangleMesh cloth_mesh(const RunData& run, const LevelRecord& level) {
-  TriangleMesh mesh = run.mesh(rest_file(level.level)), state = run.mesh(level.mesh);
+  TriangleMesh mesh = run.rest(level.level).mesh(), state = level.mesh.mesh();
   if (mesh.triangles.rows() != state.triangles.rows())
     throw std::runtime_error((run.folder / "rest").string() + ": level " + std::to_string(level.level) +
                              " has other triangles than its state; run the experiment again");
   if (mesh.uv.rows() == 0)
-    if (const auto planar = PlanarUv::of(level.level == 0 ? mesh : run.mesh(rest_file(0))))
+    if (const auto planar = PlanarUv::of(level.level == 0 ? mesh : run.rest(0).mesh()))
       mesh.uv = planar->at(mesh);
   mesh.vertices = std::move(state.vertices);
   mesh.warp.resize(0, 3);  // in the rest shape's corners
@@ -156,7 +156,7 @@ std::string gltf_of(const RunData& run, const MethodRecord& method,
   std::vector<GltfSurface> surfaces;
   std::vector<int> obstacles;
   for (std::size_t k = 0; k < run.obstacles.size(); ++k) {
-    TriangleMesh mesh = run.mesh(run.obstacles[k].mesh);
+    TriangleMesh mesh = run.obstacles[k].mesh.mesh();
     if (mesh.triangles.rows() == 0) continue;
     const std::string& given = run.obstacles[k].name;
     const std::string name = given.empty() ? "obstacle " + std::to_string(k) : given;
@@ -200,7 +200,7 @@ std::vector<fs::path> export_pictures(const RunData& run, const MethodRecord& me
                                       const ExportOptions& options) {
   std::vector<TriangleMesh> states;
   for (const LevelRecord* level : levels) {
-    TriangleMesh last = run.mesh(level->mesh);
+    TriangleMesh last = level->mesh.mesh();
     if (options.frames)  // a level that its first state solved has one snapshot
       for (Positions& x : earlier_states(run, method, *level, last.vertices.rows(), 1))
         states.push_back({std::move(x), last.triangles});
@@ -218,7 +218,7 @@ std::vector<fs::path> export_pictures(const RunData& run, const MethodRecord& me
   std::vector<std::string> notes;  // of states that are not drawn here; the report has them
   const PictureScene scene(run, notes, look, drawn);
   std::optional<TriangleMesh> coarsest;
-  if (look.outline) coarsest = run.mesh(method.recorded_levels().front()->mesh);
+  if (look.outline) coarsest = method.recorded_levels().front()->mesh.mesh();
   for (std::size_t k = 0; k < states.size(); ++k) {
     Image image = scene.draw(states[k]);
     if (coarsest) scene.draw_outline(image, *coarsest);
@@ -277,7 +277,7 @@ std::vector<fs::path> export_run(const fs::path& folder, const fs::path& file, c
       throw std::runtime_error("--level " + std::to_string(level) + ": the run's levels go from 0 to " +
                                std::to_string(finest));
     refuse_target(file, options.overwrite);
-    write_file(file, mesh_bytes(run, level, run.mesh(rest_file(level)), {}, extension, options),
+    write_file(file, mesh_bytes(run, level, run.rest(level).mesh(), {}, extension, options),
                options.existing());
     return {file};
   }
@@ -290,8 +290,8 @@ std::vector<fs::path> export_run(const fs::path& folder, const fs::path& file, c
   const LevelRecord& level = *levels[0];
   write_file(file,
              extension == ".glb" ? gltf_of(run, method, levels, options.frames)
-                                 : mesh_bytes(run, level.level, cloth_mesh(run, level),
-                                              read_ply_fields(run.folder / level.mesh), extension, options),
+                                 : mesh_bytes(run, level.level, cloth_mesh(run, level), level.mesh.fields(),
+                                              extension, options),
              options.existing());
   return {file};
 }

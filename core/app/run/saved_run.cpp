@@ -33,16 +33,15 @@ ConfigNode copy_named(const std::string& name) {
 void refuse_damaged_results(const fs::path& folder, const std::string& only = "") {
   std::vector<std::string> damaged;
   const auto results = read_results(folder);
-  const JsonFile file(folder / "results.json", "run the experiment again");
+  const JsonFile file = results_file(folder);
   for (const auto& [name, method] : results["methods"].items()) {
     if (!only.empty() && name != only) continue;
     if (!method.is_object() || !method.contains("levels")) file.refuse("\"levels\" is missing");
     for (const auto& level : method["levels"]) {
-      const auto checksum = file.find<double>(level, "mesh_checksum");
-      if (!checksum) continue;  // of a level that failed
+      if (member_of(level, "mesh_checksum").is_null()) continue;  // of a level that failed
       const auto mesh = file.at<std::string>(level, "mesh");
-      if (!fs::is_regular_file(folder / mesh) || checksum_of(read_file(folder / mesh)) != *checksum)
-        damaged.push_back(mesh);
+      const RunFile saved = level_mesh(file, level);
+      if (!saved.exists() || !saved.fits(read_file(saved.path))) damaged.push_back(mesh);
     }
   }
   if (!damaged.empty())

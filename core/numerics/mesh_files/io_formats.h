@@ -15,6 +15,8 @@ namespace drape {
 TriangleMesh read_obj(const std::filesystem::path& path, std::string_view bytes, MeshUse use, int& lines);
 TriangleMesh read_off(const std::filesystem::path& path, std::string_view bytes, MeshUse use);
 TriangleMesh read_ply(const std::filesystem::path& path, std::string_view bytes, MeshUse use, int& lines);
+/// read_ply_fields of the bytes.
+VertexFields ply_fields(const std::filesystem::path& path, std::string_view bytes);
 TriangleMesh read_stl(const std::filesystem::path& path, std::string_view bytes);
 std::string obj_text(const TriangleMesh& mesh);
 

@@ -243,13 +243,15 @@ TriangleMesh read_ply(const std::filesystem::path& path, std::string_view bytes,
   return mesh;
 }
 
-VertexFields read_ply_fields(const std::filesystem::path& path) {
-  const PlyContent content = read_content(path, read_file(path), MeshUse::cloth);
+VertexFields ply_fields(const std::filesystem::path& path, std::string_view bytes) {
+  const PlyContent content = read_content(path, bytes, MeshUse::cloth);
   VertexFields fields;
   for (const auto& [name, values] : content.columns)
     if (name != "x" && name != "y" && name != "z")
       fields.push_back({name, Eigen::Map<const Eigen::VectorXd>(values.data(), std::ssize(values))});
   return fields;
 }
+
+VertexFields read_ply_fields(const std::filesystem::path& path) { return ply_fields(path, read_file(path)); }
 
 }  // namespace drape

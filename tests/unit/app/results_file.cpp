@@ -16,6 +16,7 @@
 
 using namespace drape;
 using Catch::Contains;
+using Catch::EndsWith;
 
 namespace {
 
@@ -192,6 +193,29 @@ TEST_CASE("a level that is no whole number is named with its file and its key") 
   for (const std::string right : {"2147483647", "null"}) CHECK(said_of_level(right) == "");
   CHECK(said_of_results(R"({"methods": {"pcs": {"consistency": [{"coarse": 0, "fine": 1e10}]}}})") ==
         "results.json: \"fine\"" + must + "10000000000.0" + again);
+}
+
+TEST_CASE("what a file is called that leads out of the run's folder is refused, wherever it is named") {
+  const std::string out = "results.json: \"../x.ply\" leads out of the folder" + again, name = "\"../x.ply\"";
+  CHECK(said_of_level("0, \"mesh\": " + name) == out);
+  CHECK(said_of_level("0, \"mesh\": \"/x.ply\"") ==
+        "results.json: \"/x.ply\" leads out of the folder" + again);
+  CHECK(said_of_level("0, \"mesh\": \"levels/../x.ply\"") == "");
+  CHECK(said_of_results(R"({"methods": {}, "obstacles": [{"mesh": )" + name + "}]}") == out);
+  CHECK(said_of_results(R"({"methods": {"pcs": {"consistency": [{"coarse": 0, "fine": 1, "fields": )" + name +
+                        "}]}}}") == out);
+  const Scratch folder;
+  folder.write("results.json",
+               R"({"methods": {"pcs": {"levels": [{"snapshots": {"file": )" + name + "}}]}}}");
+  const RunData run = read_run(folder.path);
+  CHECK_THAT(refusal_of([&] { run.snapshots(run.methods[0].levels[0], 3); }), EndsWith(out));
+}
+
+TEST_CASE("a checksum is a whole number of 32 bits") {
+  const std::string must = "results.json: \"mesh_checksum\" must be a whole number, not ";
+  for (const std::string wrong : {"-1", "0.5", "4294967296", "\"none\""})
+    CHECK(said_of_level("0, \"mesh\": \"x.ply\", \"mesh_checksum\": " + wrong) == must + wrong + again);
+  CHECK(said_of_level("0, \"mesh\": \"x.ply\", \"mesh_checksum\": 4294967295") == "");
 }
 
 TEST_CASE("values within objects have their path as name") {

@@ -63,13 +63,13 @@ class LevelRecord(_Record):
 
     @property
     def x(self) -> numpy.ndarray:
-        """n×3 positions [m], read-only. Raises RuntimeError where the level has failed."""
-        return self._run._mesh(vars(self).get("mesh"))[0]
+        """n×3 positions [m], read-only. Raises RuntimeError where the level has failed, or its file is damaged."""
+        return self._run._mesh(self)[0]
 
     @property
     def triangles(self) -> numpy.ndarray:
         """m×3 vertex indices, read-only."""
-        return self._run._mesh(vars(self).get("mesh"))[1]
+        return self._run._mesh(self)[1]
 
 
 class MethodRecord(_Record):
@@ -153,11 +153,13 @@ class Result:
     def methods(self) -> List[str]:
         return list(self._methods)
 
-    def _mesh(self, name: Optional[str]) -> Tuple[numpy.ndarray, numpy.ndarray]:
+    def _mesh(self, level: LevelRecord) -> Tuple[numpy.ndarray, numpy.ndarray]:
+        record = {key: vars(level).get(key) for key in ("mesh", "mesh_checksum")}
+        name = record["mesh"]
         if not name:
             raise RuntimeError("the run has stored no state of this level")
         if name not in self._meshes:
-            arrays = _core._read_mesh(os.path.join(self.folder, name))
+            arrays = _core._read_mesh(self.folder, json.dumps(record))
             for array in arrays:
                 array.setflags(write=False)
             self._meshes[name] = arrays
