@@ -1,10 +1,12 @@
 #include "core/app/cli/commands.h"
 
 #include <algorithm>
+#include <cstdlib>
 #include <iostream>
 #include <stdexcept>
 
 #include "core/app/experiment/exit_codes.h"
+#include "core/app/plugin_files/plugin_files.h"
 #include "core/kernel/files/message_text.h"
 #include "core/kernel/files/string_utils.h"
 #include "core/kernel/plugin/loader.h"
@@ -75,6 +77,17 @@ std::string refusal(const CLI::App* app, const CLI::Error& error) {
     }
   }
   return "error: " + what + (near.empty() ? "; see" : " See") + " `drape" + command + " --help`\n";
+}
+
+/// Compiles plugins, one C++ file each, and adds them to DRAPE_PLUGIN_PATH, which the processes of a sweep
+/// inherit.
+void compile_plugins(const std::vector<std::string>& files) {
+  for (const std::string& file : files) {
+    const std::string folder = compiled_plugin(file, std::cerr).parent_path().string();
+    const char* before = std::getenv("DRAPE_PLUGIN_PATH");
+    const bool alone = !before || !*before;
+    setenv("DRAPE_PLUGIN_PATH", (alone ? folder : before + (":" + folder)).c_str(), 1);
+  }
 }
 
 /// The words of the command line without the program's name; `help COMMAND` becomes `COMMAND --help`.

@@ -58,11 +58,6 @@ void add_sweep_commands(Commands& commands);   ///< sweep, and sweep-job, which 
 void add_plugin_commands(Commands& commands);  ///< list, describe, schema
 void add_reference_command(Commands& commands);
 
-/// Compiles plugins, one C++ file each, unless they were compiled before, and adds them to DRAPE_PLUGIN_PATH,
-/// which the processes of a sweep inherit. Libraries are kept in $XDG_CACHE_HOME/drape or ~/.cache/drape.
-/// Throws std::runtime_error after printing what the compiler says.
-void compile_plugins(const std::vector<std::string>& files);
-
 /// Makes SIGINT, SIGTERM and SIGHUP (a lost terminal) request a stop; the same one again ends the process at
 /// once, unless it is SIGHUP. SIGHUP stays ignored under nohup. SIGPIPE is ignored: a run goes on where
 /// nobody reads its progress.

@@ -1,18 +1,20 @@
+#include "core/app/plugin_files/plugin_files.h"
+
 #include <sys/stat.h>
 #include <unistd.h>
 
 #include <boost/algorithm/string/replace.hpp>
 #include <cstdlib>
 #include <functional>
-#include <iostream>
+#include <ostream>
 #include <sstream>
 #include <stdexcept>
 
-#include "core/app/cli/commands.h"
 #include "core/app/sweep/process.h"
 #include "core/kernel/files/file.h"
 #include "core/kernel/files/message_text.h"
 #include "core/kernel/files/string_utils.h"
+#include "core/kernel/plugin/loader.h"
 #include "core/kernel/threads/stopwatch.h"
 
 namespace drape {
@@ -102,12 +104,14 @@ void require_source(const fs::path& file) {
                              file.parent_path().string());
 }
 
-/// The folder of the library that the source makes.
-fs::path compiled(const fs::path& source) {
+}  // namespace
+
+fs::path compiled_plugin(const fs::path& file, std::ostream& said) {
+  const fs::path source = fs::absolute(file);
   require_source(source);
   temporary_folder();  // which the compiler's output needs
-  const fs::path root = own_program().parent_path().parent_path(), libraries = root / "lib";
-  std::vector<std::string> words = compiler(root);
+  const fs::path libraries = library_directory();
+  std::vector<std::string> words = compiler(libraries.parent_path());
   // Whatever the file's name: the compiler would take a file that ends otherwise than a source for an object.
   words.insert(words.end(), {"-x", "c++", source.string(), "-x", "none"});
   // The preprocessed source has the headers in it; a library that was built again may have other classes.
@@ -122,38 +126,28 @@ fs::path compiled(const fs::path& source) {
   fs::path folder = cache_folder() / name.str();
   const fs::path library = folder / (source.stem().string() + ".so");
   make_cache(folder);
-  if (is_own(library)) return folder;
+  if (is_own(library)) return library;
 
   const fs::path made = folder / (std::to_string(getpid()) + ".part");
   words.insert(words.end(), {"-o", made.string(), "-L" + libraries.string(), "-ldrape"});
-  std::cerr << "compiling " << printable(source.string()) << std::flush;
+  said << "compiling " << printable(source.string()) << std::flush;
   const Stopwatch clock;
-  const ProgramOutput said = run_program(words);
-  std::cerr << ": " << three_digits(clock.seconds()) << " s\n" << printable_lines(said.err);
-  if (said.exit.code == 127)
+  const ProgramOutput output = run_program(words);
+  said << ": " << three_digits(clock.seconds()) << " s\n" << printable_lines(output.err);
+  if (output.exit.code == 127)
     throw std::runtime_error("--plugin: there is no compiler " + words[0] +
                              "; install it (Debian's package g++), or name one of its kind in the "
                              "variable CXX");
-  if (said.exit.code != 0) {
+  if (output.exit.code != 0) {
     std::error_code ignored;
     fs::remove_all(folder, ignored);
     const bool eigen = fs::exists(fs::path(DRAPE_EIGEN) / "Eigen/Core");
     throw std::runtime_error(
-        "--plugin " + source.string() + ": does not compile; " + words[0] + " says why above" +
+        "--plugin " + source.string() + ": does not compile; " + words[0] + " says why" +
         (eigen ? "" : "; Eigen is not in " DRAPE_EIGEN " (Debian's package libeigen3-dev)"));
   }
   rename_file(made, library);
-  return folder;
-}
-
-}  // namespace
-
-void compile_plugins(const std::vector<std::string>& files) {
-  for (const std::string& file : files) {
-    const std::string folder = compiled(fs::absolute(file)).string();
-    const std::string before = variable("DRAPE_PLUGIN_PATH");
-    setenv("DRAPE_PLUGIN_PATH", (before.empty() ? folder : before + ":" + folder).c_str(), 1);
-  }
+  return library;
 }
 
 }  // namespace drape

@@ -4,8 +4,11 @@
 
 #include <pybind11/stl.h>
 
+#include <map>
+#include <sstream>
 #include <vector>
 
+#include "core/app/plugin_files/plugin_files.h"
 #include "core/app/python/values.h"
 #include "core/app/run/runner.h"
 #include "core/kernel/files/string_utils.h"
@@ -35,6 +38,64 @@ std::vector<std::pair<std::string, std::string>> plugins(const Text& kind) {
   std::vector<std::pair<std::string, std::string>> names;
   for (const RegistryEntry* entry : registry().of_kind(kind)) names.emplace_back(entry->name, entry->summary);
   return names;
+}
+
+/// Experiments that were made of entries that are no longer registered refer to them.
+void keep(std::vector<std::unique_ptr<RegistryEntry>> entries) {
+  static auto* const kept = new std::vector<std::unique_ptr<RegistryEntry>>;
+  for (auto& entry : entries) kept->push_back(std::move(entry));
+}
+
+/// Takes the entries of a library out of the registry.
+std::vector<std::unique_ptr<RegistryEntry>> taken_out(Registry& all, const std::string& library) {
+  std::vector<std::pair<std::string, std::string>> names;
+  for (const auto& entry : all.entries())
+    if (entry->library == library) names.emplace_back(entry->kind, entry->name);
+  std::vector<std::unique_ptr<RegistryEntry>> entries;
+  for (const auto& [kind, name] : names) entries.push_back(all.remove(kind, name));
+  return entries;
+}
+
+/// The library that each source has given, by the source's absolute path.
+std::map<std::string, std::string>& plugin_sources() {
+  static std::map<std::string, std::string> sources;
+  return sources;
+}
+
+/// The library of a source; an error has what the compiler said below it.
+std::string library_of(const std::filesystem::path& source) {
+  std::ostringstream said;
+  try {
+    return without_gil([&] { return compiled_plugin(source, said).string(); });
+  } catch (const std::exception& error) {
+    throw std::runtime_error(error.what() + (said.str().empty() ? "" : ":\n" + said.str()));
+  }
+}
+
+void load_source(const std::filesystem::path& file) {
+  const std::filesystem::path source = std::filesystem::absolute(file).lexically_normal();
+  Registry& all = mutable_registry();
+  const std::string library = library_of(source);
+  std::string& loaded = plugin_sources()[source.string()];
+  if (loaded == library) return;
+  auto earlier = taken_out(all, loaded);
+  try {
+    load_plugin(all, library);
+  } catch (...) {
+    keep(taken_out(all, library));
+    for (auto& entry : earlier) all.add_entry(std::move(entry));
+    throw;
+  }
+  keep(std::move(earlier));
+  loaded = library;
+}
+
+/// The sources that are loaded.
+std::vector<std::string> loaded_sources() {
+  std::vector<std::string> files;
+  for (const auto& [file, library] : plugin_sources())
+    if (!library.empty()) files.push_back(file);
+  return files;
 }
 
 /// A module that was built against other headers than the library that it found, as a plugin would be.
@@ -87,8 +148,6 @@ void refuse_half_made(const py::module_& m) {
 const Registry& registry() { return mutable_registry(); }
 
 void register_prototype(std::unique_ptr<RegistryEntry> entry) {
-  // Experiments that were made of an earlier prototype refer to its entry.
-  static auto* const replaced = new std::vector<std::unique_ptr<RegistryEntry>>;
   Registry& all = mutable_registry();
   const RegistryEntry* before = all.find(entry->kind, entry->name);
   entry->library = "Python";
@@ -100,7 +159,9 @@ void register_prototype(std::unique_ptr<RegistryEntry> entry) {
     if (earlier) all.add_entry(std::move(earlier));
     throw;
   }
-  if (earlier) replaced->push_back(std::move(earlier));
+  std::vector<std::unique_ptr<RegistryEntry>> replaced;
+  if (earlier) replaced.push_back(std::move(earlier));
+  keep(std::move(replaced));
 }
 
 }  // namespace drape::python
@@ -120,6 +181,13 @@ PYBIND11_MODULE(_core, m) {
   m.def("plugins", &python::plugins, pybind11::arg("kind"),
         "Name and summary of every plugin of a kind: energy, refiner, contact, solver or metric. Prototypes "
         "that are registered count.");
+  m.def(
+      "load_plugin", &python::load_source, pybind11::arg("file"),
+      "Compile a plugin, one C++ file, unless it was compiled before, and load it, as `drape run --plugin "
+      "FILE` "
+      "does; experiments then know what it registers. Of a file that has changed since, the new entries take "
+      "the place of the old ones. Raises RuntimeError, with what the compiler says.");
+  m.def("_plugin_sources", &python::loaded_sources);
   python::bind_errors(m);
   python::bind_scene(m);
   python::bind_model(m);

@@ -159,11 +159,9 @@ ConfigNode with_value(ConfigNode experiment, const std::string& key, const py::o
 }
 
 std::string in_python(std::string message) {
-  static constexpr std::pair<const char*, const char*> terms[] = {{"--method all", "methods=\"all\""},
-                                                                  {"--method", "methods"},
-                                                                  {"--overwrite", "overwrite=True"},
-                                                                  {"--allow-memory", "allow_memory=True"},
-                                                                  {"--out", "out"}};
+  static constexpr std::pair<const char*, const char*> terms[] = {
+      {"--method all", "methods=\"all\""},     {"--method", "methods"}, {"--overwrite", "overwrite=True"},
+      {"--allow-memory", "allow_memory=True"}, {"--out", "out"},        {"--plugin", "drape.load_plugin"}};
   for (const auto& [option, argument] : terms)
     message = std::regex_replace(message, std::regex(std::string(option) + "\\b"), argument);
   return message;

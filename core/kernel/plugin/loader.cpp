@@ -63,7 +63,9 @@ auto call(const std::string& path, const char* what, const Call& function) {
   }
 }
 
-void load(Registry& registry, const fs::path& library) {
+}  // namespace
+
+void load_plugin(Registry& registry, const fs::path& library) {
   const std::string path = library.string();
   if (const std::string unfit = fault_of(library); !unfit.empty())
     refuse_path(library, "cannot be loaded: " + unfit);
@@ -92,13 +94,15 @@ void load(Registry& registry, const fs::path& library) {
     refuse_path(library, "names no entries; add some in its DRAPE_PLUGIN");
 }
 
-}  // namespace
-
-std::vector<fs::path> plugin_directories() {
+fs::path library_directory() {
   Dl_info own;
   if (!dladdr(reinterpret_cast<const void*>(&load_plugins), &own) || !own.dli_fname)
     throw std::runtime_error("the path of libdrape cannot be found; name its plugins in DRAPE_PLUGIN_PATH");
-  const fs::path beside = fs::canonical(own.dli_fname).parent_path() / "drape";
+  return fs::canonical(own.dli_fname).parent_path();
+}
+
+std::vector<fs::path> plugin_directories() {
+  const fs::path beside = library_directory() / "drape";
   std::vector<fs::path> directories;
   if (fs::is_directory(beside)) directories.push_back(beside);
   const char* variable = std::getenv("DRAPE_PLUGIN_PATH");
@@ -119,7 +123,7 @@ void load_plugins(Registry& registry, const std::vector<fs::path>& directories) 
     const fs::path canonical = fs::canonical(directory);
     if (std::find(done.begin(), done.end(), canonical) != done.end()) continue;
     done.push_back(canonical);
-    for (const fs::path& library : libraries_of(directory)) load(registry, library);
+    for (const fs::path& library : libraries_of(directory)) load_plugin(registry, library);
   }
 }
 

@@ -37,6 +37,7 @@ from ._core import (
     __commit__,
     __version__,
     bind_energy,
+    load_plugin,
     plugins,
     set_threads,
 )
@@ -55,6 +56,6 @@ __all__ = [
     "BoundEnergy", "Checkpoint", "Column", "ConfigError", "ConfigFault", "Energy", "Experiment", "Iteration",
     "Level", "LevelRecord", "LevelResult", "Material", "MethodRecord", "Metric", "Model", "Page", "Parameter",
     "Problem", "Refiner", "Result", "RunAborted", "Scene", "Solve", "Solver", "__commit__", "__version__",
-    "bind_energy", "check_energy", "figures", "plugins", "read_run", "read_sweep", "register", "resume", "set_threads",
+    "bind_energy", "check_energy", "figures", "load_plugin", "plugins", "read_run", "read_sweep", "register", "resume", "set_threads",
     "show", "sweep",
 ]

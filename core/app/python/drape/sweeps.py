@@ -11,6 +11,7 @@ from typing import Any, Dict, Mapping, Optional, Sequence, Union
 
 import pandas
 
+from . import _core
 from .experiment import Experiment
 from .result import read_sweep
 
@@ -44,7 +45,8 @@ def sweep(
     methods: their names; None for all. workers: concurrent runs; None for as many as the cores allow.
     engine: "local" or "slurm", whose jobs are waited for.
 
-    Each run is a process of the command, which does not know prototypes of this process. Raises RuntimeError for what the
+    Each run is a process of the command, which compiles and loads what `load_plugin` has loaded, and does not know
+    prototypes of this process. Raises RuntimeError for what the
     command refuses; runs that fail or do not converge are rows with that status.
     """
     base = experiment if isinstance(experiment, Experiment) else Experiment(experiment)
@@ -57,6 +59,7 @@ def sweep(
         for name, content in (("base.yaml", resolved), ("sweep.yaml", plan)):  # JSON is YAML too
             pathlib.Path(folder, name).write_text(json.dumps(content), encoding="utf-8")
         call = [str(_command()), "sweep", f"{folder}/sweep.yaml", "--out", os.fspath(out), "--engine", engine]
+        call += [word for source in _core._plugin_sources() for word in ("--plugin", source)]
         call += (["--workers", str(workers)] if workers else []) + (["--wait"] if engine == "slurm" else []) + ([] if progress else ["-q"])
         with subprocess.Popen(call, stdout=subprocess.DEVNULL, stderr=None if progress else subprocess.PIPE, text=True) as process:
             interrupted = False
