@@ -105,6 +105,25 @@ def test_metrics(scene, experiment):
         scene.metric("distance", 0, level.x)  # of pairs
 
 
+def test_previews_are_measured_by_their_methods_interpolation(small):
+    small["refiner"] = "loop"  # which moves the surface
+    small |= {"methods": {"pcs": {}, "by_refiner": {"type": "pcs", "interpolation": {"state": "refiner"}}}, "reference": {}}
+    experiment = drape.Experiment(small)
+    scene, result, distances = experiment.scene(), run(experiment, methods="all"), set()
+    for method, weights in ("pcs", scene.linear), ("by_refiner", scene.prolongations):
+        preview, end = (level.x for level in result[method].levels)
+        prolonged = scene.prolong(method, 0, preview)
+        assert abs(prolonged - weights[0] @ preview).max() < 1e-15
+        measured = scene.metric("distance", 1, end, prolonged)["distance_rms"]
+        pairs = result.consistency
+        assert measured == pairs[pairs["method"] == method]["distance_rms"].iloc[0]
+        distances.add(measured)
+        assert (scene.prolong(method, 1, end) == end).all()
+    assert len(distances) == 2
+    with pytest.raises(ValueError, match="nothing_such"):
+        scene.prolong("nothing_such", 0, scene.start(0))
+
+
 def test_arrays_outlive_their_owners(experiment):
     scene = experiment.scene()
     arrays = scene.levels[1].rest, scene[1].masses, scene.start(1)

@@ -132,6 +132,13 @@ py::dict evaluate_metric(const SceneHandle& s, const Text& name, int level, cons
   return values;
 }
 
+Positions prolonged(const SceneHandle& s, const Text& method, int level, const State& x) {
+  const Hierarchy& all = s.scene->hierarchy;
+  const int from = s.checked(level);
+  return all.prolong(x.of(all.levels[from].vertex_count()), from, s.scene->finest(),
+                     all.weights(s.experiment->solver_of(method).interpolation()));
+}
+
 std::string page(const SceneHandle& s, const State& state, int level) {
   const LevelModel& model = *s.scene->models[s.checked(level)];
   const Positions& x = state.of(model.level().vertex_count());
@@ -164,13 +171,18 @@ void bind_scene(py::module_& m) {
           "The initial state of a level, n×3 [m], read-only.")
       .def_property_readonly(
           "prolongations", [](const SceneHandle& s) { return read_only(s.scene->hierarchy.prolongations); },
-          "n_{l+1}×n_l weights of the refiner from level l to the next, scipy.sparse.csr_matrix, read-only.")
+          "n_{l+1}×n_l weights of the refiner from level l to the next, scipy.sparse.csr_matrix, read-only. "
+          "Previews are measured by `prolong`.")
       .def_property_readonly(
           "midpoints", [](const SceneHandle& s) { return read_only(s.scene->hierarchy.midpoints); },
           "Likewise the weights of the midpoint split, which does not move the surface.")
       .def_property_readonly(
           "linear", [](const SceneHandle& s) { return read_only(s.scene->hierarchy.linear); },
           "Likewise linear interpolation over the coarse rest shape.")
+      .def("prolong", &prolonged, py::arg("method"), py::arg("level"), py::arg("x"),
+           "A method's state x (n×3) [m] of a level on the finest one, by the method's own interpolation: so "
+           "its "
+           "previews are measured and shown.")
       .def_property_readonly("metrics",
                              [](const SceneHandle& s) {
                                std::vector<std::string> names;
