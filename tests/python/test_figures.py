@@ -17,7 +17,7 @@ import drape
 from conftest import SMALL_FILE, command
 
 pytest.importorskip("matplotlib")
-from drape import paper_sweep  # noqa: E402
+from drape import paper_sweep, plots  # noqa: E402
 from drape.paper import _cell  # noqa: E402
 
 SWEEP = f"name: two\nbase: {SMALL_FILE}\nseeds: [1, 2]\nmethods: [pcs, newton]\n"
@@ -50,16 +50,19 @@ def written(tmp_path):
 
 def check_latex(text):
     """The subset of LaTeX with booktabs that a table may be made of: what is checked here compiles."""
-    assert set(re.findall(r"\\[a-zA-Z]+", text)) <= {r"\begin", r"\end", r"\toprule", r"\midrule", r"\bottomrule", r"\textbf", r"\par", r"\smallskip", r"\footnotesize",
+    assert set(re.findall(r"\\[a-zA-Z]+", text)) <= {r"\begin", r"\end", r"\begingroup", r"\endgroup", r"\small", r"\setlength", r"\tabcolsep",
+                                                   r"\resizebox", r"\ifdim", r"\else", r"\fi", r"\width", r"\linewidth", r"\toprule", r"\midrule", r"\bottomrule", r"\textbf", r"\par", r"\smallskip", r"\footnotesize",
                                                    r"\scriptsize", r"\shortstack", r"\addlinespace", r"\cdot"}
-    columns, body = re.search(r"\\begin{tabular}{([lr]+)}\n(.*)\n\\end{tabular}\n", text, re.DOTALL).groups()
+    # No wider than the text.
+    assert text.startswith("\\begingroup\n\\small\\setlength{\\tabcolsep}{4pt}\\resizebox{\\ifdim\\width>\\linewidth\\linewidth\\else\\width\\fi}{!}{\n")
+    columns, body = re.search(r"\\begin{tabular}{([lr]+)}\n(.*)\n\\end{tabular}\n}\\endgroup\n\\par", text, re.DOTALL).groups()
     rows = [line for line in body.split("\n") if not line.startswith("\\") or line.startswith(r"\shortstack")]
     assert len(rows) > 1 and all(line.endswith(r" \\") and len(re.findall(r"(?<!\\)&", line)) == len(columns) - 1 for line in rows)
     plain = re.sub(r"\\[\\&%$#_{}]", "", text)
     assert plain.count("{") == plain.count("}") and plain.count("$") % 2 == 0
     assert not re.search(r"[%#_^]", re.sub(r"\$[^$]*\$", "", plain))
     if shutil.which("kpsewhich") and not subprocess.run(["kpsewhich", "booktabs.sty"], stdout=subprocess.DEVNULL).returncode:
-        page = "\n".join([r"\documentclass[landscape]{article}", r"\usepackage{booktabs}", r"\begin{document}", text, r"\end{document}", ""])
+        page = "\n".join([r"\documentclass[landscape]{article}", r"\usepackage{booktabs,graphicx}", r"\begin{document}", text, r"\end{document}", ""])
         with tempfile.TemporaryDirectory() as folder:
             made = subprocess.run(["pdflatex", "-halt-on-error", "-output-directory", folder], input=page, capture_output=True, text=True)
         assert made.returncode == 0, made.stdout
@@ -85,7 +88,7 @@ def test_figures_of_a_run(written, tmp_path):
     assert "<text" in files["distance_own.svg"].read_text()
     assert (tmp_path / "run/errors.csv").read_bytes() == files["errors.csv"].read_bytes()
     table = files["table.tex"].read_text()
-    assert table.startswith(r"\begin{tabular}{l") and r"\toprule" in table
+    check_latex(table)
     assert "pcs & 1 of 1 & " in table
 
 
@@ -142,7 +145,8 @@ def test_a_sweep_is_one_table_and_has_figures(written, swept):
     with pytest.raises(RuntimeError, match="neither results.json nor sweep.json"):
         drape.read_sweep(sweep / "runs")
     assert {"seconds_by_step_growth.svg", "preview_rms_by_step_growth.png", "iterations_by_step_growth.pdf", "pictures.pdf",
-            "distance_over_seconds.pdf", "distance_over_iterations.csv"} <= set(files)
+            "distance_over_seconds.pdf", "distance_over_iterations.csv", "distance_own_over_seconds.png", "distance_own_over_iterations.pdf"} <= set(files)
+    assert "distance from its own end" in files["distance_own_over_seconds.svg"].read_text().replace("<!-- ", "").replace("its own\n", "its own ")
     drawn = rows_of(files["seconds_by_step_growth.csv"])
     assert len(drawn) == 4 and all(float(row["low"]) <= float(row["median"]) <= float(row["high"]) and row["count"] == "2" for row in drawn)
     captions = files["figures.tex"].read_text()
@@ -234,6 +238,33 @@ def test_a_sweep_from_python_is_that_of_the_command_and_runs_what_is_missing(tmp
         drape.sweep(experiment, starts=10**9, methods="pcs", out=tmp_path / "other", progress=False)
     assert set(drape.sweep(experiment, methods="newton", out=tmp_path / "one", progress=False)["method"]) == {"newton"}
     assert drape.figures(tmp_path / "sweep", tmp_path / "figures")
+
+
+@pytest.mark.parametrize("values", [(0.9, 1.1), (1.5, 7), (0.8, 8), (3, 200), (2e-4, 90), (1e-9, 1e3)])
+def test_a_logarithmic_axis_has_labels_enough_to_be_read(values):
+    import matplotlib.pyplot
+
+    figure, axes = matplotlib.pyplot.subplots(figsize=(3.3, 2.4))
+    axes.plot(values, values)
+    axes.set(xscale="log", yscale="log")
+    for axis in (axes.xaxis, axes.yaxis):
+        plots.label_logarithmic(axis)
+    figure.canvas.draw()
+    for axis in (axes.xaxis, axes.yaxis):
+        low, high = axis.get_view_interval()
+        labels = [label.get_text() for place, label in zip(axis.get_majorticklocs(), axis.get_majorticklabels()) if low <= place <= high]
+        assert 2 <= len(labels) == len(set(labels)) <= 13 and all(labels)
+    matplotlib.pyplot.close(figure)
+
+
+def test_titles_of_panels_are_one_line_where_smaller_type_makes_them_that():
+    import matplotlib.pyplot
+
+    for title, size, lines in (("friction 0.1", 8, 1), ("bending modulus 80000 Pa, membrane modulus 1e5 Pa", 6, 1), ("word " * 20, 8, 3)):
+        figure, panels, _ = paper_sweep._panels([title] * 3, None, 50)
+        assert {panel.get_title().count("\n") + 1 for panel in panels} == {lines}
+        assert {panel.title.get_fontsize() for panel in panels} == {size if size < 8 else matplotlib.rcParams["axes.titlesize"]} or size == 8
+        matplotlib.pyplot.close(figure)
 
 
 def test_a_map_goes_by_what_names_it_and_else_by_its_number():

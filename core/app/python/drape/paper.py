@@ -6,6 +6,7 @@ The style is plots.STYLE, under the reader's own: matplotlib's matplotlibrc, or 
 from __future__ import annotations
 
 import argparse
+import itertools
 import json
 import pathlib
 import re
@@ -57,15 +58,17 @@ def _varied(table: dict) -> list[str]:
 
 
 def latex_table(table: dict, measures=(), machine: str = "") -> str:
-    """Medians over the starts that converged, with ranges below, for the package booktabs; what is bold is the pages' choice."""
+    """Medians over the starts that converged, with ranges below, no wider than the text, for the packages booktabs and graphicx; what is bold is
+    the pages' choice."""
     summary, keys = pandas.DataFrame(table["summary"]), _varied(table)
     names = paper_sweep.Keys({key: table["units"].get(key, "") for key in keys}, table["summary"])
     columns = {name: _title(name, table) for name in measures or COLUMNS if name in summary and summary[name].notna().any()}
-    has_reference = bool(summary["reference"].any())
+    has_reference = any(0 < row["reference"] < row["starts"] for _, row in summary.iterrows())  # else the errors' cells say it all
     head = [*(names.title(key) for key in keys), "method", "converged", *["reference"] * has_reference, *columns.values()]
     stacked = [textwrap.fill(title.translate(ESCAPES), 14).replace("\n", r"\\{}") for title in head]
     stacked = [rf"\shortstack[r]{{{title}}}" if r"\\" in title else title for title in stacked]
-    lines = [rf"\begin{{tabular}}{{{'l' * (len(keys) + 1)}{'r' * (len(head) - len(keys) - 1)}}}", r"\toprule", " & ".join(stacked) + r" \\"]
+    lines = [r"\small\setlength{\tabcolsep}{4pt}\resizebox{\ifdim\width>\linewidth\linewidth\else\width\fi}{!}{",
+             rf"\begin{{tabular}}{{{'l' * (len(keys) + 1)}{'r' * (len(head) - len(keys) - 1)}}}", r"\toprule", " & ".join(stacked) + r" \\"]
     former: list | None = None
     for _, row in summary.iterrows():
         where = [names.value(key, row[key]).translate(ESCAPES) for key in keys]
@@ -82,7 +85,7 @@ def latex_table(table: dict, measures=(), machine: str = "") -> str:
     notes += [table["bold"].translate(ESCAPES)] if any(summary["best"].map(len)) else []
     notes += [machine.translate(ESCAPES)] if machine else []
     notes += [f"The machine was busy during {busy} of {len(timed)} timings."] if busy else []
-    return "\n".join([*lines, r"\bottomrule", r"\end{tabular}", r"\par\smallskip{\footnotesize " + " ".join(notes) + "}", ""])
+    return "\n".join([r"\begingroup", *lines, r"\bottomrule", r"\end{tabular}", r"}\endgroup", r"\par\smallskip{\footnotesize " + " ".join(notes) + "}", ""])
 
 
 def _file(folder: pathlib.Path, name: str) -> pathlib.Path:
@@ -164,13 +167,14 @@ def _sweep_figures(table: dict, run_folders: dict, out: pathlib.Path, measures, 
     references = {title: ", ".join(f"{row['method']} in {row['reference']} of {row['starts']}" for _, row in summary.iterrows()
                                    if row["variation"] == variation and row["reference"]) for variation, title in titles.items()}
     drawn = paper_sweep.draw_states(runs, list(styles), width)
-    for cost in ("seconds", "iterations"):
-        if made := paper_sweep.distance_figure(runs, cost, styles, references, drawn, width, busy):
-            target, note = "its own end", ""
-            if any(references.values()):
-                target, note = "the reference", "Where a method's own end is the reference, its line falls to nothing. "
-            save(made, f"distance_over_{cost}", f"Distance of each method's states from {target} against {COSTS[cost]}: medians over the starts, with bands from the "
-                 f"lowest to the highest. {note}Pictures: the end from the first start.")
+    columns = paper_sweep.error_columns(runs)
+    for column, cost in itertools.product(columns, ("seconds", "iterations")):
+        if made := paper_sweep.distance_figure(runs, column, cost, styles, references, drawn, width, busy):
+            of_reference = column.startswith("reference")
+            target = "the reference" if of_reference else "its own end"
+            note = "Where a method's own end is the reference, its line falls to nothing. " if of_reference and any(references.values()) else ""
+            save(made, f"distance_{'' if column == columns[0] else 'own_'}over_{cost}", f"Distance of each method's states from {target} against {COSTS[cost]}: "
+                 f"medians over the starts, with bands from the lowest to the highest. {note}Pictures: the end from the first start.")
     if made := paper_sweep.pictures_figure(drawn, styles, width):
         save(made, "pictures", "Preview and end of each method from the first start, by one camera, with vertices and CPU time up to that state.")
     files.append(out / "figures.tex")

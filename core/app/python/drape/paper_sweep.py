@@ -12,7 +12,7 @@ import numpy
 import pandas
 
 from . import _core
-from .plots import COSTS, error_title, style_of
+from .plots import COSTS, error_title, label_logarithmic, style_of
 
 MILLIMETRE = 1 / 25.4  # [inch]
 COLUMN, PAGE = 84, 174  # widths of a column and of a page [mm]
@@ -77,9 +77,14 @@ class Keys:
         return text if text == value else f"{self.short(key).replace('_', ' ')} {text} {self.units.get(key, '')}".strip()
 
 
+def _letters(width: float, points: float) -> int:
+    """How many letters of a type fit into a line [mm]."""
+    return max(8, round(width / points / 0.17))
+
+
 def _fill(text: str, width: float, points: float = 8) -> str:
     """A name in lines as wide as so much type [mm]; underscores, which files need, are spaces to a reader."""
-    return textwrap.fill(text.replace("_", " "), max(8, round(width / points / 0.17)), break_on_hyphens=False, break_long_words=False)
+    return textwrap.fill(text.replace("_", " "), _letters(width, points), break_on_hyphens=False, break_long_words=False)
 
 
 def _panels(titles: list[str], width, height: float):
@@ -96,9 +101,12 @@ def _panels(titles: list[str], width, height: float):
                                               figsize=(width * MILLIMETRE, rows * height * MILLIMETRE))
     for spare in axes.flat[count:]:
         spare.remove()
-    for number, (one, title) in enumerate(zip(axes.flat, titles)):
-        letter = f"({chr(ord('a') + number)}) " if 1 < count <= 26 else ""
-        one.set_title(_fill(letter + title, width / columns))
+    if 1 < count <= 26:
+        titles = [f"({chr(ord('a') + number)}) {title}" for number, title in enumerate(titles)]
+    # The largest type in which every title is one line.
+    points = next((size for size in (8, 7, 6) if max(map(len, titles)) <= _letters(width / columns, size)), None)
+    for one, title in zip(axes.flat, titles):
+        one.set_title(_fill(title, width / columns, points or 8), **({"fontsize": points} if points and points < 8 else {}))
     return figure, list(axes.flat[:count]), width / columns
 
 
@@ -166,6 +174,8 @@ def measure_figure(summary: pandas.DataFrame, measure: str, title: str, key: str
             if len(values) < 7:
                 axes.set_xticks(values, [keys.value(key, value) for value in values])
                 axes.minorticks_off()
+            elif logarithmic:
+                label_logarithmic(axes.xaxis)
             axes.margins(x=0.1)
             axes.set_xlabel(keys.title(key))
         else:
@@ -176,6 +186,7 @@ def measure_figure(summary: pandas.DataFrame, measure: str, title: str, key: str
     drawn = [row for row in rows if row["median"] is not None]
     if log:
         panels[0].set_yscale("log")
+        label_logarithmic(panels[0].yaxis)
     elif all(row["low"] >= 0 for row in drawn):
         panels[0].set_ylim(0, None if any(row["high"] for row in drawn) else 1)
     absent = set(methods) - {row["method"] for row in drawn}
@@ -205,20 +216,21 @@ def _median_curve(curves, cost: str, column: str) -> pandas.DataFrame:
                              "count": len(curves)})
 
 
-def distance_figure(runs: dict, cost: str, styles: dict, references: dict, drawn: dict, width=None, busy: bool = False):
+def error_columns(runs: dict) -> list[str]:
+    """The column of errors.csv that is drawn for each target, the reference first, as far as one of the runs has it."""
+    known = {column for results in runs.values() for result in results for column in result.errors if result.errors[column].notna().any()}
+    columns = ([f"{target}_{name}" for name in ("rms", "hausdorff", "energy_gap") if f"{target}_{name}" in known] for target in ("reference", "own"))
+    return [own[0] for own in columns if own]
+
+
+def distance_figure(runs: dict, column: str, cost: str, styles: dict, references: dict, drawn: dict, width=None, busy: bool = False):
     """Distance against cost: a panel for each variation, a line for each method with a band over its starts, from where the first
     leaves the start, with the methods that were the reference and, in the corner below the lines, a picture.
 
-    runs: the results of each variation's starts, by its title; references: in words, likewise; drawn: of `draw_states`. None
-    without any recorded error.
+    runs: the results of each variation's starts, by its title; column: of `error_columns`; references: in words, likewise; drawn: of
+    `draw_states`.
     """
-    from matplotlib.ticker import LogLocator
-
-    columns = [f"{target}_{name}" for target in ("reference", "own") for name in ("rms", "hausdorff", "energy_gap")]
-    known = [column for column in columns if any(column in r.errors and r.errors[column].notna().any() for all_ in runs.values() for r in all_)]
-    if not known:
-        return None
-    column, rows = known[0], []
+    rows = []
     figure, panels, room = _panels(list(runs), width, 50)
     for axes, (title, results) in zip(panels, runs.items()):
         begin = math.inf
@@ -238,19 +250,17 @@ def distance_figure(runs: dict, cost: str, styles: dict, references: dict, drawn
             rows.append(curve.assign(variation=title, method=method))
             begin = min(begin, curve[cost][curve["low"] > 0.9 * curve["high"].iloc[0]].max())
         axes.set(yscale="log", xlabel=COSTS[cost] + (", on a busy machine" if busy and cost == "seconds" else ""))
-        axes.yaxis.set_major_locator(LogLocator(numticks=12))
         if cost != "iterations":
             axes.set(xscale="log", xlim=(begin / 1.2 if begin < math.inf else None, None))
-            axes.xaxis.set_major_locator(LogLocator(subs=(1, 3), numticks=12))
-            axes.xaxis.set_major_formatter("{x:g}")
-        axes.minorticks_off()
+            label_logarithmic(axes.xaxis)
         if column.startswith("reference") and references[title]:
             words = _fill("reference: " + references[title], 0.75 * room, 6)
-            axes.set_title(axes.get_title(), pad=4 + 7 * (1 + words.count("\n")))
+            axes.set_title(axes.get_title(), fontsize=axes.title.get_fontsize(), pad=4 + 7 * (1 + words.count("\n")))
             axes.text(0.5, 1.02, words, transform=axes.transAxes, fontsize=6, ha="center", va="bottom")
         image, _ = next(iter(drawn[title].values()), (None, ""))
         if image is not None:
             axes.inset_axes([0.01, 0.02, 0.3, 0.42], anchor="SW", xticks=[], yticks=[], frame_on=False).imshow(image)
+    label_logarithmic(panels[0].yaxis)  # which all share
     _name_methods(figure, styles, error_title(column))
     return figure, pandas.concat(rows) if rows else pandas.DataFrame()
 

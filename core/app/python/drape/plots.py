@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any, Dict
 
 from . import _core
@@ -71,6 +72,19 @@ def measures_of(errors, target: str) -> list[str]:
     return [name.removeprefix(target + "_") for name in names if errors[name].notna().any()]
 
 
+def label_logarithmic(axis) -> None:
+    """Gives a logarithmic axis, once all is drawn, at least two labels: powers of ten, of a short axis also numbers between them."""
+    from matplotlib.ticker import LogLocator, MaxNLocator, NullLocator
+
+    low, high = sorted(axis.get_view_interval())
+    decades = math.log10(high / low)
+    between = (1.0,) if decades >= 3 else (1.0, 3.0) if decades >= 1.5 else (1.0, 2.0, 5.0)
+    axis.set_major_locator(LogLocator(subs=between, numticks=12) if decades >= 0.8 else MaxNLocator(4))
+    axis.set_minor_locator(NullLocator())
+    if decades < 3:
+        axis.set_major_formatter("{x:g}")
+
+
 def plot_errors(result, measure: str = "", target: str = "reference", cost: str = "seconds", axes=None):
     """Error over cost, a line for each method, in the report's colours; returns matplotlib's axes.
 
@@ -93,6 +107,8 @@ def plot_errors(result, measure: str = "", target: str = "reference", cost: str 
         rows = table[(table["method"] == method) & (table["level"] >= first.get(method, 0))]
         axes.plot(rows[cost], rows[column], markersize=4, label=method, **_look(result, method))
     axes.set(xlabel=COSTS[cost], ylabel=error_title(column), xscale="log", yscale="log")
+    label_logarithmic(axes.xaxis)
+    label_logarithmic(axes.yaxis)
     axes.legend()
     return axes
 
@@ -106,5 +122,6 @@ def plot_convergence(result, axes=None):
             axes.plot(rows["seconds"], rows["force_residual"], **{**_look(result, method), "marker": ""},
                       linewidth=0.7 + 0.6 * level, label=method if level == table["level"].max() else None)
     axes.set(xlabel="time [s]", ylabel="force residual [1]", yscale="log")
+    label_logarithmic(axes.yaxis)
     axes.legend()
     return axes
