@@ -51,6 +51,17 @@ function hero(run) {
   return h('section', {class: 'hero', id: 'in-3d'}, view.element, facts, view.controls);
 }
 
+/// The pieces of a garment: how the cloth of each is stretched and pressed at the end, and behind that on every level.
+function garment(run) {
+  const rowsAt = levels => levels.flatMap(([method, level]) => (level.pieces || []).map(row => ({method, level: level.level, ...row})));
+  const levels = run.order.flatMap(method => (run.results.methods[method].levels || []).filter(level => level.pieces?.length).map(level => [method, level]));
+  if (!levels.length) return null;
+  const ends = levels.filter(([method], k) => levels[k + 1]?.[0] !== method), names = Object.keys(rowsAt(ends)[0]);
+  const table = (id, what, rows) => dataTable(id, what, columnsOf(names, names.filter(name => !['method', 'level'].includes(name) || unique(rows.map(row => row[name])).length > 1), run.of), rows);
+  return h('section', {id: 'garment'}, h('h2', {}, 'The garment, by piece'), table('pieces', 'of pieces', rowsAt(ends)),
+    levels.length > ends.length ? fold('On every level', table('pieces-of-levels', 'of pieces on every level', rowsAt(levels))) : null);
+}
+
 function previews(run) {
   const shown = run.pictures.filter(picture => picture.fine !== undefined);
   if (!shown.length) return null;
@@ -165,12 +176,10 @@ function convergence(run) {
       points: increments.filter(row => row.method === line.method && (row.level ?? 0) === line.level).map(row => ({x: row.time, y: row[y]}))}))});
     return plot.element;
   };
-  const pieces = run.order.flatMap(method => (run.results.methods[method].levels || []).flatMap(level => (level.pieces || []).map(row => ({method, level: level.level, ...row}))));
   const sum = (rows, key) => rows.reduce((all, row) => all + row[key], 0);
   const phases = [...grouped(increments.filter(row => row.phase), row => `${row.method} ${row.level} ${row.phase}`).values()].map(rows =>
     ({phase: rows[0].phase, method: rows[0].method, level: rows[0].level, steps: sum(rows, 'steps'), iterations: sum(rows, 'iterations'), seconds: sum(rows, 'seconds')}));
   return h('section', {id: 'convergence-section'}, h('h2', {}, 'On the way'),
-    pieces.length ? fold('The garment, by piece', dataTable('pieces', 'of pieces', columnsOf(Object.keys(pieces[0]), Object.keys(pieces[0]), run.of), pieces)) : null,
     phases.length ? fold('Phases', dataTable('phases', 'of phases', columnsOf(Object.keys(phases[0]), Object.keys(phases[0]), run.of), phases)) : null,
     increments.length ? fold('Load stepping', increments.some(row => known(row.energy_released)) ? under('increment-energy', 'energy_released', 'energy released [J]') : '', under('increment-steps', 'steps', 'steps')) : null,
     fold('Convergence', h('p', {class: 'controls'}, choice('plot', Object.fromEntries(Object.entries(plots).map(([k, [title]]) => [k, title])), 'residual_seconds', draw, 'convergence-kind')), chart.element),
@@ -186,5 +195,5 @@ export function runPage(data) {
   run.order = run.rows.map(row => row.method);
   return [h('header', {}, h('h1', {}, results.experiment || 'Unnamed experiment'), results.description ? h('p', {class: 'lead'}, results.description) : null),
     run.order.length ? hero(run) : h('p', {class: 'absent'}, 'The run holds no method’s results yet.'),
-    ...(run.order.length ? [previews(run), distances(run), methodTable(run), convergence(run)] : []), h('footer', {}, about(results), results.ended ? ` · ${day(results.ended)}` : '')];
+    ...(run.order.length ? [garment(run), previews(run), distances(run), methodTable(run), convergence(run)] : []), h('footer', {}, about(results), results.ended ? ` · ${day(results.ended)}` : '')];
 }

@@ -166,16 +166,17 @@ export class Scene {
         lines.setIndex(shape.seams);  // which returns nothing in older versions of three.js
         view.mesh.add(new THREE.LineSegments(lines, this.seams));
       }
-      if (shape.warp) view.mesh.add(new THREE.LineSegments(arrows(shape.x, shape.warp, .06 * this.home.radius), this.warp));
+      if (shape.warp) view.mesh.add(new THREE.LineSegments(arrows(shape.x, shape.warp, .06 * this.home.cloth), this.warp));
     }
     if (shape.tints) view.mesh.geometry.setAttribute('tint', new THREE.BufferAttribute(shape.tints, 3, true));
     if (shape.rest) view.mesh.geometry.setAttribute('rest', new THREE.BufferAttribute(shape.rest, 3));
     view.mesh.material = shape.tints ? this.painted : this.cloth;
   }
 
-  /// Three quarters from above, as the pictures, at a distance where a ball of that radius fills the view.
-  lookAt(centre, radius) {
-    this.home = {target: centre.slice(), radius};
+  /// Three quarters from above, as the pictures, at a distance where a ball of that radius fills the view. `cloth`: the radius of one
+  /// around the cloth.
+  lookAt(centre, radius, cloth = radius) {
+    this.home = {target: centre.slice(), radius, cloth};
     this.resetView();
   }
   resetView() {

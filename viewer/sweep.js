@@ -86,6 +86,8 @@ function table(all) {
   const few = ['run', ...keys, 'seed', 'method', 'status', 'converged', 'machine', 'preview_seconds', 'seconds', 'cpu_seconds', 'iterations',
     'preview_' + measure, 'error_' + measure, 'energy_released', 'intersections', 'force_residual'];
   if (keys.length) few.shift();  // the keys tell the runs apart
+  const machines = unique(all.rows.map(row => row.machine ?? null));
+  if (machines.length < 2) few.splice(few.indexOf('machine'), 1);  // the page says above whether it was busy
   const draw = () => {
     const columns = columnsOf(state.medians ? [...names.slice(0, names.indexOf('method') + 1), 'converged', ...names.slice(names.indexOf('method') + 1)] : names, few, all.of);
     columns.filter(column => keys.includes(column.name)).forEach(column => Object.assign(column,
@@ -152,7 +154,7 @@ export function sweepPage(data) {
   const parts = all.rows.length ? [matrix(all), against(all), table(all), errors(all)] : [h('p', {class: 'absent'}, 'No run has written results yet.')];
   filter('');
   return [h('header', {}, h('h1', {}, data.name || 'Several runs'), data.description ? h('p', {class: 'lead'}, data.description) : null, h('p', {class: 'lead', id: 'counts'}, summary), busyWarning(all.rows)),
-    h('p', {class: 'controls filter'}, h('label', {}, 'Filter ', h('input', {type: 'search', id: 'filter', size: 22, placeholder: 'words, or as in seconds<2', input: event => filter(event.target.value)})), matching),
+    h('p', {class: 'controls filter'}, h('label', {}, 'Filter ', h('input', {type: 'search', id: 'filter', size: 26, placeholder: 'words, or as in seconds<2', input: event => filter(event.target.value)})), matching),
     ...parts, failures(all),
     h('footer', {}, machines.map(text => h('p', {}, text)), ended.length ? h('p', {}, unique([Math.min(...ended), Math.max(...ended)].map(day)).join(' to ')) : null, machines.length > 1 ? h('p', {class: 'poor'}, 'More than one machine or setting: their times do not compare.') : null)];
 }

@@ -9,7 +9,7 @@ function content(column, row) {
   if (column.show) return column.show(cell);
   if (column.name === 'status' && cell) return badge(cell);
   if (cell === null || typeof cell !== 'object') return own ? 'reference' : words(cell);
-  const notes = [words(cell.low) !== words(cell.high) ? `${words(cell.low)} … ${words(cell.high)}` : '', cell.count < row.starts ? `n = ${cell.count}` : '',
+  const notes = [words(cell.low) !== words(cell.high) ? `${words(cell.low)}\u00a0… ${words(cell.high)}` : '', cell.count < row.starts ? `n = ${cell.count}` : '',
     own ? `reference in ${own}` : ''].filter(note => note).join(', ');
   return [words(cell.median), notes ? h('span', {class: 'range'}, notes) : ''];
 }

@@ -7,6 +7,22 @@ import {choice, count, fold, h, save, say, tick} from './text.js';
 /// So many digits, or a whole number where these do not suffice: no exponent.
 const digits = (value, n) => value < 10 ** n - .5 ? value.toPrecision(n) : count(value);
 
+const boxOf = arrays => arrays.reduce((box, x) => box.union(new THREE.Box3().setFromArray(x)), new THREE.Box3());
+/// A small sphere around points.
+function ballAround(arrays) {
+  const centre = boxOf(arrays).getCenter(new THREE.Vector3());
+  let square = 0;
+  for (const x of arrays)
+    for (let i = 0; i < x.length; i += 3) square = Math.max(square, (x[i] - centre.x) ** 2 + (x[i + 1] - centre.y) ** 2 + (x[i + 2] - centre.z) ** 2);
+  return {center: centre, radius: Math.sqrt(square)};
+}
+/// Whether an obstacle is to be seen as a whole, as in pictures (core/app/report/pictures.cpp): it is taller than the cloth, as no floor
+/// is, and at most three times as large.
+function isBody(x, cloth) {
+  const [own, its] = [boxOf([x]), boxOf(cloth)].map(box => box.getSize(new THREE.Vector3()));
+  return own.z > its.z && own.length() <= 3 * its.length();
+}
+
 export class View {
   /// `load(name)` is a promise of a block's bytes. Of the methods `first` is shown, or all; with `beside` the panel of a state
   /// has that of the method's end beside it.
@@ -222,13 +238,13 @@ export class View {
     }));
   }
 
-  /// Points the camera at the cloth's bounding box.
+  /// Points the camera at the cloth, and at all of a body in it.
   aim(panels) {
-    const points = panels.filter(panel => panel.shape && !panel.flat).flatMap(({shape}) => [...shape.x]), all = new THREE.BufferGeometry();
-    if (!points.length) return;
-    all.setAttribute('position', new THREE.Float32BufferAttribute(points, 3));
-    all.computeBoundingSphere();
-    this.scene.lookAt(all.boundingSphere.center.toArray(), all.boundingSphere.radius || 1);
+    const drawn = panels.filter(panel => panel.shape && !panel.flat), cloth = drawn.map(({shape}) => shape.x);
+    if (!cloth.some(x => x.length)) return;
+    const bodies = drawn.flatMap(({obstacles}) => obstacles.map(({x}) => x)).filter(x => isBody(x, cloth));
+    const {center, radius} = ballAround([...cloth, ...bodies]);
+    this.scene.lookAt(center.toArray(), radius || 1, ballAround(cloth).radius || 1);
     this.aimed = true;
   }
 

@@ -88,6 +88,17 @@ test('a table begins with few columns, sorts by every one and is saved', async (
   for (const name of ['energy', 'energy_on_finest', 'energy_parts.gravity']) assert.ok(!names.includes(name), name);
 });
 
+test('a garment is told by piece first, as it is at the end', async () => {
+  const pieces = level => ['front', 'back'].map((piece, k) => ({piece, stretch_warp: level + k, ease: 5}));
+  const {page} = await edited('garment', ({pcs}) => pcs.levels.forEach(level => { level.pieces = pieces(level.level); }));
+  assert.equal(await page.locator('#page > section').nth(1).getAttribute('id'), 'garment');
+  assert.ok(await page.locator('#pieces tbody').isVisible());
+  assert.deepEqual((await savedRows(page, '#pieces')).map(row => [row.level, row.piece, row.stretch_warp]), [[1, 'front', 1], [1, 'back', 2]]);
+  await page.locator('#garment > details > summary').click();
+  assert.deepEqual((await savedRows(page, '#pieces-of-levels')).map(row => row.level), [0, 0, 1, 1]);
+  assert.equal(await (await openReport('out')).page.locator('#garment').count(), 0);
+});
+
 test('names from the results are texts, never parts of the page', async () => {
   const evil = '</script><img src=x onerror="window.broken = 1">';
   const {page} = await edited('evil', (methods, results) => {

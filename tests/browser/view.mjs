@@ -3,7 +3,7 @@ import assert from 'node:assert/strict';
 import fs from 'node:fs';
 import path from 'node:path';
 import {changeResults, edited, folder, openReport, report} from './contact_report.mjs';
-import {checkWhole, downloaded, drawnShare, newPage, onFirstScreen, openPage, run, screens, source, test, textOf, until} from './support.mjs';
+import {addressOf, checkWhole, downloaded, drawnShare, newPage, onFirstScreen, openPage, run, screens, source, test, textOf, until} from './support.mjs';
 
 test('opens without a complaint or a request, on the preview beside its end', async () => {
   const {page, heard, state} = await openPage(report);
@@ -109,6 +109,52 @@ test('the progression plays, snapshots between the levels included', async () =>
   await page.locator('#viewer-stop').fill('1');
   await until('a snapshot', async () => (await state()).stop === 1 && (await state()).panels[0].level === 0);
   assert.match(await textOf(page, '#viewer-labels'), /7 iterations, 0.700 s/);
+});
+
+test('labels can be read over whatever is behind them, and a body is in the frame from head to foot', async () => {
+  // A cape on a post, which is taller than the cape.
+  fs.writeFileSync(path.join(folder, 'post.yaml'), `name: post
+cloth: {shape: square, side: 0.3, columns: 9, rows: 9}
+levels: 1
+start: {translate: [-0.15, -0.15, 0.41]}
+energies: [neo_hookean, hinge, gravity]
+contact: ipc
+obstacles: [{meshed_shape: box, size: [0.1, 0.1, 0.8]}]
+newton: {force_tolerance: 1e9, decrement_tolerance: 1e9}
+methods: {newton: {}}
+`);
+  await run(folder, 'run', 'post.yaml', '--out', 'post', '--quiet', '--threads', '1', '--set', 'snapshots=0');
+  for (const colorScheme of ['light', 'dark']) {
+    const {page} = await openPage(addressOf(folder, 'post/report.html'), {colorScheme});
+    const farthest = await page.evaluate(() => {
+      const {scene, panels} = window.drapeViewer, points = [...panels[0].shape.x, ...panels[0].obstacles[0].x];
+      scene.render(1);
+      scene.camera.updateMatrixWorld();
+      let most = 0;
+      for (let i = 0; i < points.length; i += 3) {
+        const place = new THREE.Vector3(...points.slice(i, i + 3)).project(scene.camera);
+        most = Math.max(most, Math.abs(place.x), Math.abs(place.y));
+      }
+      return most;
+    });
+    assert.ok(farthest > .5 && farthest < 1, `${farthest}`);
+    const contrasts = await page.evaluate(() => {
+      const pen = document.createElement('canvas').getContext('2d', {willReadFrequently: true});
+      const luminance = (...colours) => {
+        for (const colour of colours) {
+          pen.fillStyle = colour;
+          pen.fillRect(0, 0, 1, 1);
+        }
+        const [r, g, b] = [...pen.getImageData(0, 0, 1, 1).data].map(v => v / 255).map(v => v <= .04045 ? v / 12.92 : ((v + .055) / 1.055) ** 2.4);
+        return .2126 * r + .7152 * g + .0722 * b;
+      };
+      return [...document.querySelectorAll('#viewer-labels :is(b, span)')].flatMap(text => ['black', 'white'].map(behind => {
+        const {color, backgroundColor} = getComputedStyle(text), pair = [luminance(color), luminance(behind, backgroundColor)];
+        return (Math.max(...pair) + .05) / (Math.min(...pair) + .05);
+      }));
+    });
+    assert.ok(contrasts.length >= 4 && contrasts.every(contrast => contrast >= 4.5), contrasts.join());
+  }
 });
 
 test('sewn cloth has its seams as lines, and its flat pieces beside it in the same colours', async () => {

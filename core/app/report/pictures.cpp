@@ -23,8 +23,17 @@ const Eigen::Vector3f outline_colour = Eigen::Vector3f(0x0b, 0x62, 0xa8) / 255;
 
 int height_of(int width) { return static_cast<int>(std::lround(width * 7.0 / 9)); }
 
+/// Whether an obstacle is to be seen as a whole: it is taller than the cloth, as no floor is, and at most
+/// three times as large (isBody in viewer/view.js).
+bool is_body(const Positions& obstacle, const Eigen::AlignedBox3d& cloth) {
+  const Eigen::AlignedBox3d box = bounding_box(obstacle);
+  return !box.isEmpty() && !cloth.isEmpty() && box.sizes().z() > cloth.sizes().z() &&
+         box.diagonal().norm() <= 3 * cloth.diagonal().norm();
+}
+
 /// The points of an obstacle that a picture of the cloth includes: not the far ends of a floor.
 Positions near_cloth(const Positions& obstacle, const Eigen::AlignedBox3d& cloth) {
+  if (is_body(obstacle, cloth)) return obstacle;
   const double margin = cloth.isEmpty() ? 0 : cloth.diagonal().norm() / 4;
   const Eigen::AlignedBox3d near(cloth.min().array() - margin, cloth.max().array() + margin);
   std::vector<Eigen::Index> chosen;
