@@ -156,6 +156,35 @@ TEST_CASE("patterns that cannot be sewn are refused with file, line, panel and e
               "p.yaml:1:13: \"units_in_meter\" in properties is required and missing");
 }
 
+TEST_CASE("panels whose loops enclose no area or whose edges have no length are refused by name") {
+  const auto said = [](const std::string& vertices, const std::string& edges) {
+    return refused_pattern("properties: {units_in_meter: 100}\npattern:\n  panels:\n    front: {vertices: [" +
+                           vertices + "], edges: [" + edges + "]}\n");
+  };
+  const std::string in = "p.yaml:4:12: panel front: ";
+  const std::string none = " encloses no area: its points at this \"edge_length\" lie on one line";
+  for (const auto& [vertices, edges] :
+       Refusals{{"[0, 0], [5, 0], [10, 0]", "[0, 1], [1, 2], [2, 0]"},
+                {"[0, 0], [10, 30], [5, 15], [7, 21]", "[0, 1], [1, 3], [3, 2], [2, 0]"},
+                {"[0, 0], [20, 0], [20, 20]", "[0, 1], [1, 0]"},
+                {"[0, 0], [1, 0], [20, 20]", "[0, 1], [1, 0]"},
+                {"[0, 0], [20, 0], [20, 20]", "{endpoints: [0, 1], curvature: [0.5, 0]}, [1, 0]"},
+                {"[0, 0], [20, 0], [20, 20]",
+                 "{endpoints: [0, 1], curvature: {type: cubic, params: [[0.3, 0], [0.6, 0]]}}, [1, 0]"}})
+    check_error(said(vertices, edges), in + "the outline" + none);
+  const std::string square = "[0, 0], [20, 0], [20, 20], [0, 20], ",
+                    outline = "[0, 1], [1, 2], [2, 3], [3, 0], ";
+  check_error(said(square + "[5, 5], [9, 5], [7, 5]", outline + "[4, 5], [5, 6], [6, 4]"),
+              in + "hole 1" + none);
+  check_error(said(square + "[50, 50], [90, 50], [90, 90]", outline + "[4, 5], [5, 6], [6, 4]"),
+              "p.yaml:4:131: panel front: the hole that begins with edge 4 lies outside the outline");
+  for (const std::string near : {"[20, 1e-12]", "[20, 1e-320]"})
+    CHECK_THAT(said("[0, 0], [20, 0], " + near, "[0, 1], [1, 2], [2, 0]"),
+               Contains(": panel front: edge 1 is ") && Contains(" m long, of at least 1e-09 and at most "));
+  CHECK_THAT(said("[0, 0], [1e9, 0], [0, 1e9]", "[0, 1], [1, 2], [2, 0]"),
+             Contains(": panel front: edge 0 is 1e+07 m long, of at least 1e-09 and at most 1e+06"));
+}
+
 TEST_CASE("a panel's name may have blanks, and what a file of meshes could not hold is refused") {
   const auto named = [](const std::string& left, const std::string& right) {
     return "properties: {units_in_meter: 1}\npattern:\n  panels:\n    \"" + left +

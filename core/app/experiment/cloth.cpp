@@ -173,7 +173,7 @@ bool is_grid(const ClothParameters& c) {
 
 int vertices_within(const OutlineSize& outline, double edge_length) {
   const double count = outline.vertices(edge_length);
-  if (count > bounds::most_vertices)
+  if (!(count <= bounds::most_vertices))  // nor NaN
     throw std::runtime_error(
         "\"edge_length\" of " + three_digits(edge_length) + " m would give about " + about(count) +
         " vertices within " + three_digits(outline.area) + " m²; a coarsest level has at most " +

@@ -55,6 +55,7 @@ class PanelReader {
     if (!failed()) read_edges();
     if (!failed()) find_loops();
     if (!failed()) cut_darts();
+    if (!failed()) check_lengths();
     return failed() ? std::nullopt : std::optional(std::move(read_));
   }
 
@@ -233,6 +234,17 @@ class PanelReader {
             true);
       }
       loop = std::move(whole);
+    }
+  }
+
+  void check_lengths() {
+    for (const PanelEdge& edge : read_.panel.edges) {
+      const double length = edge.curve.length();
+      if (length >= bounds::smallest_length && length <= bounds::largest_length) continue;
+      return refuse(edge.where, "edge " + edge.name + " is " + three_digits(length) +
+                                    " m long, of at least " + three_digits(bounds::smallest_length) +
+                                    " and at most " + three_digits(bounds::largest_length) +
+                                    "; check \"units_in_meter\"");
     }
   }
 

@@ -92,7 +92,11 @@ class SeamReader {
 std::optional<Pattern> read_pattern(const std::filesystem::path& file, ConfigErrors& errors) {
   const std::size_t before = errors.size();
   const ConfigNode source = read_yaml(file, errors);
-  if (errors.size() > before) return std::nullopt;
+  return errors.size() > before ? std::nullopt : read_pattern(source, errors);
+}
+
+std::optional<Pattern> read_pattern(const ConfigNode& source, ConfigErrors& errors) {
+  const std::size_t before = errors.size();
   PatternFileParameters p;
   schema_of<PatternFileParameters>().read(&p, source, errors);
   if (errors.size() > before) return std::nullopt;

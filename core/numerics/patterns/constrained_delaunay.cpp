@@ -46,7 +46,7 @@ struct Enclosed {
   int faulty = -1;   ///< the first segment that crosses another, has a point inside or no length; or -1
 
   /// A segment that is passed an even number of times has the same on both of its sides. Has no triangles if
-  /// two cross.
+  /// two cross, or if all points lie on one line.
   Enclosed(const std::vector<Eigen::Vector2d>& points, const std::vector<std::array<int, 2>>& segments) {
     Constrained all;
     std::vector<Constrained::Vertex_handle> at(points.size());
@@ -73,6 +73,7 @@ struct Enclosed {
       if (faulty < 0) faulty = s;
       if (crosses) return;
     }
+    if (all.dimension() < 2) return;  // CGAL has no faces then, and their neighbours are null
     const auto parts = [&](const Constrained::Face_handle& f, int k) {
       if (!f->is_constrained(k)) return false;
       const auto pass = passes.find(

@@ -1,5 +1,7 @@
 #include "core/numerics/sewing/panel_meshes.h"
 
+#include <algorithm>
+#include <cmath>
 #include <optional>
 #include <string>
 
@@ -45,15 +47,32 @@ std::string edges_text(const Panel& panel, int one, int other) {
   return "edges " + panel.edges[one].name + " and " + panel.edges[other].name + " cross or touch";
 }
 
+/// Whether all points of the loop lie on one line, but for rounding.
+bool is_on_line(const Polygon& loop) {
+  constexpr double rounding = 1e-12;
+  const Eigen::Vector2d start = loop[0];
+  const Eigen::Vector2d far =
+      *std::ranges::max_element(loop, {}, [&](const auto& p) { return (p - start).squaredNorm(); }) - start;
+  return std::ranges::all_of(loop, [&](const Eigen::Vector2d& p) {
+    const Eigen::Vector2d along = p - start;
+    return std::abs(far.x() * along.y() - far.y() * along.x()) <= rounding * far.squaredNorm();
+  });
+}
+
 /// Why loops bound no panel; nothing if they do.
 std::optional<ConfigError> fault_of(const Panel& panel, const DividedLoops& divided) {
   const std::string in = "panel " + panel.name + ": ";
   const auto& loops = divided.loops;
-  for (std::size_t k = 0; k < loops.size(); ++k)
+  for (std::size_t k = 0; k < loops.size(); ++k) {
+    const std::string name = in + (k == 0 ? "the outline" : "hole " + std::to_string(k));
+    if (is_on_line(loops[k]))
+      return ConfigError{panel.where, name +
+                                          " encloses no area: its points at this \"edge_length\" lie on "
+                                          "one line; move a vertex, or curve an edge"};
     if (loops[k].size() < 3)
-      return ConfigError{panel.where, in + (k == 0 ? "the outline" : "hole " + std::to_string(k)) + " has " +
-                                          std::to_string(loops[k].size()) +
+      return ConfigError{panel.where, name + " has " + std::to_string(loops[k].size()) +
                                           " points at this \"edge_length\"; choose a shorter one"};
+  }
   const LoopSides all = sides_of(loops);
   for (const auto& [one, other] : crossing_segments(all.points, all.sides, 1))
     return ConfigError{panel.edges[divided.edges[other]].where,

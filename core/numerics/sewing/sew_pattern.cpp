@@ -184,11 +184,14 @@ double area_of(const std::vector<int>& loop, const std::vector<PanelEdge>& edges
 
 OutlineSize outline_size(const Pattern& pattern) {
   OutlineSize size;
-  for (const Panel& panel : pattern.panels)
+  for (const Panel& panel : pattern.panels) {
+    double area = 0;
     for (const std::vector<int>& loop : panel.loops) {
       for (const int e : loop) size.border += panel.edges[e].curve.length();
-      size.area += (&loop == &panel.loops[0] ? 1 : -1) * std::abs(area_of(loop, panel.edges));
+      area += (&loop == &panel.loops[0] ? 1 : -1) * std::abs(area_of(loop, panel.edges));
     }
+    size.area += std::max(area, 0.0);  // holes that are larger than their outline are refused later
+  }
   return size;
 }
 

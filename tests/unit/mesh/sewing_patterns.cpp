@@ -9,6 +9,7 @@
 #include "core/numerics/mesh/area_vectors.h"
 #include "core/numerics/mesh/check.h"
 #include "core/numerics/mesh/seams.h"
+#include "core/numerics/patterns/delaunay.h"
 #include "core/numerics/sewing/panel_meshes.h"
 #include "core/numerics/sewing/sew_pattern.h"
 #include "tests/support/command.h"
@@ -152,6 +153,13 @@ TEST_CASE(
     }
   }
   CHECK(least > 25);
+}
+
+TEST_CASE("points on one line have no triangles, and segments that lie on one another are found") {
+  const std::vector<Vector2d> points = {{0, 0}, {1, 0.5}, {2, 1}};
+  const std::vector<std::array<int, 2>> sides = {{0, 1}, {1, 2}, {2, 0}};
+  CHECK_THROWS_WITH(triangles_within(points, sides), Contains("sides of it cross"));
+  CHECK((crossing_segments(points, sides, 1) == std::vector<std::array<int, 2>>{{0, 2}}));
 }
 
 TEST_CASE("a mirrored panel has a mirrored mesh") {
