@@ -81,7 +81,7 @@ golden: build-tests
 	@DRAPE_GOLDEN=1 ctest --preset $(PRESET) -R configs.shipped_configs
 	@git diff --stat tests/configs/data
 
-# Fuzzes the readers of configs, --set, meshes and checkpoints for FUZZ_SECONDS each (20), or FUZZ_RUNS inputs each;
+# Fuzzes the readers of configs, --set, meshes, sewing patterns and checkpoints for FUZZ_SECONDS each (20), or FUZZ_RUNS inputs each;
 # FUZZ_TARGETS="mesh config" chooses some; what ends one is kept in build-fuzz/artifacts.
 fuzz: build
 	@third_party/setup run test use-clang
