@@ -80,3 +80,24 @@ TEST_CASE("Panels that are hollow, tall or toothed, labels and names are checked
                             "b}, [1, 2], [2, 0]]}";
   CHECK_THAT(checked_panel(named, 1, "[a." + name + ", a.1]").err, Contains("panel a has no edge"));
 }
+
+TEST_CASE("A pattern that is too large for the machine is refused before it is meshed") {
+  const std::string square =
+      "vertices: [[0, 0], [20, 0], [20, 20], [0, 20]], edges: [{endpoints: [0, 1], label: "
+      "hem}, [1, 2], [2, 3], [3, 0]]}";
+  const Scratch folder(
+      "name: large\nlevels: 1\ncloth: {shape: pattern, file: p.yaml, edge_length: 0.02}\npins: "
+      "[{region: label, label: hem}]\n" +
+      rest_of_experiment);
+  folder.write("p.yaml", "properties: {units_in_meter: 1}\npattern:\n  panels: {a: {" + square +
+                             ", b: {translation: [30, 0, 0], " + square + "}\n");
+  for (const std::string faulty : {"", " --set newton.stepsize=1"}) {
+    const Ended ended =
+        Command("ulimit -v 8000000; ulimit -t 5; exec " + drape_command + " check e.yaml" + faulty,
+                folder.path)
+            .wait();
+    CHECK(ended.exit_code == 2);
+    CHECK_THAT(ended.err,
+               Contains("level 0 would have about 2.3e+06 vertices and take about 98 GB of memory"));
+  }
+}

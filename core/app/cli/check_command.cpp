@@ -105,7 +105,8 @@ int check_experiment(const ConfigArguments& arguments, const Registry& registry)
 void check_run(const SweepRun& run, const Location& where, LargeMemory large, const Registry& registry,
                ConfigErrors& errors) {
   ConfigErrors faults;
-  const auto experiment = read_experiment(parse_yaml(run.config, run.folder, faults), registry, faults);
+  const auto experiment =
+      read_experiment(parse_yaml(run.config, run.folder, faults), registry, faults, large);
   const auto scene = experiment ? build_scene(*experiment, faults, large) : nullptr;
   if (scene) refuse_infinite_energies(*experiment, *scene, faults);
   for (const ConfigError& fault : faults)

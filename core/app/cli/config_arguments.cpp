@@ -110,7 +110,8 @@ Overrides ConfigArguments::overrides() const {
 
 LoadedExperiment::LoadedExperiment(const ConfigArguments& arguments, const Registry& registry) {
   ConfigErrors errors;
-  auto read = read_experiment(arguments.config, arguments.overrides(), registry, errors);
+  auto read =
+      read_experiment(arguments.config, arguments.overrides(), registry, errors, arguments.large_memory());
   require_none(errors);
   experiment = std::move(*read);
   const bool repair = arguments.allow_start_repair;

@@ -121,7 +121,7 @@ int warm_start(RunRequest& r, const Registry& registry) {
   ConfigErrors errors;
   const auto before = read_experiment(config, {}, registry, errors);
   require_none(errors);
-  const auto experiment = read_experiment(config, r.overrides(), registry, errors);
+  const auto experiment = read_experiment(config, r.overrides(), registry, errors, r.large_memory());
   if (experiment) refuse_other_cloth(*before, *experiment, state.level, errors);
   require_none(errors);
   const auto scene = build_scene(*experiment, errors, r.large_memory(), IntersectingStart::allowed);

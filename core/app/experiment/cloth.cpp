@@ -112,8 +112,13 @@ int vertices_of(const ClothParameters& c) {
 }
 
 double vertices_of_file(const ClothParameters& c) {
-  ConfigErrors errors;
-  if (c.shape == "pattern") return static_cast<double>(cloth_of_pattern(c, errors).value().vertices.rows());
+  if (c.shape == "pattern") {
+    const double about = vertices_in_outlines(c).value();
+    ConfigErrors errors;
+    return estimated_memory(about) > machine_memory()
+               ? about
+               : static_cast<double>(cloth_of_pattern(c, errors).value().vertices.rows());
+  }
   const TriangleMesh mesh = read_cloth(c);
   return c.edge_length ? vertices_within(OutlineSize::of(mesh), *c.edge_length)
                        : c.vertices.value_or(static_cast<int>(mesh.vertices.rows()));

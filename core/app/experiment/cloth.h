@@ -23,8 +23,8 @@ Eigen::Vector2i grid_counts(const ClothParameters& cloth);
 int vertices_within(const OutlineSize& outline, double edge_length);
 
 /// Estimated vertices of each level. Builds no level, but reads a cloth's file, and meshes a sewing pattern
-/// to count its vertices unless that has been done. Empty if the cloth cannot be made, which checked_cloth
-/// reports.
+/// to count its vertices unless they are given, or too many for this machine by the panels' outlines. Empty
+/// if the cloth cannot be made, which checked_cloth reports.
 std::vector<double> estimated_vertices(const ExperimentParameters& p, std::optional<double> of_pattern = {});
 
 /// Estimated peak memory of a run whose finest level has `vertices` vertices [bytes].
@@ -32,9 +32,6 @@ double estimated_memory(double vertices);
 
 /// "2.3 GB".
 std::string memory_text(double bytes);
-
-/// Whether a run that may need more memory than this machine has is refused.
-enum class LargeMemory { refused, allowed };
 
 /// Appends an error for levels with more vertices than indices can count and, unless allowed, for a run that
 /// may need more memory than this machine has.

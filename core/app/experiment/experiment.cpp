@@ -124,17 +124,18 @@ bool is_sweep_source(const ConfigNode& source) {
 }
 
 std::optional<Experiment> read_experiment(const std::filesystem::path& file, const Overrides& overrides,
-                                          const Registry& registry, ConfigErrors& errors) {
+                                          const Registry& registry, ConfigErrors& errors, LargeMemory large) {
   ConfigNode source = read_yaml(file, errors);
   if (errors.empty() && is_sweep_source(source))
     errors.push_back({{file.string(), 0, 0}, "is a sweep: `drape sweep` runs it, `drape check` checks it"});
   if (!errors.empty()) return std::nullopt;
   for (const Override& o : overrides) set_parameter(source, o.key, o.value, o.option, errors);
   for (const Override& o : overrides) refuse_scheduled(source, o.key, o.option, errors);
-  return read_experiment(std::move(source), registry, errors);
+  return read_experiment(std::move(source), registry, errors, large);
 }
 
-std::optional<Experiment> read_experiment(ConfigNode source, const Registry& registry, ConfigErrors& errors) {
+std::optional<Experiment> read_experiment(ConfigNode source, const Registry& registry, ConfigErrors& errors,
+                                          LargeMemory large) {
   Experiment e;
   e.source = std::move(source);
   e.source.name_keys();
@@ -143,7 +144,13 @@ std::optional<Experiment> read_experiment(ConfigNode source, const Registry& reg
   apply_fabric(e.source, errors);
   apply_dress(e.source, errors);
   e.parameters = parameters_of(e.source, errors);
-  find_label_edges(e.source, e.parameters, errors);
+  ConfigErrors size;
+  if (e.parameters.cloth.shape == "pattern")
+    refuse_too_large(e, LargeMemory::refused, size, vertices_in_outlines(e.parameters.cloth));
+  if (size.empty() || large == LargeMemory::allowed)
+    find_label_edges(e.source, e.parameters, errors);
+  else
+    errors.insert(errors.end(), size.begin(), size.end());
   e.resolved = node_of(e.parameters);
   if (const ConfigNode* name = e.source.find("name"); name && name->is_scalar())
     check_name("name", e.parameters.name, name->where, errors);
@@ -156,7 +163,7 @@ std::optional<Experiment> read_experiment(ConfigNode source, const Registry& reg
   read_keys(e, errors);
   if (errors.empty()) return e;
   // The scene, which would append the faults of mesh files, cannot be built.
-  if (!e.parameters.cloth.file.empty()) checked_cloth(e, errors);
+  if (!e.parameters.cloth.file.empty() && size.empty()) checked_cloth(e, errors);
   if (!e.parameters.start.file.empty()) start_mesh(e, errors);
   sort_by_place(errors, e.source.where.file);
   return std::nullopt;

@@ -88,12 +88,18 @@ using Overrides = std::vector<Override>;  ///< in order
 /// Whether a file has a key that only sweeps have.
 bool is_sweep_source(const ConfigNode& source);
 
-/// Reads and validates an experiment; empty, with every error appended, if it is not valid.
+/// Whether a run that may need more memory than this machine has is refused.
+enum class LargeMemory { refused, allowed };
+
+/// Reads and validates an experiment; empty, with every error appended, if it is not valid. Only a sewing
+/// pattern can be refused as too large here, since its labels are found by meshing it.
 std::optional<Experiment> read_experiment(const std::filesystem::path& file, const Overrides& overrides,
-                                          const Registry& registry, ConfigErrors& errors);
+                                          const Registry& registry, ConfigErrors& errors,
+                                          LargeMemory large = LargeMemory::allowed);
 
 /// Validates an experiment whose file has been read already, overrides included.
-std::optional<Experiment> read_experiment(ConfigNode source, const Registry& registry, ConfigErrors& errors);
+std::optional<Experiment> read_experiment(ConfigNode source, const Registry& registry, ConfigErrors& errors,
+                                          LargeMemory large = LargeMemory::allowed);
 
 /// In place of a method's name: every method. No method can have this name.
 inline constexpr const char* all_methods = "all";

@@ -118,6 +118,15 @@ std::optional<TriangleMesh> cloth_of_pattern(const ClothParameters& c, ConfigErr
   return cloth;
 }
 
+std::optional<double> vertices_in_outlines(const ClothParameters& c) try {
+  ConfigErrors of_pattern;  // which the check of the cloth reports
+  const std::optional<Pattern> pattern = read_pattern(c.file, of_pattern);
+  if (!pattern) return std::nullopt;
+  return outline_size(*pattern).vertices(edge_length_of(*pattern, c));
+} catch (const std::runtime_error&) {
+  return std::nullopt;  // as well
+}
+
 void find_label_edges(const ConfigNode& source, ExperimentParameters& p, ConfigErrors& errors) {
   std::vector<std::pair<VertexSelection*, const Location*>> asked;
   const auto add = [&](auto& selections, const char* key) {

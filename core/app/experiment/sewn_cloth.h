@@ -20,6 +20,9 @@ void sew(TriangleMesh& cloth, const ClothParameters& c);
 std::optional<TriangleMesh> cloth_of_pattern(const ClothParameters& c, ConfigErrors& errors,
                                              LabelEdges* labels = nullptr);
 
+/// The number of vertices of a sewing pattern, by the outlines of its panels; none for a faulty pattern.
+std::optional<double> vertices_in_outlines(const ClothParameters& c);
+
 /// Finds the edges of the labels that pins and handles select. Appends the labels that a pattern has not.
 void find_label_edges(const ConfigNode& source, ExperimentParameters& p, ConfigErrors& errors);
 

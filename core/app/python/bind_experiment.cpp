@@ -38,16 +38,16 @@ void set(ExperimentHandle& e, const Text& key, const py::object& value) {
 
 }  // namespace
 
-std::shared_ptr<const Experiment> ExperimentHandle::read() const {
+std::shared_ptr<const Experiment> ExperimentHandle::read(LargeMemory large) const {
   ConfigErrors errors;
-  auto experiment = read_experiment(source, registry(), errors);
+  auto experiment = read_experiment(source, registry(), errors, large);
   throw_errors(errors);
   return std::make_shared<const Experiment>(std::move(*experiment));
 }
 
 SceneHandle ExperimentHandle::scene(bool allow_memory) const {
-  const auto experiment = read();
   const LargeMemory large = allow_memory ? LargeMemory::allowed : LargeMemory::refused;
+  const auto experiment = read(large);
   ConfigErrors errors;
   std::shared_ptr<const Scene> scene;
   without_gil([&] { scene = build_scene(*experiment, errors, large); });

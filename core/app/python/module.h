@@ -155,7 +155,7 @@ struct ExperimentHandle {
   ConfigNode source;
 
   /// Throws drape.ConfigError.
-  std::shared_ptr<const Experiment> read() const;
+  std::shared_ptr<const Experiment> read(LargeMemory large = LargeMemory::allowed) const;
   SceneHandle scene(bool allow_memory) const;
 };
 

@@ -177,11 +177,11 @@ std::optional<SavedRun> read_saved_run(const fs::path& folder, const Registry& r
     refuse_damaged_results(folder);
   else
     run.interrupted = interrupted_run(std::move(locked), warnings);
-  std::optional<Experiment> experiment = read_experiment(folder / "config.yaml", {}, registry, errors);
+  if (complete) large = LargeMemory::allowed;
+  std::optional<Experiment> experiment = read_experiment(folder / "config.yaml", {}, registry, errors, large);
   if (!experiment) return {};
   run.experiment = std::move(*experiment);
-  run.scene = build_scene(run.experiment, errors, complete ? LargeMemory::allowed : large,
-                          IntersectingStart::allowed);
+  run.scene = build_scene(run.experiment, errors, large, IntersectingStart::allowed);
   if (!run.scene) return {};
   if (complete) {
     if (run.experiment.parameters.cloth.shape == "file") refuse_other_rest(folder, *run.scene);

@@ -221,8 +221,9 @@ std::vector<std::string> remarks_of(const Experiment& e, const Scene& scene) {
 std::unique_ptr<Scene> build_scene(const Experiment& e, ConfigErrors& errors, LargeMemory large,
                                    IntersectingStart intersecting) {
   const ExperimentParameters& p = e.parameters;
-  const bool is_pattern = p.cloth.shape == "pattern";  // of which the mesh itself tells its size
-  if (errors.empty() && !is_pattern) refuse_too_large(e, large, errors);
+  const bool is_pattern = p.cloth.shape == "pattern";  // of which the mesh tells more than its outlines
+  if (errors.empty())
+    refuse_too_large(e, large, errors, is_pattern ? vertices_in_outlines(p.cloth) : std::nullopt);
   if (!errors.empty()) return nullptr;
   std::optional<TriangleMesh> cloth = checked_cloth(e, errors);
   if (cloth && is_pattern) refuse_too_large(e, large, errors, static_cast<double>(cloth->vertices.rows()));

@@ -103,7 +103,8 @@ class BoundShapes final : public BoundContact {
 
   std::vector<TriangleMesh> obstacles() const override {
     std::vector<TriangleMesh> meshes;
-    for (const Solid& solid : scene_->solids) meshes.push_back(tessellate(solid, scene_->diagonal));
+    const int sides = drawn_sides(scene_->solids.size());
+    for (const Solid& solid : scene_->solids) meshes.push_back(tessellate(solid, scene_->diagonal, sides));
     return meshes;
   }
 

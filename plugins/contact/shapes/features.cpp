@@ -85,8 +85,8 @@ double distance_to_segment(const Vector3d& p, const Vector3d& a, const Vector3d&
 }
 
 /// The surface of revolution of a profile of (radius, z), ordered from top to bottom, with poles at ±top.
-TriangleMesh revolve(const Solid& solid, const std::vector<Vector2d>& profile, double top) {
-  const int sides = 64, rings = static_cast<int>(profile.size());
+TriangleMesh revolve(const Solid& solid, const std::vector<Vector2d>& profile, double top, int sides) {
+  const int rings = static_cast<int>(profile.size());
   TriangleMesh mesh;
   mesh.vertices.resize(rings * sides + 2, 3);
   mesh.triangles.resize(2 * rings * sides, 3);
@@ -119,9 +119,9 @@ TriangleMesh box_surface(const Solid& solid) {
 }
 
 /// Two quarter circles, separated by the core of a capsule, revolved.
-TriangleMesh capsule_surface(const Solid& solid) {
+TriangleMesh capsule_surface(const Solid& solid, int sides) {
   std::vector<Vector2d> profile;
-  const int steps = 16;
+  const int steps = sides / 4;
   for (int i = 1; i < 2 * steps; ++i) {
     const double angle = 0.5 * M_PI * i / steps;
     const double shift = i < steps ? solid.half.z() : -solid.half.z();
@@ -129,7 +129,7 @@ TriangleMesh capsule_surface(const Solid& solid) {
     if (i != steps || solid.half.z() > 0)
       profile.push_back({solid.radius * std::sin(angle), solid.radius * std::cos(angle) + shift});
   }
-  return revolve(solid, profile, solid.half.z() + solid.radius);
+  return revolve(solid, profile, solid.half.z() + solid.radius, sides);
 }
 
 }  // namespace
@@ -203,7 +203,14 @@ void Features::edges_near(const Solid& solid, const Vector3d& centre, double rad
   });
 }
 
-TriangleMesh tessellate(const Solid& solid, double half_side) {
+int drawn_sides(std::size_t solids) {
+  constexpr double most_triangles = 4e6;  // of all together, at 24 bytes and a vertex for each two
+  constexpr int most = 64, fewest = 12;   // a sphere of n sides has about n² triangles
+  const double each = std::sqrt(most_triangles / static_cast<double>(solids));
+  return each >= most ? most : std::max(fewest, 4 * static_cast<int>(each / 4));
+}
+
+TriangleMesh tessellate(const Solid& solid, double half_side, int sides) {
   const double r = solid.radius, top = solid.half.z();
   const auto square = [&] {
     TriangleMesh mesh;
@@ -215,9 +222,9 @@ TriangleMesh tessellate(const Solid& solid, double half_side) {
     return mesh;
   };
   return by_form(
-      solid.kind, [&] { return r > 0 ? capsule_surface(solid) : box_surface(solid); },
+      solid.kind, [&] { return r > 0 ? capsule_surface(solid, sides) : box_surface(solid); },
       [&] {
-        return revolve(solid, {{r, top}, {r, -top}}, top);
+        return revolve(solid, {{r, top}, {r, -top}}, top, sides);
       },
       square);
 }

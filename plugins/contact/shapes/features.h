@@ -50,7 +50,12 @@ struct SolidFeatures {
   static SolidFeatures of(const std::vector<Solid>& solids, double dhat);
 };
 
-/// A closed surface for drawing; for a half-space a square of half side length `half_side` [m].
-TriangleMesh tessellate(const Solid& solid, double half_side);
+/// Around a circle of each of so many solids for drawing: 64, and fewer where they would have more than about
+/// 4 million triangles together; a multiple of 4.
+int drawn_sides(std::size_t solids);
+
+/// A closed surface for drawing, with `sides` around a circle, a multiple of 4; for a half-space a square of
+/// half side length `half_side` [m].
+TriangleMesh tessellate(const Solid& solid, double half_side, int sides);
 
 }  // namespace drape::shapes

@@ -115,7 +115,7 @@ TEST_CASE("shapes: a solid's mesh is closed, has its volume and agrees with its 
                                                {SolidKind::cylinder, roll}};
   for_each_solid([&](const Solid& s, const ShapeParameters&) {
     if (s.kind == SolidKind::half_space) return;
-    const TriangleMesh mesh = tessellate(s, 1);
+    const TriangleMesh mesh = tessellate(s, 1, drawn_sides(1));
     CHECK(volume_of(mesh) == Approx(volumes.at(s.kind)).epsilon(0.01));
     const Topology topology = Topology::of(mesh.triangles, static_cast<int>(mesh.vertices.rows()));
     CHECK(topology.edge_triangles.col(1).minCoeff() >= 0);  // closed
@@ -126,6 +126,20 @@ TEST_CASE("shapes: a solid's mesh is closed, has its volume and agrees with its 
       CHECK(drawn <= s.support(n) + 1e-12);
       CHECK(drawn >= s.support(n) - 5e-4);
     }
+  });
+}
+
+TEST_CASE("shapes: very many solids are drawn with fewer triangles, still closed") {
+  CHECK(drawn_sides(900) == 64);
+  CHECK(drawn_sides(10'000) == 20);
+  CHECK(drawn_sides(10'000'000) == 12);
+  for_each_solid([](const Solid& s, const ShapeParameters&) {
+    if (s.kind == SolidKind::half_space) return;
+    const TriangleMesh mesh = tessellate(s, 1, drawn_sides(10'000));
+    CHECK(mesh.triangles.rows() <= 450);
+    const Topology topology = Topology::of(mesh.triangles, static_cast<int>(mesh.vertices.rows()));
+    CHECK(topology.edge_triangles.col(1).minCoeff() >= 0);
+    for (const auto& vertex : mesh.vertices.rowwise()) CHECK(std::abs(s.distance(vertex)) < 1e-12);
   });
 }
 
