@@ -116,6 +116,34 @@ TEST_CASE("conflicting options, and a foreign folder") {
         "error: out: holds the sweep \"s\"; name another folder with --out\n");
 }
 
+TEST_CASE("--dry-run foresees the refusal that the sweep would meet") {
+  const Scratch folder(small_experiment());
+  folder.write("s.yaml", "name: s\nbase: e.yaml\nmethods: [newton]\nset: {levels: 1}\n");
+  const auto alike = [&](const std::string& sweep, const std::string& refusal) {
+    const std::string limited = "ulimit -v 8000000; exec " + drape_command + " sweep " + sweep;
+    const Ended dry = Command(limited + " --dry-run", folder.path).wait(),
+                real = Command(limited, folder.path).wait();
+    CHECK(dry.exit_code == 2);
+    CHECK_THAT(dry.out, Catch::StartsWith("sweep "));
+    CHECK_THAT(dry.err, Catch::Contains(refusal));
+    CHECK(dry.err == real.err);
+  };
+  folder.write("large.yaml",
+               "name: large\nbase: e.yaml\nmethods: [newton]\nset: {cloth.columns: 1500, cloth.rows: "
+               "1500, levels: 1}\n");
+  alike("large.yaml",
+        " of memory, where this machine has 8.2 GB; take fewer levels or vertices, or allow it");
+  CHECK(drape_with("sweep large.yaml --dry-run --allow-memory", folder.path).exit_code == 0);
+  fs::create_directory(folder / "mine");
+  folder.write("mine/notes.txt", "mine");
+  alike("s.yaml --out mine", "mine: holds notes.txt, and no sweep; name another folder with --out");
+  drape_ends("sweep s.yaml --out out", folder);
+  folder.write("other.yaml", "name: other\nbase: e.yaml\nmethods: [newton]\nset: {levels: 1}\n");
+  alike("other.yaml --out out", "out: holds the sweep \"s\"; name another folder with --out");
+  folder.write("s.yaml", "name: s\nbase: e.yaml\nmethods: [newton]\nset: {levels: 2}\n");
+  alike("s.yaml --out out", "are of another experiment than the sweep now says");
+}
+
 TEST_CASE("--dry-run validates and lists without writing, and --most-levels limits the levels") {
   const Scratch folder(small_experiment());
   folder.write("s.yaml",

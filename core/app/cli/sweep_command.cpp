@@ -31,8 +31,18 @@ int list_runs(const SweepFolder& folder) {
   return table_of(read_runs({folder.path()})).all_pass() ? exit_done : exit_not_converged;
 }
 
+/// Throws what would refuse the sweep, but for another one that has the folder now.
+void foresee_refusal(const Sweep& sweep, const SweepFolder& folder, const SweepRequest& r) {
+  if (r.engine == "slurm")
+    refuse_in_scripts(folder);
+  else if (!r.allow_memory)
+    MemoryEstimate(sweep, folder).require(sweep, folder, machine_memory());
+  folder.refuse_foreign();
+  folder.checked_statuses(sweep, r.threads);
+}
+
 /// Lists the runs without writing anything.
-int show_plan(const Sweep& sweep, const SweepFolder& folder, int threads) {
+void show_plan(const Sweep& sweep, const SweepFolder& folder, int threads) {
   std::printf("sweep %s: %zu runs in %s, each with %d thread%s\n", sweep.parameters.name.c_str(),
               sweep.runs.size(), printable(folder.path().string()).c_str(), threads, threads == 1 ? "" : "s");
   const MemoryEstimate memory(sweep, folder);
@@ -45,7 +55,6 @@ int show_plan(const Sweep& sweep, const SweepFolder& folder, int threads) {
                 printable(run.folder).c_str(), run.levels, run.vertices, memory.bytes(run) / 1e9,
                 printable(json_text(run.settings)).c_str());
   }
-  return exit_done;
 }
 
 /// Performs an action of a sweep that has begun: errors no longer count as refused input.
@@ -134,7 +143,11 @@ int run_sweep(SweepRequest r, const Registry& registry) {
   check_options(r);
   const SweepFolder folder(r.folder.empty() ? std::filesystem::path("results") / sweep->parameters.name
                                             : std::filesystem::path(r.folder));
-  if (r.dry_run) return show_plan(*sweep, folder, r.threads);
+  if (r.dry_run) {
+    show_plan(*sweep, folder, r.threads);
+    foresee_refusal(*sweep, folder, r);
+    return exit_done;
+  }
   stop_on_signals();  // nothing to save before this point
   const int exit_code =
       r.engine == "slurm" ? run_on_slurm(*sweep, folder, r) : run_local(*sweep, folder, std::move(r));

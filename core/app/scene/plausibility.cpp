@@ -103,8 +103,8 @@ void check_material(const ExperimentParameters& p, const SceneSummary& s, const 
              moduli + (is_drawn(p.cloth) ? "; \"edge_length\" in cloth meshes flat pieces anew" : ""));
 }
 
-/// Obstacles that the cloth will hardly meet, or not as they should lie.
-void check_obstacles(const Experiment& e, const SceneSummary& s, const Warn& warn) {
+/// Obstacles that the cloth will hardly meet, slide off, or that do not lie as they should.
+void check_obstacles(const Experiment& e, const Scene& scene, const SceneSummary& s, const Warn& warn) {
   const auto moves = [](const ScheduleKey& key) {
     return key.section != "material" && key.section != "energies";
   };
@@ -115,7 +115,11 @@ void check_obstacles(const Experiment& e, const SceneSummary& s, const Warn& war
                       nearest.obstacle + ", farther than it is long (" + length_text(length) +
                       "); move one of them by \"translate\", or check \"unit\" and \"up\" of their "
                       "files");
-  for (const auto& [gap, size, drop] : s.obstacles) {
+  if (s.bending_length && s.nearest()->drop >= 0 && !s.is_centre_over && !scene.models[0]->is_held())
+    warn("start", "the cloth's centre is over no obstacle, but " + length_text(s.nearest()->beside) +
+                      " beside that of " + nearest.obstacle +
+                      ": it will slide off, as nothing else holds it; move one of them by \"translate\"");
+  for (const auto& [gap, size, drop, beside, over] : s.obstacles) {
     const double length = size.head<2>().maxCoeff(), height = size.z();
     // A plate lies as it should; what would not reach up to the cloth need not stand.
     if (height < 0.05 * length || length < 2 * height || drop < height || drop + height > 1.25 * length)
@@ -134,7 +138,7 @@ void check_contact(const SceneSummary& s, const Warn& warn) {
                         length_text(s.median_edge) +
                         "); a tenth to a half of an edge is usual; lower \"dhat\", or take fewer "
                         "vertices or levels");
-  for (const auto& [gap, size, drop] : s.obstacles)
+  for (const auto& [gap, size, drop, beside, over] : s.obstacles)
     if (size.norm() > largest_obstacle && size.norm() > largest_ratio * s.size.norm())
       warn("obstacles", "the obstacle " + gap.obstacle + " is " + size_text(size) + " and the cloth " +
                             size_text(s.size) +
@@ -246,7 +250,7 @@ ConfigErrors plausibility_warnings(const Experiment& e, const Scene& scene, cons
   check_nearest(e, "handles", e.parameters.handles, scene.hierarchy.levels[0], coarse_edge, all);
   check_start(e, scene, s, warn);
   check_contact(s, warn);
-  check_obstacles(e, s, warn);
+  check_obstacles(e, scene, s, warn);
   return all;
 }
 

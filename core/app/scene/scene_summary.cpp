@@ -1,5 +1,6 @@
 #include "core/app/scene/scene_summary.h"
 
+#include <Eigen/Geometry>
 #include <cmath>
 
 #include "core/kernel/files/number_text.h"
@@ -58,7 +59,24 @@ void add_edges(const Level& level, SceneSummary& summary) {
   summary.level = level.index;
 }
 
+/// Seen from above, the bounding box of an obstacle.
+Eigen::AlignedBox2d plan_of(const TriangleMesh& mesh) {
+  return {mesh.vertices.colwise().minCoeff().head<2>().transpose(),
+          mesh.vertices.colwise().maxCoeff().head<2>().transpose()};
+}
+
+/// How the masses lie over an obstacle.
+void add_place(const Positions& start, const Eigen::VectorXd& masses, const Eigen::Vector2d& centre,
+               const Eigen::AlignedBox2d& plan, ObstacleSummary& obstacle) {
+  obstacle.beside = (centre - plan.center()).norm();
+  for (Eigen::Index v = 0; v < start.rows(); ++v)
+    if (plan.contains(start.row(v).head<2>().transpose())) obstacle.over += masses[v] / masses.sum();
+}
+
 void add_contacts(const LevelModel& model, const Positions& start, SceneSummary& summary) {
+  const Eigen::VectorXd& masses = model.masses();
+  const Eigen::Vector2d centre = start.leftCols<2>().transpose() * masses / masses.sum();
+  Eigen::AlignedBox2d all;
   const Positions points = start(components(model.level().topology), Eigen::all);
   for (const auto& contact : model.contacts()) {
     summary.dhat = std::max(summary.dhat, contact->dhat());
@@ -70,8 +88,12 @@ void add_contacts(const LevelModel& model, const Positions& start, SceneSummary&
       if (is_inside(points, meshes[k])) summary.enclosing = gaps[k].obstacle;
       summary.obstacles.push_back({std::move(gaps[k]), extents(meshes[k].vertices),
                                    start.col(2).minCoeff() - meshes[k].vertices.col(2).maxCoeff()});
+      const Eigen::AlignedBox2d plan = plan_of(meshes[k]);
+      add_place(start, masses, centre, plan, summary.obstacles.back());
+      all.extend(plan);
     }
   }
+  summary.is_centre_over = all.contains(centre);
 }
 
 std::string edges_text(double length, const SceneSummary& s) {
@@ -84,6 +106,14 @@ std::string range_text(double from, double to) {
   const std::string low = rounded_text(small ? 1e3 * from : from, 2),
                     high = rounded_text(small ? 1e3 * to : to, 2);
   return (low == high ? low : low + "–" + high) + (small ? " mm" : " m");
+}
+
+/// Where a cloth lies that is not over the middle of its obstacle; "" for one that is.
+std::string place_text(const ObstacleSummary& obstacle, const SceneSummary& s) {
+  constexpr double near = 0.05;  // of the cloth
+  if (obstacle.beside < near * s.size.maxCoeff() || obstacle.over > 0.999) return "";
+  return ", " + fixed_text(100 * obstacle.over, 0) + " % of the cloth over its bounding box, its centre " +
+         length_text(obstacle.beside) + " beside the middle of that";
 }
 
 std::string mass_text(double mass) {
@@ -138,7 +168,7 @@ std::string text_of(const SceneSummary& s) {
          (up > steep    ? " above "
           : up < -steep ? " below "
                         : " beside ") +
-         nearest->gap.obstacle;
+         nearest->gap.obstacle + place_text(*nearest, s);
 }
 
 std::string size_text(const Eigen::Vector3d& size) {

@@ -15,6 +15,8 @@ struct ObstacleSummary {
   ObstacleGap gap;
   Eigen::Vector3d size;  ///< of its bounding box [m]
   double drop = 0;       ///< how high the cloth's lowest vertex is above it [m]
+  double beside = 0;     ///< horizontal distance of the cloth's centre of mass from the middle of its box [m]
+  double over = 0;       ///< part of the cloth's mass that is above or below its box [1]
 };
 
 /// The quantities of a scene that a person can judge, and that a wrong unit or axis changes.
@@ -34,7 +36,8 @@ struct SceneSummary {
   std::vector<ObstacleSummary>::const_iterator nearest() const {
     return std::ranges::min_element(obstacles, {}, [](const ObstacleSummary& o) { return o.gap.gap; });
   }
-  std::string enclosing;  ///< an obstacle inside which a part of the cloth starts; "" without one
+  bool is_centre_over = false;  ///< the centre of mass is over or below the box around all obstacles
+  std::string enclosing;        ///< an obstacle inside which a part of the cloth starts; "" without one
 };
 
 SceneSummary summary_of(const Scene& scene);

@@ -171,12 +171,17 @@ void SweepFolder::finalize() const {
   refresh();
 }
 
+void SweepFolder::refuse_foreign() const {
+  std::error_code none;
+  if (fs::exists(path_ / "sweep.lock") || fs::exists(path_ / "sweep.json")) return;
+  for (const auto& entry : fs::directory_iterator(path_, none))
+    if (const std::string name = entry.path().filename(); name != "sweep.lock")
+      refuse_path(path_, "holds " + name + ", and no sweep; name another folder with --out");
+}
+
 std::unique_ptr<FileLock> SweepFolder::lock() const {
   make_results_folder(path_);
-  if (!fs::exists(path_ / "sweep.lock") && !fs::exists(path_ / "sweep.json"))
-    for (const auto& entry : fs::directory_iterator(path_))
-      if (const std::string name = entry.path().filename(); name != "sweep.lock")
-        refuse_path(path_, "holds " + name + ", and no sweep; name another folder with --out");
+  refuse_foreign();
   auto lock = std::make_unique<FileLock>(path_ / "sweep.lock");
   // Wait a moment for the runs of a sweep that has just been killed.
   if (!lock->acquire(1))

@@ -25,6 +25,10 @@ class SweepFolder {
   /// Locks the folder, which is made if necessary, for this process and its runs. Throws std::runtime_error,
   /// naming the process, if another one holds it.
   std::unique_ptr<FileLock> lock() const;
+  /// Throws std::runtime_error for a folder that holds something, and no sweep.
+  void refuse_foreign() const;
+  /// The runs' statuses by their results. Throws for other contents, as prepare does, and writes nothing.
+  std::vector<RunStatus> checked_statuses(const Sweep& sweep, int threads) const;
   /// Prepares the folder for a sweep: updates the statuses of interrupted runs and writes every run's config
   /// and sweep.json. Returns the indices of the runs without results; failed ones only with `retry_failed`,
   /// expected refusals never. Throws std::runtime_error for a folder with other contents, with runs of a
@@ -40,8 +44,6 @@ class SweepFolder {
   Json read() const;  ///< as find; refuses a folder without
 
  private:
-  /// The runs' statuses by their results. Throws for other contents, as prepare does.
-  std::vector<RunStatus> checked_statuses(const Sweep& sweep, int threads) const;
   /// Writes this sweep.json with every run's status.
   void write(Json json) const;
   std::filesystem::path path_;

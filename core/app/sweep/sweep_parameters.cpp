@@ -2,6 +2,7 @@
 #include "core/app/sweep/variations.h"
 #include "core/kernel/plugin/bounds.h"
 #include "core/kernel/plugin/parameters.h"
+#include "core/kernel/threads/parallel.h"
 
 namespace drape {
 
@@ -40,7 +41,7 @@ void SweepParameters::declare(Declaration<SweepParameters>& d) {
       .between(0, bounds::largest_int);
   d.add("repeats", &SweepParameters::repeats, "shorthand for seeds 1, 2, … up to this").between(1, 10000);
   d.add("methods", &SweepParameters::methods, "methods of the experiment to run; all by default");
-  d.add("threads", &SweepParameters::threads, "threads of each run").between(1, 1024);
+  d.add("threads", &SweepParameters::threads, "threads of each run").between(1, most_threads);
   d.add("time_limit", &SweepParameters::time_limit,
         "a run that takes longer is stopped and counts as failed; no limit by default")
       .unit("s")

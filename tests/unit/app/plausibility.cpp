@@ -309,3 +309,20 @@ TEST_CASE("A pin nearest to a point far from the cloth gets a warning") {
       {scene_yaml(cloth, "handles: [{point: [1, 1, 0.5]}]\n"), "0.5 m" + far + "handles"},
   });
 }
+
+TEST_CASE("A cloth beside its obstacle is told of, and warned of where nothing else holds it") {
+  const auto moved = [](const std::string& to, const std::string& more = "") {
+    return scene_yaml(metre, ball_below(0.3, 0.02) + "start: {translate: [" + to + ", 0, 0]}\n" + more);
+  };
+  CHECK_THAT(summary_text(moved("0")), Catch::EndsWith("starts 20 mm above ball: sphere"));
+  // 8 of the 20 columns of the moved cloth, and 12 of the rows, are over the box of 0.6 m.
+  CHECK_THAT(summary_text(moved("0.25")),
+             Catch::Matches(".* above ball: sphere, [23][0-9] % of the cloth over its "
+                            "bounding box, its centre 0.25 m beside the middle of that"));
+  const std::string warning =
+      "the cloth's centre is over no obstacle, but 0.5 m beside that of ball: sphere: it will ";
+  check_warnings({{moved("0.25"), ""},
+                  {moved("0.5"), warning},
+                  {moved("0.5", "pins: [{region: nearest, point: [0, 0, 0]}]\n"), ""},
+                  {replaced(moved("0.5"), "]}]", "]}, {shape: half_space, translate: [0, 0, -2]}]"), ""}});
+}
