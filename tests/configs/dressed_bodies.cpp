@@ -179,3 +179,17 @@ TEST_CASE("A garment beside its body gets a warning, and one around it none") {
   CHECK_THAT(warnings(0), !Catch::Contains(warning));
   CHECK_THAT(warnings(0.23), Catch::Contains(warning));  // where the boxes of both still meet
 }
+
+TEST_CASE("a body of an animation is refused with what to dress in its place") {
+  const Scratch folder;
+  TubeDress().write(folder);
+  CHECK_THAT(
+      refused_by(
+          "check e.yaml --set 'dress={obstacle: body}' --set 'obstacles=[{name: body, animation: [body.obj, "
+          "body.obj]}]'",
+          folder.path),
+      Catch::Contains(
+          "\"contraction\", by which \"dress\" shrinks a body, needs a \"mesh\" without \"animation\"; "
+          "dress the first frame as a mesh; what is dressed goes on in another run, by --resume with "
+          "--set dress={}"));
+}

@@ -75,6 +75,11 @@ DRAPE_PARAMETERS(Crease, (rest, 0.3, "rad", -3, 3, "angle at rest"));
 DRAPE_FOLD(fold, "A crease.", Crease) { return k * square(theta - rest); }
 )");
   CHECK_THAT(folder.refused(listed + "fold.cpp"), Contains("a parameter has the name of a symbol of "));
+  folder.write("two.cpp", R"(#include "core/numerics/formulas/energy_formula.h"
+DRAPE_FOLD(one, "One.") { return k * square(theta); }
+DRAPE_FOLD(other, "Another.") { return k * square(bend); }
+)");
+  CHECK_THAT(folder.refused(listed + "two.cpp"), Contains("each_plugin_macro_needs_a_file_of_its_own"));
 }
 
 TEST_CASE("An empty part of a list of folders stands for no folder: the user's has no programs or headers") {

@@ -185,6 +185,64 @@ TEST_CASE("panels whose loops enclose no area or whose edges have no length are 
              Contains(": panel front: edge 0 is 1e+07 m long, of at least 1e-09 and at most 1e+06"));
 }
 
+TEST_CASE(
+    "what is no pattern, what a panel has not, and what seams cannot fold are refused with what there is") {
+  const Scratch folder(of_pattern);
+  for (const auto& [file, fault] :
+       Refusals{{"skirt.dxf", "is a DXF drawing, which does not say what is sewn to what; "},
+                {"a.SVG", "is an SVG drawing, which does not say what is sewn to what; "},
+                {"b.val", "is a Valentina pattern, which does not say what is sewn to "},
+                {"c.obj", "is a mesh, and no pattern; read it by \"shape: file\""}}) {
+    folder.write(file, "0\nSECTION\n");
+    check_error(refused(folder, "check e.yaml --set cloth.file=" + file), file + ": " + fault);
+  }
+  check_error(refused(folder, "check e.yaml --set cloth.file=none.dxf"), "none.dxf: no such file");
+  const std::string triangle = "vertices: {a: [0, 0], b: [20, 0], c: [20, 20]}, edges: ";
+  const auto said = [](const std::string& panel) {
+    return refused_pattern("properties: {units_in_meter: 100}\npattern:\n  panels:\n    front: {" + panel +
+                           "}\n");
+  };
+  for (const std::string key : {"fabric", "buttons", "pleats", "mirror"})
+    check_error(said(key + ": 3, " + triangle + "{x: [a, b], y: [b, c], z: [c, a]}"),
+                "p.yaml:4:13: panel front: there is no \"" + key + "\"; ");
+  CHECK_THAT(
+      said(triangle + "{x: [a, b], z: [c, a], y: [b, c]}"),
+      Contains("the edges do not close a loop; their order in the map counts, each begins where the one "
+               "before ends: a list keeps it where a program sorts keys"));
+  CHECK_THAT(
+      said(triangle + "[[a, b], [c, a], [b, c]]"),
+      Contains("the edges do not close a loop; their order counts, each begins where the one before ends\n"));
+  check_error(refused_pattern(
+                  "properties: {units_in_meter: 100}\npattern:\n  panels:\n    front: {vertices: {a: [0, "
+                  "0], b: [60, 0], c: [60, 40], d: [35, 40], e: [30, 40], f: [25, 40], g: [0, 40]}, edges: "
+                  "{hem: [a, b], right: [b, c], t1: [c, d], t2: [d, e], t3: [e, f], t4: [f, g], left: [g, "
+                  "a]}}\n  stitches: {tuck: [front.t2, front.t3]}\n"),
+              "p.yaml:5:14: seam tuck sews the neighbouring edges t2 and t3 of panel front to each other, "
+              "which would "
+              "fold a tuck; there are no tucks and pleats: gather the edge by the \"ease\" of a seam");
+}
+
+TEST_CASE("a seam that gathers a panel in its plane says to place the other one out of it") {
+  const Scratch folder(of_pattern + "contact: {type: ipc, dhat: 0.001}\n");
+  const auto gathered = [&](const std::string& forwards) {
+    folder.write(
+        "p.yaml",
+        "properties: {units_in_meter: 100}\npattern:\n  panels:\n    band: {translation: [0, 38, " +
+            forwards +
+            "], vertices: {a: [-20, 0], b: [20, 0], c: [20, 6], d: [-20, 6]}, edges: {bottom: [a, b], "
+            "right: [b, c], top: [c, d], left: [d, a]}}\n    ruffle: {vertices: {a: [-50, 0], b: [50, "
+            "0], c: [50, 38], d: [-50, 38]}, edges: {bottom: [a, b], right: [b, c], top: [c, d], "
+            "left: [d, a]}}\n  stitches: {gather: {sides: [ruffle.top, band.bottom], ease: 0.7}}\n");
+    return drape_with("check e.yaml --set levels=1 --set cloth.edge_length=0.02", folder.path);
+  };
+  CHECK_THAT(
+      gathered("0").err,
+      EndsWith(
+          "; where a seam gathers a panel in the plane of the other, the panel folds over itself: place the "
+          "shorter one out of that plane, as a band in front of the cloth, by \"translation\"\n"));
+  CHECK(gathered("10").exit_code == 0);
+}
+
 TEST_CASE("a panel's name may have blanks, and what a file of meshes could not hold is refused") {
   const auto named = [](const std::string& left, const std::string& right) {
     return "properties: {units_in_meter: 1}\npattern:\n  panels:\n    \"" + left +

@@ -204,6 +204,11 @@ std::optional<TriangleMesh> checked_cloth(const Experiment& e, ConfigErrors& err
     if (faults.empty() && cloth->sewing) faults = check_pieces(*cloth);
     if (faults.empty()) faults = cut(*cloth, c);
     const bool placed = c.shape == "pattern";
+    if (placed && !faults.empty())
+      if (const ConfigErrors tucks = tucks_in(c); !tucks.empty()) {
+        errors.insert(errors.end(), tucks.begin(), tucks.end());
+        return std::nullopt;
+      }
     for (const std::string& fault : faults)
       errors.push_back({e.location_of("cloth"),
                         (c.file.empty() ? "" : c.file + ": ") + (placed ? "as the panels are placed, " : "") +

@@ -43,6 +43,8 @@ class PanelReader {
   }
 
   std::optional<ReadPanel> read() {
+    refuse_absent_keys();
+    if (failed()) return std::nullopt;
     Schema schema = schema_of<PanelParameters>("panel " + excerpt(read_.panel.name));
     schema.read(&p_, node_, errors_);
     if (const std::string& name = read_.panel.name; name.empty() || printable(boost::trim_copy(name)) != name)
@@ -62,6 +64,19 @@ class PanelReader {
  private:
   bool failed() const { return errors_.size() > before_; }
   void refuse(const Location& where, const std::string& what) { errors_.push_back({where, own_ + what}); }
+
+  /// Keys that people try, with what there is instead.
+  void refuse_absent_keys() {
+    static const std::map<std::string, std::string> instead = {
+        {"fabric", "all panels are of one fabric, that of \"material\" in the experiment"},
+        {"buttons", "sew the edges that buttons would hold together by a seam, or pin them by a \"label\""},
+        {"pleats",
+         "nothing folds a panel: gather its edge by the \"ease\" of a seam, or take cloth away by \"darts\""},
+        {"mirror", "write the mirrored panel out: x of its vertices with the other sign, the rest as it is"}};
+    for (std::size_t k = 0; k < node_.entries.size(); ++k)
+      if (const auto found = instead.find(node_.entries[k].first); found != instead.end())
+        refuse(node_.key_locations[k], "there is no \"" + found->first + "\"; " + found->second);
+  }
 
   void read_vertices() {
     for (const NamedNode& vertex : named_nodes(p_.vertices, own_, errors_)) {
@@ -164,6 +179,13 @@ class PanelReader {
       refuse(p_.edges.kind == Kind::null ? node_.where : p_.edges.where, "it is empty: it has no edges");
   }
 
+  std::string order_counts() const {
+    return p_.edges.kind == Kind::map
+               ? "; their order in the map counts, each begins where the one before ends: a "
+                 "list keeps it where a program sorts keys"
+               : "; their order counts, each begins where the one before ends";
+  }
+
   void find_loops() {
     const auto vertex_text = [&](int v) {
       return vertex_names_[v].empty() ? std::to_string(v) : vertex_names_[v];
@@ -171,10 +193,11 @@ class PanelReader {
     std::vector<int> loop;
     for (int e = 0; e < std::ssize(ends_); ++e) {
       if (!loop.empty() && ends_[e].first != ends_[loop.back()].second)
-        return refuse(read_.panel.edges[e].where,
-                      "edge " + read_.panel.edges[e].name + " begins at vertex " +
-                          vertex_text(ends_[e].first) + ", but the one before ends at " +
-                          vertex_text(ends_[loop.back()].second) + ": the edges do not close a loop");
+        return refuse(read_.panel.edges[e].where, "edge " + read_.panel.edges[e].name + " begins at vertex " +
+                                                      vertex_text(ends_[e].first) +
+                                                      ", but the one before ends at " +
+                                                      vertex_text(ends_[loop.back()].second) +
+                                                      ": the edges do not close a loop" + order_counts());
       loop.push_back(e);
       if (ends_[e].second != ends_[loop[0]].first) continue;
       read_.panel.loops.push_back(std::exchange(loop, {}));
@@ -183,7 +206,7 @@ class PanelReader {
       refuse(read_.panel.edges[loop.back()].where,
              "edge " + read_.panel.edges[loop.back()].name + " ends at vertex " +
                  vertex_text(ends_[loop.back()].second) + ", but its loop began at " +
-                 vertex_text(ends_[loop[0]].first) + ": the edges do not close a loop");
+                 vertex_text(ends_[loop[0]].first) + ": the edges do not close a loop" + order_counts());
   }
 
   /// Opens edges for their darts: each dart divides an edge, and adds its two legs between the parts.

@@ -1,6 +1,7 @@
 #include "core/app/experiment/pattern_file.h"
 
 #include <algorithm>
+#include <cctype>
 #include <map>
 #include <string>
 #include <utility>
@@ -87,10 +88,31 @@ class SeamReader {
   ConfigErrors& errors_;
 };
 
+/// What a file of another format lacks, by its name's extension; "" for JSON, YAML and what is unknown.
+std::string fault_of_format(const std::filesystem::path& file) {
+  static const std::map<std::string, std::string> drawings = {
+      {".dxf", "a DXF drawing"},       {".svg", "an SVG drawing"},           {".pdf", "a PDF drawing"},
+      {".val", "a Valentina pattern"}, {".vit", "Valentina's measurements"}, {".sm2d", "a Seamly2D pattern"}};
+  std::string extension = file.extension().string();
+  std::ranges::transform(extension, extension.begin(), [](unsigned char c) { return std::tolower(c); });
+  if (is_one_of(extension, {".obj", ".off", ".ply", ".stl"}))
+    return "is a mesh, and no pattern; read it by \"shape: file\"";
+  const auto drawing = drawings.find(extension);
+  if (drawing == drawings.end()) return "";
+  return "is " + drawing->second +
+         ", which does not say what is sewn to what; write its panels and seams as GarmentCode's JSON or as "
+         "YAML "
+         "(docs/guide/patterns.md)";
+}
+
 }  // namespace
 
 std::optional<Pattern> read_pattern(const std::filesystem::path& file, ConfigErrors& errors) {
   const std::size_t before = errors.size();
+  if (const std::string fault = fault_of_format(file); !fault.empty() && std::filesystem::exists(file)) {
+    errors.push_back({{file.string(), 0, 0}, fault});
+    return std::nullopt;
+  }
   const ConfigNode source = read_yaml(file, errors);
   return errors.size() > before ? std::nullopt : read_pattern(source, errors);
 }

@@ -74,6 +74,18 @@ double edge_length_of(const Pattern& pattern, const ClothParameters& c) {
   return length;
 }
 
+/// Whether the second edge begins where the first one ends, and in its direction.
+bool go_straight_on(const Panel& panel, int first, int second) {
+  constexpr double straight = 0.985, part = 0.01;  // cosine of 10°; of an edge, for its direction
+  const auto follows = [&](const std::vector<int>& loop) {
+    const auto at = std::ranges::find(loop, first);
+    return at != loop.end() && (at + 1 == loop.end() ? loop.front() : at[1]) == second;
+  };
+  const EdgeCurve &a = panel.edges[first].curve, &b = panel.edges[second].curve;
+  const Eigen::Vector2d in = a.at(1) - a.at(1 - part), out = b.at(part) - b.at(0);
+  return std::ranges::any_of(panel.loops, follows) && in.dot(out) > straight * in.norm() * out.norm();
+}
+
 }  // namespace
 
 void sew(TriangleMesh& cloth, const ClothParameters& c) {
@@ -116,6 +128,25 @@ std::optional<TriangleMesh> cloth_of_pattern(const ClothParameters& c, ConfigErr
   if (!c.rotate.isZero(0)) cloth->vertices *= rotation_matrix(c.rotate).transpose();
   cloth->sewing = sewing_of(c);
   return cloth;
+}
+
+ConfigErrors tucks_in(const ClothParameters& c) {
+  ConfigErrors tucks, of_pattern;
+  const std::optional<Pattern> pattern = read_pattern(c.file, of_pattern);
+  if (!pattern) return tucks;
+  for (const Seam& seam : pattern->seams) {
+    if (seam.sides[0].size() != 1 || seam.sides[1].size() != 1) continue;
+    const EdgeIndex &a = seam.sides[0][0], &b = seam.sides[1][0];
+    const Panel& panel = pattern->panels[a.panel];
+    if (a.panel == b.panel &&
+        (go_straight_on(panel, a.edge, b.edge) || go_straight_on(panel, b.edge, a.edge)))
+      tucks.push_back(
+          {seam.where, "seam " + seam.name + " sews the neighbouring edges " + panel.edges[a.edge].name +
+                           " and " + panel.edges[b.edge].name + " of panel " + panel.name +
+                           " to each other, which would fold a tuck; there are no tucks and pleats: "
+                           "gather the edge by the \"ease\" of a seam, or take cloth away by \"darts\""});
+  }
+  return tucks;
 }
 
 std::optional<double> vertices_in_outlines(const ClothParameters& c) try {

@@ -23,6 +23,10 @@ std::optional<TriangleMesh> cloth_of_pattern(const ClothParameters& c, ConfigErr
 /// The number of vertices of a sewing pattern, by the outlines of its panels; none for a faulty pattern.
 std::optional<double> vertices_in_outlines(const ClothParameters& c);
 
+/// The seams that sew two neighbouring edges of a panel on one line to each other, as a tuck is folded: an
+/// error for each; none for a faulty pattern.
+ConfigErrors tucks_in(const ClothParameters& c);
+
 /// Finds the edges of the labels that pins and handles select. Appends the labels that a pattern has not.
 void find_label_edges(const ConfigNode& source, ExperimentParameters& p, ConfigErrors& errors);
 

@@ -155,6 +155,13 @@ bool touches_itself(const std::vector<Intersection>& pairs) {
   return std::ranges::any_of(pairs, [](const Intersection& p) { return p.triangles[1] >= 0; });
 }
 
+/// Whether a panel of a pattern meets itself, as it does where a seam gathers it in one plane.
+bool is_gathered(const Experiment& e, const Level& level, const std::vector<Intersection>& pairs) {
+  return e.parameters.cloth.shape == "pattern" && std::ranges::any_of(pairs, [&](const Intersection& p) {
+           return p.triangles[1] >= 0 && level.rest.piece[p.triangles[0]] == level.rest.piece[p.triangles[1]];
+         });
+}
+
 void refuse_intersecting_start(const Experiment& e, const LevelModel& model, const Positions& start,
                                ConfigErrors& errors) {
   constexpr std::size_t max_listed = 3;  // of each contact model
@@ -164,7 +171,12 @@ void refuse_intersecting_start(const Experiment& e, const LevelModel& model, con
   const auto remedy = [&](const std::vector<Intersection>& found) -> std::string {
     if (touches_itself(found))  // which no translation mends
       return "; change the start's shape, or where its pieces" +
-             std::string(pins.empty() ? "" : " and pins") + " lie";
+             std::string(pins.empty() ? "" : " and pins") + " lie" +
+             (is_gathered(e, model.level(), found)
+                  ? "; where a seam gathers a panel in the plane of the other, the panel folds over itself: "
+                    "place "
+                    "the shorter one out of that plane, as a band in front of the cloth, by \"translation\""
+                  : "");
     if (!pins.empty()) return "; change the start, the pins or the obstacle";
     return "; change the start or the obstacle, or let --allow-start-repair move the start";
   };

@@ -86,7 +86,10 @@ ObstacleMeshes frames_of(const ObstacleParameters& p) {
   if (p.meshed_shape == "box") return {{ValidatedMesh::of(unit_box())}, {}, ""};
   if (p.meshed_shape == "sphere") return {{ValidatedMesh::of(unit_sphere(p.subdivisions))}, {}, ""};
   if (p.animation.empty()) return load_meshes({p.mesh}, p, p.strict);
-  if (p.contraction > 0) throw std::runtime_error("\"contraction\" needs a \"mesh\" without \"animation\"");
+  if (p.contraction > 0)
+    throw std::runtime_error(
+        "\"contraction\", by which \"dress\" shrinks a body, needs a \"mesh\" without \"animation\"; dress "
+        "the first frame as a mesh; what is dressed goes on in another run, by --resume with --set dress={}");
   if (p.cages.count > 0) throw std::runtime_error("\"cages\" need a mesh without \"animation\"");
   return load_meshes(p.animation, p, p.strict);
 }
