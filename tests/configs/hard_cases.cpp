@@ -103,3 +103,18 @@ TEST_CASE("a scene comes to the same shape at any size, turned, and a kilometre 
     CHECK(difference("a_kilometre_away", 1, none, here) > 1);  // that the comparison says something
   }
 }
+
+TEST_CASE("of a cloth of two parts, the one that nothing holds is named") {
+  const Scratch folder(
+      "name: two\nlevels: 1\ncloth: {shape: file, file: two.obj}\nenergies: [neo_hookean, hinge, "
+      "gravity]\npins: [{region: box, lower: [-1, -1, -1], upper: [0.5, 2, 1]}]\nmethods: {pcs: {}}\n");
+  folder.write("two.obj",
+               "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\nv 2 0 0\nv 3 0 0\nv 2 1 0\nv 3 1 0\n"
+               "f 1 2 3\nf 2 4 3\nf 5 6 7\nf 6 8 7\n");
+  CHECK_THAT(
+      run_into("out", folder, "", 1).err,
+      Contains("no pin is on the part of the cloth that has vertex 4, and nothing holds it within 100 of its "
+               "diagonals: ") &&
+          Contains("does not come to rest; pin it, put something under it, ") &&
+          !Contains("signs in formulas"));
+}

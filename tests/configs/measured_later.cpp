@@ -36,7 +36,8 @@ TEST_CASE("what was left is measured by --resume, and at once where there is som
   const std::string run = "run e.yaml --quiet --no-report --threads 1 ";
   drape_ends(run + "--out out --method pcs", folder);
   CHECK(results_in(folder / "out")["measured"] == false);
-  drape_ends("run --resume out --quiet --no-report --threads 1", folder);
+  CHECK_THAT(drape_ends("run --resume out --no-report --threads 1", folder).err,
+             StartsWith("out: the run is complete; what it left to measure is measured now\n"));
   CHECK(!results_in(folder / "out").contains("measured"));
   CHECK(results_in(folder / "out")["methods"]["pcs"]["consistency"].size() == 1);
   drape_ends(run + "--out two --method pcs,newton", folder);

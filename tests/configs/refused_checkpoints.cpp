@@ -151,3 +151,14 @@ TEST_CASE("An obstacle's mesh that changed since is named") {
   fs::remove(folder / "box.obj");
   CHECK_THAT(refused(folder, "run --resume out"), Contains("box.obj"));
 }
+
+TEST_CASE("A run that ended before its first checkpoint says how to begin again") {
+  const Scratch folder(small_experiment());
+  fs::create_directories(folder / "out/checkpoint");
+  folder.write("out/checkpoint/lock", "");
+  check_error(
+      refused(folder, "run --resume out"),
+      "out: holds no checkpoint of a run: one that ended before its first method began has none. Run the "
+      "experiment again with --overwrite, or give ");
+  run_into("out", folder, "--overwrite --levels 1 --method pcs");
+}

@@ -9,6 +9,15 @@ TEST_CASE("a results folder may not be a link that leads nowhere") {
               "link: is a link to gone, which does not exist; make that folder, or name ");
 }
 
+TEST_CASE("a link to a folder, as on a larger disk, is a results folder") {
+  const Scratch folder(small_experiment());
+  fs::create_directory(folder / "disk");
+  fs::create_directory_symlink("disk", folder / "link");
+  run_into("link", folder, "--levels 1 --method pcs");
+  CHECK(fs::is_symlink(folder / "link"));
+  CHECK(fs::exists(folder / "disk/results.json"));
+}
+
 TEST_CASE("a run that cannot begin, since no file takes a byte, leaves nothing") {
   const Scratch folder(small_experiment());
   const Ended ended =

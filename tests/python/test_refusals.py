@@ -1,5 +1,7 @@
 """What an experiment refuses, and where it says the faults are."""
 
+import decimal
+import fractions
 import json
 import pathlib
 import pickle
@@ -88,6 +90,11 @@ def test_what_a_schedule_sets_is_refused(small, key):
     (lambda experiment: experiment.solver("all"), RuntimeError, "one method"),
     (lambda _: drape.plugins("enrgy"), ValueError, 'no kind "enrgy"'),
     (lambda _: drape.set_threads(-3), ValueError, "at least 0"),
+    (lambda _: drape.set_threads(10**9), ValueError, "at most 1024"),
+    *((lambda e, of=of: of(e, value), TypeError, "incompatible function arguments")
+      for value in (numpy.float32(1.5), fractions.Fraction(3, 2), decimal.Decimal("1.5"), numpy.array(1.5))
+      for of in (lambda _, v: drape.set_threads(v), lambda e, v: e.scene()[v], lambda e, v: e.scene().start(v),
+                 lambda e, v: e.scene().metric("energy", v, e.scene().start(0)))),
     (lambda _: drape.Material(densty=300), drape.ConfigError, 'did you mean "density"'),
     (lambda _: drape.Material(density=-1), drape.ConfigError, "density: "),
     (lambda _: drape.Level(numpy.eye(3), [[0, 1, 3]]), ValueError, ""),
@@ -104,7 +111,7 @@ def test_what_the_module_can_use():
     assert drape.Material(density=300).density == 300
     level = drape.Level(numpy.eye(3), [[0, 1, 2]])
     assert level.edges.shape == (3, 2) and level.hinges.shape == (0, 4)
-    for count in (2, 0):
+    for count in (2, numpy.int64(1), 0):
         drape.set_threads(count)
 
 

@@ -98,7 +98,10 @@ int run_config(RunRequest& r, const Registry& registry) {
 /// Resumes an interrupted run in its folder.
 int resume(RunRequest& r, const Registry& registry) {
   r.out = r.resumed;
-  r.measure = r.measure || !complete_results(r.out).is_null();  // all that a complete run can go on to
+  const Json complete = complete_results(r.out);
+  r.measure = r.measure || !complete.is_null();  // all that a complete run can go on to
+  if (member_of(complete, "measured") == false && r.verbosity != Verbosity::quiet)
+    std::cerr << printable(r.resumed) << ": the run is complete; what it left to measure is measured now\n";
   std::vector<std::string> warnings;
   ConfigErrors errors;
   std::optional<SavedRun> saved = read_saved_run(r.out, registry, r.large_memory(), warnings, errors);
@@ -183,7 +186,7 @@ void add_run_command(Commands& commands) {
              "methods to run, or all (default: pcs, or the experiment's only method)")
       ->delimiter(',');
   add_option(command, "-j,--threads N", r.threads, "threads (default: one per core that the process may use)")
-      ->check(positive_integer());
+      ->check(integer_between(1, most_threads, "an integer from 1 to " + std::to_string(most_threads)));
   command.add_flag("--overwrite", r.overwrite, "replace the results of an earlier run in the folder");
   add_option(
       command, "--resume FOLDER", r.resumed,

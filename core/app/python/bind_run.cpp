@@ -188,8 +188,8 @@ void bind_results(py::module_& m) {
                     .picture = {width, std::nullopt, outline, false, edges},
                     .overwrite = true});
       },
-      py::arg("folder"), py::arg("file"), py::arg("method"), py::arg("level") = std::nullopt,
-      py::arg("outline") = false, py::arg("width") = std::nullopt, py::arg("edges") = true,
+      py::arg("folder"), py::arg("file"), py::arg("method"), whole("level") = std::nullopt,
+      py::arg("outline") = false, whole("width") = std::nullopt, py::arg("edges") = true,
       "As `drape export` of a .png.");
   m.def(
       "_read_mesh",

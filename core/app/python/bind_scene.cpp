@@ -154,7 +154,7 @@ void bind_scene(py::module_& m) {
                           "The levels, models and initial states of an experiment, at its start. scene[l] is "
                           "the model of level l; negative indices count from the finest.")
       .def("__len__", [](const SceneHandle& s) { return s.scene->models.size(); })
-      .def("__getitem__", &SceneHandle::model, py::arg("level"))
+      .def("__getitem__", &SceneHandle::model, whole("level"))
       .def_property_readonly("levels",
                              [](const SceneHandle& s) {
                                std::vector<std::shared_ptr<Level>> all;
@@ -167,7 +167,7 @@ void bind_scene(py::module_& m) {
           [](const SceneHandle& s, int level) -> const Positions& {
             return s.scene->starts[s.checked(level)];
           },
-          py::return_value_policy::reference_internal, py::arg("level"),
+          py::return_value_policy::reference_internal, whole("level"),
           "The initial state of a level, n×3 [m], read-only.")
       .def_property_readonly(
           "prolongations", [](const SceneHandle& s) { return read_only(s.scene->hierarchy.prolongations); },
@@ -189,11 +189,11 @@ void bind_scene(py::module_& m) {
                                for (const auto& [name, metric] : s.experiment->metrics) names.push_back(name);
                                return names;
                              })
-      .def("metric", &evaluate_metric, py::arg("name"), py::arg("level"), py::arg("x"),
+      .def("metric", &evaluate_metric, py::arg("name"), whole("level"), py::arg("x"),
            py::arg("other") = py::none(),
            "Values and fields of one of the experiment's metrics by name. x is n×3 [m]; `other`, the "
            "prolonged coarse state, is of pair metrics.")
-      .def("_page", &page, py::arg("x"), py::arg("level"));
+      .def("_page", &page, py::arg("x"), whole("level"));
 }
 
 }  // namespace drape::python

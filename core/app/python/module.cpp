@@ -174,10 +174,12 @@ PYBIND11_MODULE(_core, m) {
   m.def(
       "set_threads",
       [](int count) {
-        if (count < 0) throw pybind11::value_error("the number of threads must be at least 0");
+        if (count < 0 || count > most_threads)
+          throw pybind11::value_error("the number of threads must be at least 0 and at most " +
+                                      std::to_string(most_threads));
         set_thread_count(count);
       },
-      pybind11::arg("count"), "Set the number of threads of the process; 0 means one for each core.");
+      python::whole("count"), "Set the number of threads of the process; 0 means one for each core.");
   m.def("plugins", &python::plugins, pybind11::arg("kind"),
         "Name and summary of every plugin of a kind: energy, refiner, contact, solver or metric. Prototypes "
         "that are registered count.");

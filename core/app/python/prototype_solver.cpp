@@ -177,12 +177,12 @@ void bind_prototype_problem(py::module_& m) {
   py::class_<SolverProblem, std::shared_ptr<SolverProblem>>(
       m, "Problem", "What a solver in Python works on. Valid during its `solve`.")
       .def_property_readonly("level_count", &SolverProblem::level_count)
-      .def("model", &SolverProblem::model, py::arg("level"), "The plain Model of a level.")
-      .def("start", &SolverProblem::start, py::arg("level"), "The initial state of a level, n×3 [m].")
-      .def("prolong", &SolverProblem::prolong, py::arg("level"), py::arg("x"),
+      .def("model", &SolverProblem::model, whole("level"), "The plain Model of a level.")
+      .def("start", &SolverProblem::start, whole("level"), "The initial state of a level, n×3 [m].")
+      .def("prolong", &SolverProblem::prolong, whole("level"), py::arg("x"),
            "A level's state on the next finer one, by linear interpolation over the rest shape, Dirichlet "
            "vertices at their targets.")
-      .def("begin", &SolverProblem::begin, py::arg("level"), "Begin a level, finer than the last.")
+      .def("begin", &SolverProblem::begin, whole("level"), "Begin a level, finer than the last.")
       .def("iteration", &SolverProblem::iteration, py::arg("x"), py::arg("energy") = py::none(),
            py::arg("force_residual") = py::none(), py::arg("step_length") = 1.0,
            "Report an iteration's state. Returns False after a request to stop: end the level as cancelled. "

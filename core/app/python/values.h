@@ -23,6 +23,9 @@ inline std::string class_of(const py::handle& value) {
   return py::str(py::type::handle_of(value).attr("__name__"));
 }
 
+/// An argument that is an integer: pybind11 would cut a numpy.float32, a Fraction or a Decimal.
+inline py::arg whole(const char* name) { return py::arg(name).noconvert(); }
+
 /// The value as a T. Throws TypeError, which says that `what` must be `wanted`.
 template <class T>
 T cast_to(const py::handle& value, const std::string& what, const std::string& wanted) {

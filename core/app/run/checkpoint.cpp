@@ -114,9 +114,10 @@ Checkpoint load_checkpoint(const std::filesystem::path& folder, std::vector<std:
     }
   }
   if (faults.empty())
-    refuse_path(folder,
-                "holds no checkpoint of a run; give the results folder of one that was interrupted, or run "
-                "the experiment again");
+    refuse_path(
+        folder,
+        "holds no checkpoint of a run: one that ended before its first method began has none. Run the "
+        "experiment again with --overwrite, or give the results folder of another run");
   throw std::runtime_error(faults + "; no checkpoint is whole: run the experiment again, as in drape run " +
                            (folder / "config.yaml").string() + " --out ANOTHER");
 }

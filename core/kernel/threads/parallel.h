@@ -8,6 +8,8 @@ namespace drape {
 /// Number of cores that the process may use: the machine's, or fewer where taskset, Slurm or a container's
 /// cpuset binds it. 1 if it is unknown.
 int core_count();
+/// The largest number of threads to ask for.
+inline constexpr int most_threads = 1024;
 /// Number of threads that parallel_for uses; at least 1.
 int thread_count();
 /// Sets the process's number; 0 means one for each core. For the main thread, outside parallel_for.

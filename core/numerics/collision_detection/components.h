@@ -7,11 +7,16 @@
 
 namespace drape {
 
-/// The first vertex of each connected component of a mesh, ascending.
-inline std::vector<int> components(const Topology& topology) {
+/// The number of each vertex's connected component, in the order of their first vertices.
+inline std::vector<int> component_numbers(const Topology& topology) {
   DisjointSets sets(static_cast<int>(topology.on_border.size()));
   for (const auto& edge : topology.edges.rowwise()) sets.unite(edge[0], edge[1]);
-  const std::vector<int> number = sets.numbered();
+  return sets.numbered();
+}
+
+/// The first vertex of each connected component of a mesh, ascending.
+inline std::vector<int> components(const Topology& topology) {
+  const std::vector<int> number = component_numbers(topology);
   std::vector<int> first;
   for (int v = 0; v < static_cast<int>(number.size()); ++v)
     if (number[v] == static_cast<int>(first.size())) first.push_back(v);

@@ -1,6 +1,9 @@
 #include "core/numerics/solve/newton_report.h"
 
+#include <algorithm>
+
 #include "core/kernel/files/message_text.h"
+#include "core/numerics/collision_detection/components.h"
 
 namespace drape {
 namespace {
@@ -77,14 +80,31 @@ std::string max_steps_text(const LevelResult& so_far, const NewtonParameters& p,
                       three_digits(check.state().lowest_residual) + ": more steps are unlikely to help");
 }
 
+/// The first vertex of a part of the cloth none of whose vertices is pinned, where others are; -1 without
+/// one.
+int first_unpinned_part(const LevelModel& model) {
+  const std::vector<int> part = component_numbers(model.level().topology);
+  const std::vector<char>& fixed = model.fixed();
+  std::vector<char> pinned(part.size(), 0);
+  for (std::size_t v = 0; v < part.size(); ++v)
+    if (fixed[v]) pinned[part[v]] = 1;
+  const auto loose = std::ranges::find_if(part, [&](int p) { return !pinned[p]; });
+  const bool any = std::ranges::find(pinned, 1) != pinned.end();
+  return any && loose != part.end() ? static_cast<int>(loose - part.begin()) : -1;
+}
+
 std::string drift_text(double drift, double most, const LevelModel& model) {
   const double diagonal = bounding_box_diagonal(model.level().rest.vertices);
   const bool is_held = model.is_held();
-  const std::string begin = is_held ? "its pins or springs do not hold the cloth" : "nothing holds the cloth";
+  const int loose = first_unpinned_part(model);
+  const std::string begin = loose >= 0 ? "no pin is on the part of the cloth that has vertex " +
+                                             std::to_string(loose) + ", and nothing holds it"
+                            : is_held ? "its pins or springs do not hold the cloth"
+                                      : "nothing holds the cloth";
   return begin + " within " + three_digits(most) + " of its diagonals: it has drifted by " +
          three_digits(drift) + " of them, " + three_digits(drift * diagonal) +
          " m, and does not come to rest; " +
-         (is_held
+         (is_held && loose < 0
               ? "an energy that is unbounded below has no state of rest: check the signs in formulas and "
                 "the energies' parameters; or pin every part of the cloth"
               : "pin it, put something under it, start it nearer to what is there, or raise the friction");
