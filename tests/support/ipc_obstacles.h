@@ -1,6 +1,8 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <memory>
+#include <vector>
 
 #include "plugins/contact/ipc/obstacle.h"
 
@@ -10,6 +12,10 @@ namespace drape::ipc {
 
 inline Obstacle obstacle_of(const ObstacleParameters& p) {
   return Obstacle::of(p, 0, ObstacleMeshes::of(p, 0));
+}
+
+inline Obstacles obstacles_of(const std::vector<Obstacle>& bodies) {
+  return Obstacles::of(bodies, std::make_shared<const ObstacleTopology>(topology_of(bodies)));
 }
 
 inline ObstacleParameters box(const Eigen::Vector3d& size,

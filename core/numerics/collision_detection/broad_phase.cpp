@@ -17,7 +17,15 @@ namespace {
 using IndexPairs = std::vector<std::pair<int, int>>;
 
 /// Rows of ascending second indices, from lists of pairs in any order.
-AdjacencyList rows_of(const std::vector<IndexPairs>& lists, int row_count, int column_count) {
+AdjacencyList rows_of(const std::vector<IndexPairs>& lists, int row_count, int column_count, long count) {
+  if (count < column_count / 4) {  // to sort so few takes less time than to visit all columns
+    AdjacencyList rows = AdjacencyList::of(row_count, [&](const auto& add) {
+      for (const IndexPairs& list : lists)
+        for (const auto& [i, j] : list) add(i, j);
+    });
+    for (int i = 0; i < row_count; ++i) std::ranges::sort(rows.row(i));
+    return rows;
+  }
   const AdjacencyList columns = AdjacencyList::of(column_count, [&](const auto& add) {
     for (const IndexPairs& list : lists)
       for (const auto& [i, j] : list) add(j, i);
@@ -71,9 +79,11 @@ class BvhBroadPhase final : public BroadPhase {
       }
     });
     if (count > limit) return false;
-    pairs = rows_of(lists, tree_.size(), tree.size());
+    pairs = rows_of(lists, tree_.size(), tree.size(), count);
     return true;
   }
+
+  std::unique_ptr<BroadPhase> copy() const override { return std::make_unique<BvhBroadPhase>(*this); }
 
  private:
   Stencils vertices_;
@@ -115,9 +125,11 @@ class FclBroadPhase final : public BroadPhase {
     const auto& other = same_kind<FclBroadPhase>(phase);
     std::vector<IndexPairs> lists(1);
     if (size_ > 0 && other.size_ > 0 && !search(other, limit, lists[0])) return false;
-    pairs = rows_of(lists, static_cast<int>(size_), static_cast<int>(other.size_));
+    pairs = rows_of(lists, static_cast<int>(size_), static_cast<int>(other.size_), std::ssize(lists[0]));
     return true;
   }
+
+  std::unique_ptr<BroadPhase> copy() const override { return std::make_unique<FclBroadPhase>(vertices_); }
 
  private:
   /// Traverses both trees top-down. A node against itself becomes its children against themselves and each
@@ -169,6 +181,14 @@ class FclBroadPhase final : public BroadPhase {
 std::unique_ptr<BroadPhase> make_broad_phase(BroadPhaseKind kind, const Stencils& vertices) {
   if (kind == BroadPhaseKind::fcl) return std::make_unique<FclBroadPhase>(vertices);
   return std::make_unique<BvhBroadPhase>(vertices);
+}
+
+std::shared_ptr<const BroadPhase> PoseTrees::of(const std::vector<Box>& boxes) {
+  const std::lock_guard lock(busy_);
+  const std::shared_ptr<BroadPhase> next = last_->copy();
+  next->update(boxes);
+  last_ = next;
+  return next;
 }
 
 }  // namespace drape

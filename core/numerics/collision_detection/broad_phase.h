@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <mutex>
 #include <vector>
 
 #include "core/kernel/interfaces/topology.h"
@@ -28,10 +29,27 @@ class BroadPhase {
   /// Returns false, without rows, if there are more than `limit` pairs. Throws std::runtime_error if `other`
   /// is of another kind.
   virtual bool overlaps(const BroadPhase& other, long limit, AdjacencyList& pairs) const = 0;
+
+  /// A broad phase of the same primitives, to be updated with boxes of other places. A tree is copied too.
+  virtual std::unique_ptr<BroadPhase> copy() const = 0;
 };
 
 /// An empty broad phase of this kind. Row i of `vertices`, if it has any, names the vertices of the primitive
 /// in box i, at most three; the number of boxes is then that of the rows.
 std::unique_ptr<BroadPhase> make_broad_phase(BroadPhaseKind kind, const Stencils& vertices = {});
+
+/// The broad phases of a surface in ever new poses. Each copies the last one, since refitting a tree takes a
+/// fraction of the time of building one. Threads may ask at the same time.
+class PoseTrees {
+ public:
+  explicit PoseTrees(BroadPhaseKind kind) : last_(make_broad_phase(kind)) {}
+
+  /// The broad phase of a pose with these boxes, whose pairs do not depend on earlier poses.
+  std::shared_ptr<const BroadPhase> of(const std::vector<Box>& boxes);
+
+ private:
+  std::mutex busy_;  // guards last_
+  std::shared_ptr<const BroadPhase> last_;
+};
 
 }  // namespace drape

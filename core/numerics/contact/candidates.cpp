@@ -10,69 +10,65 @@
 namespace drape {
 namespace {
 
-constexpr int rows_per_task = 256;
+constexpr int rows_per_task = 256, weights_per_task = 1024;
 
-/// Calls found(v) for the vertices v that a's triangle s represents and whose boxes overlap b's triangle t.
-template <class Found>
-void represented_vertices(const SweptBoxes& a, int s, const SweptBoxes& b, int t, const Found& found) {
+/// The primitives that a triangle of the cloth represents, with their boxes.
+struct Represented {
+  struct Primitive {
+    int index;
+    Box box;
+  };
+  Primitive vertices[3], edges[3];
+  int vertex_count = 0, edge_count = 0;
+
+  Represented(const SweptBoxes& cloth, int s) {
+    for (int k = 0; k < 3; ++k) {
+      const int v = cloth.surface.triangles(s, k), e = cloth.surface.triangle_edges(s, k);
+      if (cloth.surface.represents_vertex(s, k)) vertices[vertex_count++] = {v, cloth.vertices[v]};
+      if (cloth.surface.represents_edge(s, k)) edges[edge_count++] = {e, cloth.edge(e)};
+    }
+  }
+};
+
+/// Appends the pairs that the triangles s of the cloth and t of the obstacles represent and whose boxes
+/// overlap. The obstacles' vertex 0 has the index `first` in pairs.
+void append_overlapping(const SweptBoxes& cloth, int s, const Represented& own, const SweptBoxes& obstacles,
+                        int t, int first, std::vector<ObstaclePair>& pairs) {
+  const SurfaceTopology& other = obstacles.surface;
+  for (int k = 0; k < own.vertex_count; ++k)
+    if (const auto& [v, box] = own.vertices[k]; box.overlaps(obstacles.triangles[t]))
+      pairs.push_back({vertex_triangle(0, v, other, first, t), PairKind::point_triangle, v, t});
   for (int k = 0; k < 3; ++k)
-    if (const int v = a.surface.triangles(s, k);
-        a.surface.represents_vertex(s, k) && a.vertices[v].overlaps(b.triangles[t]))
-      found(v);
-}
-
-/// Calls found(e, f) for the edges that the two triangles represent and whose boxes overlap.
-template <class Found>
-void represented_edges(const SweptBoxes& a, int s, const SweptBoxes& b, int t, const Found& found) {
-  for (int k = 0; k < 3; ++k) {
-    if (!a.surface.represents_edge(s, k)) continue;
-    const int e = a.surface.triangle_edges(s, k);
-    const Box& box = a.edges[e];
-    if (!box.overlaps(b.triangles[t])) continue;
+    if (const int v = other.triangles(t, k);
+        other.represents_vertex(t, k) && obstacles.vertices[v].overlaps(cloth.triangles[s]))
+      pairs.push_back({vertex_triangle(first, v, cloth.surface, 0, s), PairKind::point_triangle, s, v});
+  for (int k = 0; k < own.edge_count; ++k) {
+    const auto& [e, box] = own.edges[k];
+    if (!box.overlaps(obstacles.triangles[t])) continue;
     for (int m = 0; m < 3; ++m)
-      if (const int f = b.surface.triangle_edges(t, m);
-          b.surface.represents_edge(t, m) && box.overlaps(b.edges[f]))
-        found(e, f);
+      if (const int f = other.triangle_edges(t, m);
+          other.represents_edge(t, m) && box.overlaps(obstacles.edge(f)))
+        pairs.push_back({edge_edge(cloth.surface, e, other, first, f), PairKind::edge_edge, e, f});
   }
 }
 
-/// Appends those that may come within d̂.
-void append_near(const std::vector<ContactPair>& untested, const LinearMotion& motion,
-                 std::vector<ContactPair>& list) {
+/// The pairs that may come within d̂, in their order.
+std::vector<ObstaclePair> near_of(const std::vector<ObstaclePair>& untested, const LinearMotion& motion) {
   std::vector<char> near(untested.size());
   const auto mark = [&](const auto& moving, const int* indices, int size) {
     const auto reach = moving.speed + motion.dhat;
     const auto beyond = moving.beyond(reach), within = moving.within(reach);
     for (int lane = 0; lane < size; ++lane) {
-      const int i = indices[lane];
-      near[i] = within[lane] || (!beyond[lane] && may_come_within_dhat(untested[i], motion));
+      const ObstaclePair& pair = untested[indices[lane]];
+      near[indices[lane]] =
+          within[lane] || (!beyond[lane] && may_come_within_dhat({pair.vertices, pair.kind}, motion));
     }
   };
   for_each_pack(untested.data(), static_cast<int>(untested.size()), motion, mark);
+  std::vector<ObstaclePair> found;
   for (std::size_t i = 0; i < near.size(); ++i)
-    if (near[i]) list.push_back(untested[i]);
-}
-
-/// Calls visit(s, t, untested) for every entry of the rows and concatenates the pairs that may come within d̂.
-template <class Visit>
-bool collect(const AdjacencyList& rows, const LinearMotion& motion, long limit,
-             std::vector<ContactPair>& found, const Visit& visit) {
-  const int count = static_cast<int>(rows.start.size()) - 1;
-  std::vector<std::vector<ContactPair>> lists((count + rows_per_task - 1) / rows_per_task);
-  std::atomic<long> number = std::ssize(found);
-  parallel_for(count, rows_per_task, [&](int begin, int end) {
-    if (number.load(std::memory_order_relaxed) > limit) return;
-    std::vector<ContactPair> untested;
-    for (int s = begin; s < end; ++s)
-      for (const int t : rows.row(s)) visit(s, t, untested);
-    std::vector<ContactPair>& list = lists[begin / rows_per_task];
-    append_near(untested, motion, list);
-    number += std::ssize(list);
-  });
-  if (number > limit) return false;
-  found.reserve(number);
-  for (const std::vector<ContactPair>& list : lists) found.insert(found.end(), list.begin(), list.end());
-  return true;
+    if (near[i]) found.push_back(untested[i]);
+  return found;
 }
 
 /// The factor φ of the weight of a contact between the cloth's vertices, from the obstacle's sagitta there.
@@ -94,40 +90,61 @@ bool may_come_within_dhat(const ContactPair& pair, const LinearMotion& motion) {
   return connection(at, closest(pair.kind, at)).squaredNorm() <= reach * reach;
 }
 
-bool find_obstacle_pairs(const SweptBoxes& cloth_boxes, const ObstacleSurface& obstacles,
-                         const SweptBoxes& obstacle_boxes, const AdjacencyList& rows,
-                         const LinearMotion& motion, double friction, long limit,
-                         std::vector<ContactPair>& found) {
-  const Surface &cloth = cloth_boxes.surface, &other = obstacles.surface;
-  const Dihedrals& dihedrals = obstacles.dihedrals;
-  const auto first_other = static_cast<int>(motion.x0.rows());
-  return collect(rows, motion, limit, found, [&](int s, int t, std::vector<ContactPair>& untested) {
-    const auto add = [&](ContactPair pair, double weight) {
-      pair.weight = weight;
-      pair.dhat = motion.dhat;
-      pair.obstacle = obstacles.body_of(other.triangles(t, 0));
-      pair.friction = obstacles.friction_of(pair.obstacle, friction);
-      untested.push_back(pair);
-    };
-    represented_vertices(cloth_boxes, s, obstacle_boxes, t, [&](int v) {
-      ContactPair pair = vertex_triangle(0, v, other, first_other, t);
-      pair.surface_triangle = t;
-      add(pair, 0);
-    });
-    represented_vertices(obstacle_boxes, t, cloth_boxes, s, [&](int v) {
+bool find_obstacle_pairs(const SweptBoxes& cloth, const SweptBoxes& obstacles, const AdjacencyList& rows,
+                         const LinearMotion& motion, long limit, std::vector<ObstaclePair>& found) {
+  const int count = static_cast<int>(rows.start.size()) - 1, first = static_cast<int>(motion.x0.rows());
+  std::vector<std::vector<ObstaclePair>> lists((count + rows_per_task - 1) / rows_per_task);
+  std::atomic<long> number = 0;
+  parallel_for(count, rows_per_task, [&](int begin, int end) {
+    if (number.load(std::memory_order_relaxed) > limit) return;
+    std::vector<ObstaclePair> untested;
+    for (int s = begin; s < end; ++s) {
+      if (rows.size(s) == 0) continue;
+      const Represented own(cloth, s);
+      for (const int t : rows.row(s)) append_overlapping(cloth, s, own, obstacles, t, first, untested);
+    }
+    lists[begin / rows_per_task] = near_of(untested, motion);
+    number += std::ssize(lists[begin / rows_per_task]);
+  });
+  found.clear();
+  if (number > limit) return false;
+  for (const std::vector<ObstaclePair>& list : lists) found.insert(found.end(), list.begin(), list.end());
+  return true;
+}
+
+void append_contact_pairs(const std::vector<ObstaclePair>& pairs, const Surface& cloth,
+                          const ObstacleSurface& obstacles, const Dihedrals& dihedrals, double dhat,
+                          double friction, std::vector<ContactPair>& all) {
+  const int first = cloth.vertex_count();
+  const auto contact_pair = [&](const ObstaclePair& of) {
+    ContactPair pair{of.vertices, of.kind};
+    pair.dhat = dhat;
+    pair.obstacle = obstacles.body_of(*std::ranges::max_element(of.vertices) - first);
+    pair.friction = obstacles.friction_of(pair.obstacle, friction);
+    if (of.kind == PairKind::edge_edge) {
+      const auto ends = obstacles.topology->edges.row(of.other);
+      const double square = cloth.edge_length_squared[of.own];
+      const Bend bend = dihedrals.edge(of.other);
+      pair.mollifier = mollifier_threshold * square *
+                       (obstacles.vertices.row(ends[1]) - obstacles.vertices.row(ends[0])).squaredNorm();
+      pair.at_rim = dihedrals.edge_is_rim(of.other);
+      pair.weight = 0.5 * std::min(cloth.edge_area[of.own], bend.area) *
+                    protrusion_factor(bend.sagitta(std::sqrt(square)), dhat);
+    } else if (of.vertices[0] < first) {
+      pair.surface_triangle = of.other;
+    } else {
       // The side of an equilateral triangle of the same area.
-      const double length = std::sqrt(4 / std::sqrt(3.0) * cloth.triangle_area[s]);
-      add(vertex_triangle(first_other, v, cloth, 0, s),
-          0.5 * std::min(other.vertex_area[v], cloth.triangle_area[s]) *
-              protrusion_factor(dihedrals.vertex.sagitta(v, length), motion.dhat));
-    });
-    represented_edges(cloth_boxes, s, obstacle_boxes, t, [&](int e, int f) {
-      const double length = std::sqrt(cloth.edge_length_squared[e]);
-      ContactPair pair = edge_edge(cloth, 0, e, other, first_other, f);
-      pair.at_rim = dihedrals.edge_is_rim[f] != 0;
-      add(pair, 0.5 * std::min(cloth.edge_area[e], other.edge_area[f]) *
-                    protrusion_factor(dihedrals.edge.sagitta(f, length), motion.dhat));
-    });
+      const double length = std::sqrt(4 / std::sqrt(3.0) * cloth.triangle_area[of.own]);
+      const Bend bend = dihedrals.vertex(of.other);
+      pair.weight = 0.5 * std::min(bend.area, cloth.triangle_area[of.own]) *
+                    protrusion_factor(bend.sagitta(length), dhat);
+    }
+    return pair;
+  };
+  const std::size_t before = all.size();
+  all.resize(before + pairs.size());
+  parallel_for(static_cast<int>(pairs.size()), weights_per_task, [&](int begin, int end) {
+    for (int i = begin; i < end; ++i) all[before + i] = contact_pair(pairs[i]);
   });
 }
 

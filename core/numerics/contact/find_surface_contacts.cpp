@@ -21,10 +21,10 @@ constexpr double zero_coefficient = 1e-12;
 /// with the same nearest feature are added before the barrier is evaluated, and most cancel.
 class FeatureSearch {
  public:
-  FeatureSearch(const ObstacleSurface& obstacles, const OperatorCoefficients& coefficients,
+  FeatureSearch(const ObstacleSurface& obstacles, const Dihedrals& dihedrals,
                 const Eigen::VectorXd& vertex_area, double friction, double dhat)
       : obstacles_(obstacles),
-        coefficients_(coefficients),
+        dihedrals_(dihedrals),
         vertex_area_(vertex_area),
         friction_(friction),
         dhat_(dhat) {}
@@ -40,8 +40,10 @@ class FeatureSearch {
     if (near_.size() > 1)
       for (const int t : near_)
         for (int k = 0; k < 3; ++k) {
-          if (obstacles_.surface.represents_edge(t, k)) add_edge(p, obstacles_.surface.triangle_edges(t, k));
-          if (obstacles_.surface.represents_vertex(t, k)) add_vertex(p, obstacles_.surface.triangles(t, k));
+          if (obstacles_.topology->represents_edge(t, k))
+            add_edge(p, obstacles_.topology->triangle_edges(t, k));
+          if (obstacles_.topology->represents_vertex(t, k))
+            add_vertex(p, obstacles_.topology->triangles(t, k));
         }
     std::ranges::sort(terms_, {}, [](const Term& term) { return std::tuple(term.kind, term.index); });
     for (std::size_t i = 0; i < terms_.size();) {
@@ -63,7 +65,7 @@ class FeatureSearch {
   };
 
   void add_triangle(const Vector3d& p, int t) {
-    const auto v = obstacles_.surface.triangles.row(t);
+    const auto v = obstacles_.topology->triangles.row(t);
     PairPositions x;
     x << p, position(v[0]), position(v[1]), position(v[2]);
     if (box_distance(PairKind::point_triangle, x) >= dhat_) return;
@@ -75,16 +77,16 @@ class FeatureSearch {
       terms_.push_back({Kind::face, t, 1});
     } else if (found.free == 1) {
       const int opposite = !is_in(0) ? 0 : !is_in(1) ? 1 : 2;
-      terms_.push_back({Kind::edge, obstacles_.surface.triangle_edges(t, opposite), 1});
+      terms_.push_back({Kind::edge, obstacles_.topology->triangle_edges(t, opposite), 1});
     } else {
       terms_.push_back({Kind::vertex, v[is_in(0) ? 0 : is_in(1) ? 1 : 2], 1});
     }
   }
 
   void add_edge(const Vector3d& p, int e) {
-    const double coefficient = coefficients_.edge[e];
+    const double coefficient = dihedrals_.edge_coefficient(e, dhat_);
     if (coefficient == 0) return;
-    const auto v = obstacles_.surface.edges.row(e);
+    const auto v = obstacles_.topology->edges.row(e);
     const Vector3d a = position(v[0]), b = position(v[1]);
     const double t = nearest_on_segment(b - a, p - a);
     if ((p - a - t * (b - a)).squaredNorm() >= dhat_ * dhat_) return;
@@ -95,12 +97,13 @@ class FeatureSearch {
   }
 
   void add_vertex(const Vector3d& p, int v) {
-    if (coefficients_.vertex[v] != 0 && (p - position(v)).squaredNorm() < dhat_ * dhat_)
-      terms_.push_back({Kind::vertex, v, coefficients_.vertex[v]});
+    if ((p - position(v)).squaredNorm() >= dhat_ * dhat_) return;
+    if (const double coefficient = dihedrals_.vertex_coefficient(v, dhat_); coefficient != 0)
+      terms_.push_back({Kind::vertex, v, coefficient});
   }
 
   NearestFeature feature(const Vector3d& p, const Term& term, double area) const {
-    const Surface& surface = obstacles_.surface;
+    const SurfaceTopology& surface = *obstacles_.topology;
     NearestFeature f;
     f.vertices = {-1, -1, -1};
     f.weights = Vector3d::UnitX();
@@ -144,7 +147,7 @@ class FeatureSearch {
   Vector3d position(int v) const { return obstacles_.vertices.row(v); }
 
   const ObstacleSurface& obstacles_;
-  const OperatorCoefficients& coefficients_;
+  const Dihedrals& dihedrals_;
   const Eigen::VectorXd& vertex_area_;
   double friction_, dhat_;
   std::vector<Term> terms_;
@@ -154,7 +157,7 @@ class FeatureSearch {
 }  // namespace
 
 std::vector<SurfaceContact> find_surface_contacts(const Positions& x, const ObstacleSurface& obstacles,
-                                                  const OperatorCoefficients& coefficients,
+                                                  const Dihedrals& dihedrals,
                                                   const std::vector<VertexTriangleCandidate>& candidates,
                                                   const Eigen::VectorXd& vertex_area, double friction,
                                                   double dhat) {
@@ -164,7 +167,7 @@ std::vector<SurfaceContact> find_surface_contacts(const Positions& x, const Obst
     of_vertices.emplace_back(begin, end);
   }
   const auto find = [&](int begin, int end, std::vector<SurfaceContact>& found) {
-    FeatureSearch search(obstacles, coefficients, vertex_area, friction, dhat);
+    FeatureSearch search(obstacles, dihedrals, vertex_area, friction, dhat);
     for (int k = begin; k < end; ++k) {
       const int vertex = of_vertices[k].front().vertex;
       std::vector<NearestFeature> features = search.find(x.row(vertex), of_vertices[k]);

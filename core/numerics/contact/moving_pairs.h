@@ -127,8 +127,8 @@ class MovingPairs {
 };
 
 /// Calls visit(moving, indices, size) for packs of the pairs of one kind that have no offset.
-template <PairKind kind, class Visit>
-void for_each_pack_of(const ContactPair* pairs, int count, const LinearMotion& motion, const Visit& visit) {
+template <PairKind kind, class Pair, class Visit>
+void for_each_pack_of(const Pair* pairs, int count, const LinearMotion& motion, const Visit& visit) {
   PairLanes<native_pack_width> lanes;
   int indices[native_pack_width];
   const auto test = [&] {
@@ -148,8 +148,8 @@ void for_each_pack_of(const ContactPair* pairs, int count, const LinearMotion& m
 
 /// Calls visit(moving, indices, size) for packs of those pairs that have no offset, each of one kind, whose
 /// indices the pack's first `size` lanes have.
-template <class Visit>
-void for_each_pack(const ContactPair* pairs, int count, const LinearMotion& motion, const Visit& visit) {
+template <class Pair, class Visit>
+void for_each_pack(const Pair* pairs, int count, const LinearMotion& motion, const Visit& visit) {
   for_each_pack_of<PairKind::point_triangle>(pairs, count, motion, visit);
   for_each_pack_of<PairKind::edge_edge>(pairs, count, motion, visit);
 }

@@ -37,7 +37,8 @@ struct LinearMotion {
 /// The positions of a pair's vertices, as columns [m].
 using PairPositions = Eigen::Matrix<double, 3, 4>;
 
-inline PairPositions positions_of(const ContactPair& pair, const Positions& x, const Positions& obstacles) {
+template <class Pair>
+PairPositions positions_of(const Pair& pair, const Positions& x, const Positions& obstacles) {
   const int n = static_cast<int>(x.rows());
   PairPositions result;
   for (int k = 0; k < 4; ++k) {

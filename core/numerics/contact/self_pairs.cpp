@@ -23,12 +23,8 @@ struct SelfPair {
   int a, b;
 };
 
-template <PairKind kind>
-std::array<int, 4> vertices_of(const Surface& cloth, int a, int b) {
-  if constexpr (kind == PairKind::edge_edge)
-    return {cloth.edges(a, 0), cloth.edges(a, 1), cloth.edges(b, 0), cloth.edges(b, 1)};
-  else
-    return {a, cloth.triangles(b, 0), cloth.triangles(b, 1), cloth.triangles(b, 2)};
+std::array<int, 4> vertices_of(PairKind kind, const Surface& cloth, int a, int b) {
+  return kind == PairKind::edge_edge ? edge_edge(cloth, a, cloth, 0, b) : vertex_triangle(0, a, cloth, 0, b);
 }
 
 /// The pair of primitives a and b, with its place in the order.
@@ -68,7 +64,7 @@ bool collect_near(const Surface& cloth, const AdjacencyList& rows, const LinearM
       const std::size_t before = list.size();
       for (int lane = 0; lane < lanes.size; ++lane) {
         if (beyond[lane]) continue;
-        if (within[lane] || may_come_within_dhat({vertices_of<kind>(cloth, a[lane], b[lane]), kind}, motion))
+        if (within[lane] || may_come_within_dhat({vertices_of(kind, cloth, a[lane], b[lane]), kind}, motion))
           list.push_back(placed<kind>(cloth, a[lane], b[lane]));
       }
       number += static_cast<long>(list.size() - before);
@@ -78,7 +74,7 @@ bool collect_near(const Surface& cloth, const AdjacencyList& rows, const LinearM
       for (const int other : rows.row(row)) {
         a[lanes.size] = row;
         b[lanes.size] = other;
-        lanes.add(vertices_of<kind>(cloth, row, other), motion);
+        lanes.add(vertices_of(kind, cloth, row, other), motion);
         if (lanes.full()) test();
       }
     test();
@@ -104,7 +100,8 @@ std::vector<SelfPair> in_order(const std::vector<SelfPair>& pairs, int triangle_
 SelfPairSearch::SelfPairSearch(const Surface& cloth, BroadPhaseKind kind)
     : cloth_(cloth),
       boxes_(cloth),
-      vertices_(make_broad_phase(kind, vertices_alone(static_cast<int>(cloth.vertex_area.size())))),
+      edge_boxes_(cloth.edges.rows()),
+      vertices_(make_broad_phase(kind, vertices_alone(cloth.vertex_count()))),
       edges_(make_broad_phase(kind, cloth.edges)),
       triangles_(make_broad_phase(kind, cloth.triangles)) {}
 
@@ -113,8 +110,11 @@ bool SelfPairSearch::find(const LinearMotion& motion, double friction, const Pai
   // A translation of the whole cloth changes no distance within it.
   boxes_.update(motion.x0, motion.x1.rowwise() - (motion.x1 - motion.x0).colwise().mean(), 0.5 * motion.dhat,
                 motion.x0.row(0));
+  parallel_for(static_cast<int>(edge_boxes_.size()), 4096, [&](int begin, int end) {
+    for (int e = begin; e < end; ++e) edge_boxes_[e] = boxes_.edge(e);
+  });
   vertices_->update(boxes_.vertices);
-  edges_->update(boxes_.edges);
+  edges_->update(edge_boxes_);
   triangles_->update(boxes_.triangles);
   std::vector<SelfPair> pairs;
   if (!vertices_->overlaps(*triangles_, limits.boxes - boxes, rows_)) return false;
@@ -126,8 +126,10 @@ bool SelfPairSearch::find(const LinearMotion& motion, double friction, const Pai
   found.reserve(found.size() + pairs.size());
   for (const SelfPair& p : in_order(pairs, cloth_.triangle_count())) {
     const bool edges = p.kind == PairKind::edge_edge;
-    ContactPair& pair = found.emplace_back(edges ? edge_edge(cloth_, 0, p.a, cloth_, 0, p.b)
-                                                 : vertex_triangle(0, p.a, cloth_, 0, p.b));
+    ContactPair& pair = found.emplace_back(ContactPair{vertices_of(p.kind, cloth_, p.a, p.b), p.kind});
+    if (edges)
+      pair.mollifier =
+          mollifier_threshold * cloth_.edge_length_squared[p.a] * cloth_.edge_length_squared[p.b];
     pair.weight =
         edges ? 0.25 * std::min(cloth_.edge_area[p.a], cloth_.edge_area[p.b]) : 0.5 * cloth_.vertex_area[p.a];
     pair.dhat = motion.dhat;

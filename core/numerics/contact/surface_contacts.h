@@ -1,7 +1,6 @@
 #pragma once
 
 #include "core/numerics/collision_detection/dihedrals.h"
-#include "core/numerics/collision_detection/obstacle_surface.h"
 #include "core/numerics/contact/collisions.h"
 
 namespace drape {
@@ -55,7 +54,7 @@ struct SurfaceContact {
 /// ascending by triangle; `friction` is μ where an obstacle has none of its own. A surface has no inside: of
 /// a body thinner than d̂ the faces on the far side are contacts too.
 std::vector<SurfaceContact> find_surface_contacts(const Positions& x, const ObstacleSurface& obstacles,
-                                                  const OperatorCoefficients& coefficients,
+                                                  const Dihedrals& dihedrals,
                                                   const std::vector<VertexTriangleCandidate>& candidates,
                                                   const Eigen::VectorXd& vertex_area, double friction,
                                                   double dhat);

@@ -54,8 +54,7 @@ class BoundIpc::Candidates final : public CollisionCandidates {
     StepLimit limit;
     for (const std::vector<ContactPair>* pairs : {&barrier_, &rims_, &ccd_only_}) {
       const SafeFraction safe = additive_ccd(x0_, x1_, obstacles(), *pairs, contact_.p_.min_gap_fraction);
-      if (safe.fraction < limit.fraction)
-        limit = {safe.fraction, name_of((*pairs)[safe.blocking], contact_.obstacles_, cloth_size())};
+      if (safe.fraction < limit.fraction) limit = {safe.fraction, name((*pairs)[safe.blocking])};
     }
     if (fraction_ < 1 && limit.fraction == 1) limit.by = "the limit on candidate pairs of one step";
     limit.fraction *= fraction_;
@@ -66,9 +65,8 @@ class BoundIpc::Candidates final : public CollisionCandidates {
     const BarrierParameters& barrier = contact_.barrier_;
     return make_collisions(
         barrier,
-        find_surface_contacts(x, contact_.obstacles_, contact_.obstacle_tree_->coefficients,
-                              vertex_triangles_, contact_.cloth_.vertex_area, contact_.p_.friction,
-                              barrier.dhat),
+        find_surface_contacts(x, *contact_.obstacles_, contact_.tree_.get()->dihedrals, vertex_triangles_,
+                              contact_.cloth_.vertex_area, contact_.p_.friction, barrier.dhat),
         find_rim_contacts(x, obstacles(), rims_), find_pair_contacts(x, obstacles(), barrier_));
   }
 
@@ -85,13 +83,15 @@ class BoundIpc::Candidates final : public CollisionCandidates {
         smallest.gap = gap;
         nearest = &pair;
       }
-    if (nearest) smallest.between = name_of(*nearest, contact_.obstacles_, cloth_size());
+    if (nearest) smallest.between = name(*nearest);
     return smallest;
   }
 
  private:
-  const Positions& obstacles() const { return contact_.obstacles_.vertices; }
-  int cloth_size() const { return static_cast<int>(x0_.rows()); }
+  const Positions& obstacles() const { return contact_.obstacles_->vertices; }
+  std::string name(const ContactPair& pair) const {
+    return name_of(pair.vertices, pair.kind, *contact_.obstacles_, static_cast<int>(x0_.rows()));
+  }
 
   const BoundIpc& contact_;
   Positions x0_, x1_;  // the part of the motion that was searched
@@ -102,60 +102,75 @@ class BoundIpc::Candidates final : public CollisionCandidates {
   std::vector<VertexTriangleCandidate> vertex_triangles_;
 };
 
-RestCloth::RestCloth(const Level& level, double dhat_in, bool self_contact_in)
-    : dhat(dhat_in), self_contact(self_contact_in), surface(Surface::of(level.rest, level.topology)) {
-  if (self_contact) layers = RestLayers::of(surface, level, dhat);
-}
+ClothSearch::ClothSearch(const Surface& cloth, bool self_contact, BroadPhaseKind kind)
+    : self(self_contact ? std::make_unique<SelfPairSearch>(cloth, kind) : nullptr),
+      boxes(cloth),
+      tree(make_broad_phase(kind)) {}
 
-ObstacleTree::ObstacleTree(std::shared_ptr<const Obstacles> all, double dhat, BroadPhaseKind kind)
-    : obstacles(std::move(all)),
-      origin(Eigen::RowVector3d::Zero()),
-      boxes(obstacles->surface),
-      coefficients(OperatorCoefficients::of(obstacles->surface, obstacles->dihedrals, dhat)),
-      tree(make_broad_phase(kind)) {
-  if (obstacles->vertices.rows() > 0) origin = obstacles->vertices.colwise().mean();
-  boxes.update(obstacles->vertices, obstacles->vertices, 0.5 * dhat, origin);
+void ClothSearch::update(const Positions& x0, const Positions& x1, double margin,
+                         const Eigen::RowVector3d& origin) {
+  boxes.update(x0, x1, margin, origin);
   tree->update(boxes.triangles);
 }
 
+RestCloth::RestCloth(const Level& level, const Ipc::Parameters& p)
+    : dhat(p.dhat),
+      self_contact(p.self_contact),
+      broad_phase(p.broad_phase),
+      surface(Surface::of(level.rest, level.topology)),
+      search(surface, self_contact, broad_phase) {
+  if (self_contact) layers = RestLayers::of(surface, level, dhat);
+}
+
+ObstacleTree::ObstacleTree(std::shared_ptr<const Obstacles> all, double dhat, PoseTrees& trees)
+    : obstacles(std::move(all)),
+      origin(Eigen::RowVector3d::Zero()),
+      boxes(*obstacles->topology),
+      dihedrals(*obstacles) {
+  if (obstacles->vertices.rows() > 0) origin = obstacles->vertices.colwise().mean();
+  boxes.update(obstacles->vertices, obstacles->vertices, 0.5 * dhat, origin);
+  tree = trees.of(boxes.triangles);
+}
+
 BoundIpc::BoundIpc(const Ipc::Parameters& parameters, const BarrierParameters& barrier,
-                   std::shared_ptr<const ObstacleTree> obstacles, std::shared_ptr<const RestCloth> rest)
+                   std::shared_ptr<const Obstacles> obstacles, Deferred<ObstacleTree> tree,
+                   std::shared_ptr<const RestCloth> rest)
     : p_(parameters),
       barrier_(barrier),
-      obstacle_tree_(std::move(obstacles)),
+      obstacles_(std::move(obstacles)),
+      tree_(std::move(tree)),
       rest_(std::move(rest)),
-      obstacles_(*obstacle_tree_->obstacles),
-      cloth_(rest_->surface),
-      cloth_tree_(make_broad_phase(p_.broad_phase)),
-      boxes_(cloth_) {
-  if (p_.self_contact) self_search_ = std::make_unique<SelfPairSearch>(cloth_, p_.broad_phase);
-}
+      cloth_(rest_->surface) {}
 
 std::shared_ptr<const BoundContact> BoundIpc::with_stiffness(double stiffness) const {
   if (barrier_.stiffness_is_fixed) return nullptr;
   BarrierParameters barrier = barrier_;
   barrier.stiffness = stiffness;
-  return std::make_shared<const BoundIpc>(p_, barrier, obstacle_tree_, rest_);
+  return std::make_shared<const BoundIpc>(p_, barrier, obstacles_, tree_, rest_);
 }
 
 bool BoundIpc::search(const Positions& x0, const Positions& x1, const PairLimits& limits,
                       std::vector<ContactPair>& found, long& boxes) const {
-  const LinearMotion motion{x0, x1, barrier_.dhat, obstacles_.vertices, obstacles_.vertices};
+  const LinearMotion motion{x0, x1, barrier_.dhat, obstacles_->vertices, obstacles_->vertices};
+  ClothSearch& own = rest_->search;
   found.clear();
   boxes = 0;
-  if (self_search_ && !self_search_->find(motion, p_.friction, limits, boxes, found)) return false;
-  if (obstacles_.bodies.empty()) return true;
-  boxes_.update(x0, x1, 0.5 * barrier_.dhat, obstacle_tree_->origin);
-  cloth_tree_->update(boxes_.triangles);
-  if (!cloth_tree_->overlaps(*obstacle_tree_->tree, limits.boxes - boxes, rows_)) return false;
-  boxes += std::ssize(rows_.items);
-  return find_obstacle_pairs(boxes_, obstacles_, obstacle_tree_->boxes, rows_, motion, p_.friction,
-                             limits.primitives, found);
+  if (own.self && !own.self->find(motion, p_.friction, limits, boxes, found)) return false;
+  if (obstacles_->bodies.empty()) return true;
+  const std::shared_ptr<const ObstacleTree> other = tree_.get();
+  own.update(x0, x1, 0.5 * barrier_.dhat, other->origin);
+  if (!own.tree->overlaps(*other->tree, limits.boxes - boxes, own.rows)) return false;
+  boxes += std::ssize(own.rows.items);
+  if (!find_obstacle_pairs(own.boxes, other->boxes, own.rows, motion, limits.primitives - std::ssize(found),
+                           own.pairs))
+    return false;
+  append_contact_pairs(own.pairs, cloth_, *obstacles_, other->dihedrals, barrier_.dhat, p_.friction, found);
+  return true;
 }
 
 std::unique_ptr<CollisionCandidates> BoundIpc::build_candidates(const Positions& x0,
                                                                 const Positions& x1) const {
-  const std::lock_guard lock(busy_);
+  const std::lock_guard lock(rest_->search.busy);
   const long size = std::max<long>(cloth_.triangle_count(), min_counted_triangles);
   PairLimits limits{box_pairs_each * size, primitive_pairs_each * size};
   std::vector<ContactPair> found;
@@ -185,7 +200,7 @@ std::vector<ObstacleGap> BoundIpc::obstacle_gaps(const Positions& x) const {
   const TriangleMesh cloth{x, cloth_.triangles};
   const SurfaceSearch near_cloth(cloth);
   std::vector<ObstacleGap> gaps;
-  for (const Obstacle& body : obstacles_.bodies) {
+  for (const Obstacle& body : obstacles_->bodies) {
     const Eigen::Vector3d connection = shortest_connection(near_cloth, SurfaceSearch(body.mesh()));
     gaps.push_back({body.name, connection.norm(), connection.normalized()});
   }
@@ -193,13 +208,14 @@ std::vector<ObstacleGap> BoundIpc::obstacle_gaps(const Positions& x) const {
 }
 
 StepLimit BoundIpc::max_step(const BoundContact& before, const Positions& x) const {
-  const Obstacles& from = as_ipc(before).obstacles_;
-  if (&from == &obstacles_) return {};
-  return max_trajectory_step(from, obstacles_, cloth_, x, barrier_.dhat, p_.broad_phase);
+  const BoundIpc& from = as_ipc(before);
+  if (from.obstacles_ == obstacles_) return {};
+  const std::lock_guard lock(rest_->search.busy);
+  return max_trajectory_step(*from.tree_.get(), obstacles_, rest_->search, x, barrier_.dhat);
 }
 
 Eigen::Vector3d BoundIpc::displacement(const BoundContact& before, const ObstaclePoint& point) const {
-  const Positions &from = as_ipc(before).obstacles_.vertices, &to = obstacles_.vertices;
+  const Positions &from = as_ipc(before).obstacles_->vertices, &to = obstacles_->vertices;
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
   for (int k = 0; k < 3; ++k)
     if (const int v = point.vertices[k]; v >= 0)
@@ -217,10 +233,10 @@ std::vector<Intersection> BoundIpc::intersections(const Positions& x) const {
                        pair.where,
                        {pair.first, pair.second}});
   std::vector<std::pair<const Obstacle*, int>> owners;  // of each triangle of all, with its number there
-  for (const Obstacle& body : obstacles_.bodies)
+  for (const Obstacle& body : obstacles_->bodies)
     for (int t = 0; t < body.triangles().rows(); ++t) owners.emplace_back(&body, t);
   std::vector<TrianglePair> pairs =
-      drape::intersections(cloth, {obstacles_.vertices, obstacles_.surface.triangles});
+      drape::intersections(cloth, {obstacles_->vertices, obstacles_->topology->triangles});
   std::ranges::stable_sort(pairs, {}, [&](const TrianglePair& pair) { return owners[pair.second].first; });
   for (const TrianglePair& pair : pairs) {
     const auto [body, number] = owners[pair.second];
@@ -234,7 +250,7 @@ std::vector<Intersection> BoundIpc::intersections(const Positions& x) const {
 
 std::vector<TriangleMesh> BoundIpc::obstacles() const {
   std::vector<TriangleMesh> meshes;
-  for (const Obstacle& body : obstacles_.bodies) meshes.push_back(body.mesh());
+  for (const Obstacle& body : obstacles_->bodies) meshes.push_back(body.mesh());
   return meshes;
 }
 

@@ -13,34 +13,56 @@
 
 namespace drape::ipc {
 
+/// What searches for the cloth's pairs reuse for speed. Results do not depend on earlier searches.
+struct ClothSearch {
+  std::mutex busy;                       // guards the other members
+  std::unique_ptr<SelfPairSearch> self;  // null without self-contact
+  SweptBoxes boxes;
+  std::unique_ptr<BroadPhase> tree;
+  AdjacencyList rows;
+  std::vector<ObstaclePair> pairs;
+
+  /// Refers to the surface.
+  ClothSearch(const Surface& cloth, bool self_contact, BroadPhaseKind kind);
+  /// Bounds a motion of the cloth for find_rows, as SweptBoxes::update.
+  void update(const Positions& x0, const Positions& x1, double margin, const Eigen::RowVector3d& origin);
+};
+
 /// Data of the cloth's rest shape, shared when the level is bound again under other loads.
 struct RestCloth {
   double dhat;  ///< d̂ [m]
   bool self_contact;
+  BroadPhaseKind broad_phase;
   Surface surface;
   RestLayers layers;  ///< none without self-contact
+  mutable ClothSearch search;
 
   /// Throws std::runtime_error if too many pairs are within d̂ at rest.
-  RestCloth(const Level& level, double dhat, bool self_contact);
+  RestCloth(const Level& level, const Ipc::Parameters& p);
+  /// Whether it is that of these parameters too.
+  bool serves(const Ipc::Parameters& p) const {
+    return dhat == p.dhat && self_contact == p.self_contact && broad_phase == p.broad_phase;
+  }
 };
 
-/// The obstacles with what depends on d̂ and the broad phase: their boxes, their tree and the coefficients of
-/// the improved maximum operator.
+/// What a search for pairs with a pose of the obstacles needs, for one d̂ and one kind of broad phase.
 struct ObstacleTree {
   std::shared_ptr<const Obstacles> obstacles;
   Eigen::RowVector3d origin;  // of the boxes, and of those that are compared with them
   SweptBoxes boxes;
-  OperatorCoefficients coefficients;
-  std::unique_ptr<BroadPhase> tree;
+  Dihedrals dihedrals;
+  std::shared_ptr<const BroadPhase> tree;
 
-  ObstacleTree(std::shared_ptr<const Obstacles> all, double dhat, BroadPhaseKind kind);
+  ObstacleTree(std::shared_ptr<const Obstacles> all, double dhat, PoseTrees& trees);
 };
 
 /// The contact model `ipc` bound to one level.
 class BoundIpc final : public BoundContact {
  public:
+  /// `tree` is that of the obstacles.
   BoundIpc(const Ipc::Parameters& parameters, const BarrierParameters& barrier,
-           std::shared_ptr<const ObstacleTree> obstacles, std::shared_ptr<const RestCloth> rest);
+           std::shared_ptr<const Obstacles> obstacles, Deferred<ObstacleTree> tree,
+           std::shared_ptr<const RestCloth> rest);
 
   const std::shared_ptr<const RestCloth>& rest() const { return rest_; }
 
@@ -63,23 +85,16 @@ class BoundIpc final : public BoundContact {
   class Candidates;
 
   /// Sets `found`, and `boxes` to the number of overlapping boxes. Returns false if there are more pairs than
-  /// `limits`. The caller holds busy_.
+  /// `limits`. The caller holds the cloth's search.
   bool search(const Positions& x0, const Positions& x1, const PairLimits& limits,
               std::vector<ContactPair>& found, long& boxes) const;
 
   Ipc::Parameters p_;
   BarrierParameters barrier_;
-  std::shared_ptr<const ObstacleTree> obstacle_tree_;
+  std::shared_ptr<const Obstacles> obstacles_;
+  Deferred<ObstacleTree> tree_;
   std::shared_ptr<const RestCloth> rest_;
-  const Obstacles& obstacles_;  // the tree's
-  const Surface& cloth_;        // the rest shape's
-
-  // Reused between calls for speed; results do not depend on them.
-  mutable std::mutex busy_;
-  mutable std::unique_ptr<SelfPairSearch> self_search_;  // null without self-contact
-  mutable std::unique_ptr<BroadPhase> cloth_tree_;
-  mutable SweptBoxes boxes_;
-  mutable AdjacencyList rows_;
+  const Surface& cloth_;  // the rest shape's
 };
 
 }  // namespace drape::ipc

@@ -48,33 +48,48 @@ Ipc::Ipc(const Parameters& parameters, const Ipc* before) : p_(parameters) {
     for_all_items("obstacles", p_.obstacles, [&](const ObstacleParameters& p, std::size_t k) {
       bodies.push_back(Obstacle::of(p, static_cast<int>(k), meshes_[k], static_cast<int>(level)));
     });
-    const bool same = before && level < before->bodies_.size() && before->bodies_[level] == bodies;
-    obstacles_.push_back(same ? before->obstacles_[level]
-                              : Deferred<Obstacles>([bodies] { return Obstacles::of(bodies); }));
-    const bool same_tree = same && before->p_.dhat == p_.dhat && before->p_.broad_phase == p_.broad_phase;
-    const auto tree = [obstacles = obstacles_[level], dhat = p_.dhat, kind = p_.broad_phase] {
-      return ObstacleTree(obstacles.get(), dhat, kind);
-    };
-    trees_.push_back(same_tree ? before->trees_[level] : Deferred<ObstacleTree>(tree));
-    bodies_.push_back(std::move(bodies));
+    levels_.push_back(level_obstacles(std::move(bodies), before));
   }
+}
+
+Ipc::LevelObstacles Ipc::level_obstacles(std::vector<Obstacle> bodies, const Ipc* before) const {
+  const LevelObstacles* last =
+      before && levels_.size() < before->levels_.size() ? &before->levels_[levels_.size()] : nullptr;
+  const auto have_same_triangles = [](const Obstacle& a, const Obstacle& b) {
+    return a.geometry.frames[0] == b.geometry.frames[0];
+  };
+  const bool moved = last && std::ranges::equal(last->bodies, bodies, have_same_triangles),
+             same = last && last->bodies == bodies,
+             same_kind = last && before->p_.broad_phase == p_.broad_phase;
+  const auto topology =
+      moved ? last->topology : Deferred<ObstacleTopology>([bodies] { return topology_of(bodies); });
+  const auto trees = moved && same_kind ? last->trees : std::make_shared<PoseTrees>(p_.broad_phase);
+  const auto obstacles =
+      same ? last->obstacles
+           : Deferred<Obstacles>([bodies, topology] { return Obstacles::of(bodies, topology.get()); });
+  const auto tree = same && same_kind && before->p_.dhat == p_.dhat
+                        ? last->tree
+                        : Deferred<ObstacleTree>([obstacles, trees, dhat = p_.dhat] {
+                            return ObstacleTree(obstacles.get(), dhat, *trees);
+                          });
+  return {std::move(bodies), topology, trees, obstacles, tree};
 }
 
 std::unique_ptr<BoundContact> Ipc::bind(const Level& level, const Material& material,
                                         std::shared_ptr<const RestCloth> rest) const {
-  const std::size_t k = std::min<std::size_t>(level.index, trees_.size() - 1);
-  return std::make_unique<BoundIpc>(p_, p_.barrier(material), trees_[k].get(), std::move(rest));
+  const LevelObstacles& own = levels_[std::min<std::size_t>(level.index, levels_.size() - 1)];
+  return std::make_unique<BoundIpc>(p_, p_.barrier(material), own.obstacles.get(), own.tree, std::move(rest));
 }
 
 std::unique_ptr<BoundContact> Ipc::bind(const Level& level, const Material& material) const {
   if (!p_.self_contact && p_.obstacles.empty()) return nullptr;
-  return bind(level, material, std::make_shared<const RestCloth>(level, p_.dhat, p_.self_contact));
+  return bind(level, material, std::make_shared<const RestCloth>(level, p_));
 }
 
 std::unique_ptr<BoundContact> Ipc::rebind(const Level& level, const Material& material,
                                           const BoundContact& before) const {
   const std::shared_ptr<const RestCloth>& rest = dynamic_cast<const BoundIpc&>(before).rest();
-  if (rest->dhat != p_.dhat || rest->self_contact != p_.self_contact) return bind(level, material);
+  if (!rest->serves(p_)) return bind(level, material);
   return bind(level, material, rest);
 }
 

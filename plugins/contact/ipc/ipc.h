@@ -41,12 +41,22 @@ class Ipc final : public ContactModel {
   std::unique_ptr<BoundContact> bind(const Level& level, const Material& material,
                                      std::shared_ptr<const RestCloth> rest) const;
 
+  /// The obstacles of a level, made when it is first bound, and their tree, when it is first searched: a load
+  /// may be bound to a single level or none, and its pose refused.
+  struct LevelObstacles {
+    std::vector<Obstacle> bodies;
+    Deferred<ObstacleTopology> topology;  // of all poses
+    std::shared_ptr<PoseTrees> trees;     // of all poses
+    Deferred<Obstacles> obstacles;
+    Deferred<ObstacleTree> tree;
+  };
+
+  /// The obstacles of the next level, which takes from `before` (or null) what stays the same.
+  LevelObstacles level_obstacles(std::vector<Obstacle> bodies, const Ipc* before) const;
+
   Parameters p_;
-  std::vector<ObstacleMeshes> meshes_;         // of each obstacle
-  std::vector<std::vector<Obstacle>> bodies_;  // by level; finer levels use the last
-  // Of each of bodies_, made when its level is first bound: a load may be bound to a single level or none.
-  std::vector<Deferred<Obstacles>> obstacles_;
-  std::vector<Deferred<ObstacleTree>> trees_;
+  std::vector<ObstacleMeshes> meshes_;  // of each obstacle
+  std::vector<LevelObstacles> levels_;  // finer levels use the last
 };
 
 }  // namespace drape::ipc

@@ -217,20 +217,28 @@ TriangleMesh Obstacle::mesh() const {
   return {geometry.pose.applied_to(geometry.local_positions(geometry.frame)), triangles()};
 }
 
-Obstacles Obstacles::of(std::vector<Obstacle> bodies) {
+ObstacleTopology topology_of(const std::vector<Obstacle>& bodies) {
+  SurfaceTopology all;
+  for (const Obstacle& body : bodies) all.append({body.triangles(), body.geometry.frames[0]->topology});
+  return ObstacleTopology(std::move(all));
+}
+
+Obstacles Obstacles::of(std::vector<Obstacle> bodies, std::shared_ptr<const ObstacleTopology> topology) {
   Obstacles all;
+  all.topology = std::move(topology);
   all.first_vertex = {0};
   for (const Obstacle& body : bodies)
     all.first_vertex.push_back(all.first_vertex.back() +
                                static_cast<int>(body.geometry.frames[0]->mesh.vertices.rows()));
   all.vertices.resize(all.first_vertex.back(), 3);
+  all.local.resize(all.first_vertex.back(), 3);
   for (const Obstacle& body : bodies) {
-    const TriangleMesh mesh = body.mesh();
-    all.vertices.middleRows(all.first_vertex[&body - bodies.data()], mesh.vertices.rows()) = mesh.vertices;
+    const Positions local = body.geometry.local_positions(body.geometry.frame);
+    const int first = all.first_vertex[&body - bodies.data()];
+    all.local.middleRows(first, local.rows()) = local;
+    all.vertices.middleRows(first, local.rows()) = body.geometry.pose.applied_to(local);
     all.body_friction.push_back(body.friction);
-    all.surface.append(Surface::of(mesh, body.geometry.frames[0]->topology));
   }
-  all.dihedrals = Dihedrals::of(all.surface, all.vertices);
   all.bodies = std::move(bodies);
   return all;
 }

@@ -92,11 +92,16 @@ struct Obstacle {
                      int level = std::numeric_limits<int>::max());
 };
 
-/// All obstacles of a scene, also as one surface.
+/// All obstacles of a scene in one pose, also as one surface.
 struct Obstacles : ObstacleSurface {
   std::vector<Obstacle> bodies;
+  Positions local;  ///< local coordinates of the vertices [m]
 
-  static Obstacles of(std::vector<Obstacle> bodies);
+  /// `topology` is that of these bodies in any pose.
+  static Obstacles of(std::vector<Obstacle> bodies, std::shared_ptr<const ObstacleTopology> topology);
 };
+
+/// The topology of bodies as one surface.
+ObstacleTopology topology_of(const std::vector<Obstacle>& bodies);
 
 }  // namespace drape::ipc

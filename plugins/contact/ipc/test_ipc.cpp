@@ -11,6 +11,7 @@
 #include "tests/support/evaluate.h"
 #include "tests/support/ipc_obstacles.h"
 #include "tests/support/meshes.h"
+#include "tests/support/reference_dihedrals.h"
 
 using namespace drape;
 using namespace drape::ipc;
@@ -41,16 +42,16 @@ Positions folded(const Level& level, int layers, double gap, double noise, unsig
 std::unique_ptr<Collisions> brute_force(const Level& level, const Obstacles& obstacles, const Positions& x,
                                         const BarrierParameters& barrier, double friction) {
   const Surface own = Surface::of(level.rest, level.topology);
-  const Surface& other = obstacles.surface;
-  const Dihedrals& d = obstacles.dihedrals;
+  const SurfaceTopology& other = *obstacles.topology;
+  const ReferenceDihedrals d = ReferenceDihedrals::of(other, obstacles.vertices);
   const int n = level.vertex_count();
   std::vector<ContactPair> at_rims, others;
   const auto distance = [&](const ContactPair& pair) {
     const PairPositions at = positions_of(pair, x, obstacles.vertices);
     return connection(at, closest(pair.kind, at)).norm();
   };
-  const auto protrusion_factor = [&](const Bends& bends, int k, double length) {
-    const double sagitta = std::max(bends.angle[k] * length / 4, bends.curvature[k] * length * length / 8);
+  const auto protrusion_factor = [&](const Bend& bend, double length) {
+    const double sagitta = std::max(bend.angle * length / 4, bend.curvature * length * length / 8);
     return std::min(1.0, sagitta / (barrier.dhat / 8));
   };
   const auto add = [&](ContactPair pair, double weight) {
@@ -85,8 +86,8 @@ std::unique_ptr<Collisions> brute_force(const Level& level, const Obstacles& obs
   for (int v = 0; v < obstacles.vertices.rows(); ++v)
     for (int t = 0; t < own.triangle_count(); ++t)
       add(point_triangle(n + v, own.triangles.row(t)),
-          std::min(other.vertex_area[v], own.triangle_area[t]) / 2 *
-              protrusion_factor(d.vertex, v, std::sqrt(own.triangle_area[t] / (std::sqrt(3.0) / 4))));
+          std::min(d.vertex[v].area, own.triangle_area[t]) / 2 *
+              protrusion_factor(d.vertex[v], std::sqrt(own.triangle_area[t] / (std::sqrt(3.0) / 4))));
   for (int e = 0; e < own.edges.rows(); ++e) {
     for (int f = e + 1; f < own.edges.rows(); ++f) {
       const std::set<int> ends{own.edges(e, 0), own.edges(e, 1), own.edges(f, 0), own.edges(f, 1)};
@@ -97,10 +98,12 @@ std::unique_ptr<Collisions> brute_force(const Level& level, const Obstacles& obs
     }
     for (int f = 0; f < other.edges.rows(); ++f) {
       ContactPair pair = edges(own.edges.row(e), other.edges.row(f).array() + n,
-                               own.edge_length_squared[e] * other.edge_length_squared[f]);
+                               own.edge_length_squared[e] * (obstacles.vertices.row(other.edges(f, 1)) -
+                                                             obstacles.vertices.row(other.edges(f, 0)))
+                                                                .squaredNorm());
       pair.at_rim = d.edge_is_rim[f] != 0;
-      add(pair, std::min(own.edge_area[e], other.edge_area[f]) / 2 *
-                    protrusion_factor(d.edge, f, std::sqrt(own.edge_length_squared[e])));
+      add(pair, std::min(own.edge_area[e], d.edge[f].area) / 2 *
+                    protrusion_factor(d.edge[f], std::sqrt(own.edge_length_squared[e])));
     }
   }
   REQUIRE(!at_rims.empty());
@@ -151,7 +154,7 @@ TEST_CASE("ipc: the collisions of a motion's candidates are those of a brute-for
   p.dhat = 0.012;
   p.friction = 0.3;
   p.obstacles = {ball(2, {0, 0.5, -0.105}, 0.1), box({0.3, 0.4, 0.1}, {-0.1, 0.2, -0.06})};
-  const Obstacles obstacles = Obstacles::of({obstacle_of(p.obstacles[0]), obstacle_of(p.obstacles[1])});
+  const Obstacles obstacles = obstacles_of({obstacle_of(p.obstacles[0]), obstacle_of(p.obstacles[1])});
   const Positions x0 = folded(level, 4, 0.02, 0.002, 1);
   Positions x1 = folded(level, 4, 0.011, 0.003, 2);
   x1.col(2).array() -= 0.003;
@@ -249,6 +252,9 @@ TEST_CASE("ipc: a model made and bound from another is as a new one, and shares 
   }
   CHECK(barrier(*contact) == before);
   CHECK(is_ball(vertices(*contact)));
+  Ipc::Parameters q = p;
+  q.broad_phase = BroadPhaseKind::fcl;  // whose trees cannot be compared with the others
+  CHECK(barrier(*Ipc(q, model).rebind(level, Material(), *contact)) == before);
 }
 
 TEST_CASE("ipc: a dhat larger than the cloth is refused before its pairs exceed memory") {

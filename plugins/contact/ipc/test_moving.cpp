@@ -4,6 +4,7 @@
 #include "core/numerics/patterns/generate.h"
 #include "tests/support/any_threads.h"
 #include "tests/support/command.h"
+#include "tests/support/evaluate.h"
 #include "tests/support/moving_obstacles.h"
 #include "tests/support/random.h"
 
@@ -157,6 +158,64 @@ TEST_CASE("ipc: one of many obstacles moves, bit for bit the same with any numbe
   to = from;
   to[1].translate.z() -= 1;
   CHECK(limit_of(from, to, level, x).fraction == 1);
+}
+
+TEST_CASE("ipc: an obstacle keeps most of the smallest gap that it has to the cloth before it moves") {
+  const Level level = square_sheet(9, 0.4);
+  const auto limit = [&](double gap, bool with_nearer_static) {
+    Bodies from = {box({0.05, 0.05, 0.1}, {0, 0, -0.05 - gap})};
+    if (with_nearer_static) from.push_back(box({0.05, 0.05, 0.1}, {0.1, 0.1, -0.05 - 1e-6}));
+    Bodies to = from;
+    to[0].translate.z() += 0.01;
+    return 0.01 * limit_of(from, to, level, level.rest.vertices).fraction;
+  };
+  const double tenth = 0.1 * Ipc::Parameters().dhat;  // the least gap that is left, within 2 %
+  for (const bool with_nearer_static : {false, true}) {
+    CHECK(limit(2e-5, with_nearer_static) == Approx(0.2 * 2e-5).epsilon(0.1));
+    CHECK(limit(0.9 * tenth, with_nearer_static) == Approx(0.2 * 0.9 * tenth).epsilon(0.1));
+    CHECK(limit(20 * tenth, with_nearer_static) == Approx(19 * tenth).epsilon(0.005));
+  }
+}
+
+TEST_CASE("ipc: poses that follow each other are as poses alone, with every broad phase") {
+  const Level level = square_sheet(21, 0.4);
+  const Positions x = wavy(level, 0.01);
+  Ipc::Parameters p;
+  p.friction = 0.2;
+  p.dhat = 5e-3;
+  const double low = x.col(2).minCoeff() - 0.05;
+  p.obstacles = {ball(3, {0, 0, low - 0.003}, 0.05), box({0.1, 0.1, 0.1}, {0.1, 0.1, low - 0.001})};
+  p.obstacles[0].rotate = {5, 5, 5};
+  for (const BroadPhaseKind kind : {BroadPhaseKind::bvh, BroadPhaseKind::fcl}) {
+    p.broad_phase = kind;
+    auto model = std::make_unique<const Ipc>(p);
+    std::shared_ptr<const BoundContact> now = model->bind(level, Material());
+    std::shared_ptr<const BoundContact> alone_before = now;
+    int contacts = 0, limited = 0;
+    for (int k = 0; k < 12; ++k) {
+      p.obstacles[0].translate += Vector(0.003, 0, k % 2 ? 0.008 : -0.006);
+      p.obstacles[0].rotate += Vector(3, 40, 5);
+      if (k == 8) p.obstacles[0].scale = 40;  // a tree that is built again
+      if (k == 9) p.obstacles[0].scale = 1;
+      auto next = std::make_unique<const Ipc>(p, *model);
+      const std::shared_ptr<const BoundContact> then = next->rebind(level, Material(), *now),
+                                                alone = Ipc(p).bind(level, Material());
+      const StepLimit limit = then->max_step(*now, x), limit_alone = alone->max_step(*alone_before, x);
+      CAPTURE(k, limit.fraction);
+      CHECK(limit.fraction == limit_alone.fraction);
+      CHECK(limit.by == limit_alone.by);
+      limited += limit.fraction > 0 && limit.fraction < 1;
+      const auto own = collisions_at(*then, x), expected = collisions_at(*alone, x);
+      contacts += own->contact_count();
+      CHECK(own->contact_count() == expected->contact_count());
+      CHECK(own->value(x) == expected->value(x));
+      now = then;
+      alone_before = alone;
+      model = std::move(next);
+    }
+    CHECK(contacts > 50);
+    CHECK(limited > 1);
+  }
 }
 
 TEST_CASE("ipc: an obstacle whose triangles change is refused by name") {

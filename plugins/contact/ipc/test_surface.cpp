@@ -30,7 +30,7 @@ struct Scene : NearSurface {
   double distance(const Vector& p) const {
     double smallest = 1e300;
     const Positions& v = obstacles.vertices;
-    for (const auto& t : obstacles.surface.triangles.rowwise()) {
+    for (const auto& t : obstacles.topology->triangles.rowwise()) {
       PairPositions x;
       x << p, v.row(t[0]).transpose(), v.row(t[1]).transpose(), v.row(t[2]).transpose();
       smallest = std::min(smallest, connection(x, closest(PairKind::point_triangle, x)).norm());

@@ -124,6 +124,29 @@ TEST_CASE("broad phase: refitted or rebuilt, the pairs are those of the last upd
   }
 }
 
+TEST_CASE("broad phase: of poses that follow each other each has its own pairs") {
+  const Boxes first = random_boxes(1000, 0.1, 1), shuffled = random_boxes(1000, 0.1, 2),
+              others = random_boxes(400, 0.1, 3), few = random_boxes(40, 0.1, 4);
+  Boxes near = first;
+  for (Box& box : near) box.upper[2] += 0.05F;
+  for (const BroadPhaseKind kind : broad_phases) {
+    const auto cloth = make_broad_phase(kind), small = make_broad_phase(kind);
+    cloth->update(others);
+    small->update(few);
+    PoseTrees trees(kind);
+    std::vector<std::shared_ptr<const BroadPhase>> poses;
+    const Boxes* boxes[] = {&first, &near, &shuffled, &near};
+    for (const Boxes* pose : boxes) poses.push_back(trees.of(*pose));
+    for (std::size_t k = 0; k < poses.size(); ++k) {
+      check_pairs(*cloth, *poses[k], pairs_by_hand(others, *boxes[k]));
+      const AdjacencyList few_pairs = pairs_by_hand(few, *boxes[k]);
+      REQUIRE(!few_pairs.items.empty());
+      REQUIRE(few_pairs.items.size() < boxes[k]->size() / 4);
+      check_pairs(*small, *poses[k], few_pairs);
+    }
+  }
+}
+
 TEST_CASE("broad phase: the limit on pairs, and kinds that differ") {
   const Boxes boxes = random_boxes(400, 0.5, 5);
   const long count = std::ssize(pairs_by_hand(boxes, boxes).items);
