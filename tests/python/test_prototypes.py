@@ -100,6 +100,16 @@ def test_bending_keeps_coarse_membranes_of_pcs_from_buckling(small):
     assert len(energies) == 2
 
 
+def test_a_coarse_level_says_that_its_membrane_does_not_buckle(small):
+    said = "resist compression with all their stiffness on this level"
+    for energies, told in ((["neo_hookean"], ""), (["numpy_stvk"], "the membrane numpy_stvk has no law for cloth that buckles below the mesh"),
+                           (["neo_hookean", "stvk"], "the membranes neo_hookean, stvk " + said)):
+        levels = run({**small, "energies": [*energies, "hinge", "gravity"]}, methods=["pcs"])["pcs"].levels
+        assert levels[0].message.startswith(told) and bool(levels[0].message) == bool(told) and not levels[-1].message
+    plain = {"pcs": {"membranes": "plain"}}
+    assert not run({**small, "energies": ["numpy_stvk", "hinge", "gravity"], "methods": plain})["pcs"].levels[0].message
+
+
 def test_parameters_are_checked_like_a_plugins(small):
     small["energies"][0] = {"type": "springs", "stiffness": 20}
     assert drape.Experiment(small).resolved["energies"][0] == {"type": "springs", "stiffness": 20}

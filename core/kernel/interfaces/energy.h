@@ -123,12 +123,14 @@ class Energy {
   virtual std::unique_ptr<BoundEnergy> bind(const Level& level, const Material& material) const = 0;
   /// Binds a membrane to a coarse level below whose mesh the cloth buckles: no compressive stress exceeds s /
   /// V by much, V rest area × thickness of the triangle and s [J] times the level's bound_factors
-  /// (docs/theory/locking.md; bind_buckling_membrane makes it of an isotropic law). By default bind(): its
-  /// triangles resist compression as they do on the finest mesh. A triangle's law, but not s, is
-  /// multiplied by the level's softening: areas of RestTriangle::of and material_triangles have that factor.
-  virtual std::unique_ptr<BoundEnergy> bind_buckling(const Level& level, const Material& material,
+  /// (docs/theory/locking.md; bind_buckling_membrane makes it of an isotropic law). A triangle's law, but not
+  /// s, is multiplied by the level's softening: areas of RestTriangle::of and material_triangles have that
+  /// factor. None by default: a coarse triangle resists compression with all its stiffness, as by bind(), and
+  /// the level's result says so.
+  virtual std::unique_ptr<BoundEnergy> bind_buckling([[maybe_unused]] const Level& level,
+                                                     [[maybe_unused]] const Material& material,
                                                      [[maybe_unused]] double s) const {
-    return bind(level, material);
+    return nullptr;
   }
   /// Lines about the energy that `drape check` prints, such as a check of its derivatives. By default none.
   virtual std::vector<std::string> remarks([[maybe_unused]] const Material& material) const { return {}; }

@@ -6,6 +6,9 @@
 #include <numbers>
 #include <optional>
 #include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "core/numerics/elements/scaled_energy.h"
 #include "core/numerics/mesh/same_entries.h"
@@ -63,12 +66,21 @@ LevelModel LevelModel::with_effective_membranes(const Fineness& finest,
     const Level& level = softened && term.kind->midpoint_factor() == 1 ? *softened
                          : effective                                   ? *effective
                                                                        : own;
-    term.energy = alone ? term.kind->bind_buckling(level, material_, s) : term.kind->bind(level, material_);
-    if (!term.energy || !same_entries(term.energy->stencils(), plain))
+    std::unique_ptr<BoundEnergy> buckling = alone ? term.kind->bind_buckling(level, material_, s) : nullptr;
+    if (buckling && !same_entries(buckling->stencils(), plain))
       throw std::runtime_error("energy " + term.name +
                                ": bind_buckling must return an energy with the stencils of bind");
+    term.buckles = buckling != nullptr;
+    term.energy = buckling ? std::move(buckling) : term.kind->bind(level, material_);
   }
   return model;
+}
+
+std::vector<std::string> LevelModel::unbuckling_membranes() const {
+  std::vector<std::string> names;
+  for (const Term& term : terms_)
+    if (term.role == EnergyRole::membrane && !term.buckles) names.push_back(term.name);
+  return names;
 }
 
 LevelModel LevelModel::with_local_folds(const Fineness& finest, bool sharp) const {

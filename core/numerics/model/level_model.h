@@ -79,6 +79,9 @@ class LevelModel {
   /// (softening_at_pins), for a level below the finest. Its contacts and other energies are shared with this
   /// model.
   LevelModel with_effective_membranes(const Fineness& finest, const std::vector<int>& lone_pins = {}) const;
+  /// The names of its membranes that do not buckle below the mesh: of a model with_effective_membranes those
+  /// without Energy::bind_buckling, or all where there are several, each of which would buckle alone.
+  std::vector<std::string> unbuckling_membranes() const;
   /// The model whose hinges resist bending in each direction as the finest level's do (Fineness::folds). With
   /// `sharp` each is also as much stiffer as that level's edges are shorter around it, over their mean, which
   /// midpoint_factor gives, and energies without that factor are bound by bind_sharp: so stiff is a fold of
@@ -128,6 +131,7 @@ class LevelModel {
     std::shared_ptr<const BoundEnergy> energy;
     std::shared_ptr<const BlockSlots> slots;  // null for linear energies and limits
     bool is_sharp = false;                    // bound by bind_sharp
+    bool buckles = false;                     // bound by bind_buckling
 
     bool is_linear() const { return role != EnergyRole::limit && !slots; }
   };

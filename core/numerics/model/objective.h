@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <string>
 
 #include "core/numerics/model/active_contacts.h"
 #include "core/numerics/model/hessian_assembler.h"
@@ -76,6 +77,8 @@ class Objective {
   /// Replaces a proxy's smooth part by the level's plain energy, once the proxy's minimum is reached. Returns
   /// false if nothing changes.
   virtual bool switch_to_plain() { return false; }
+  /// What the level's result is to say of F; empty for nothing.
+  virtual std::string remark() const { return ""; }
 
  protected:
   /// Must depend on x alone until smooth_changed() or set_model() is called: the last value is cached.

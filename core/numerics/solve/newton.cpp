@@ -278,6 +278,7 @@ class Newton {
     result_.outcome = end.outcome;
     const bool failed = !has_converged(end.outcome) && end.outcome != Outcome::cancelled &&
                         end.outcome != Outcome::refined_early_on_request && result_.x.allFinite();
+    add_to_message(f_.remark());
     add_to_message(end.message);
     // At a start without finite forces pins have not been enforced.
     if (failed && std::isfinite(result_.force_residual) && (dirichlet_.active() || dirichlet_.infeasible()))

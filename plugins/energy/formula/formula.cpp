@@ -171,8 +171,7 @@ class Formula final : public Energy {
 
   std::unique_ptr<BoundEnergy> bind_buckling(const Level& level, const Material& material,
                                              double s) const override {
-    return law_.kind == ElementKind::triangle ? formula::bind_buckling(law_, level, material, s)
-                                              : bind(level, material);
+    return law_.kind == ElementKind::triangle ? formula::bind_buckling(law_, level, material, s) : nullptr;
   }
 
   /// A check of the derivatives, and the stress, moment or force at rest.

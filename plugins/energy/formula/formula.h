@@ -29,8 +29,8 @@ Law read_law(const Parameters& parameters);
 /// Binds a formula to all triangles of the level. Throws std::runtime_error naming a triangle without area.
 std::unique_ptr<BoundEnergy> bind_membrane(const Law& law, const Level& level, const Material& material);
 /// Binds a formula to a level on which the cloth buckles below the mesh: as bind_buckling_membrane does if it
-/// depends on principal stretches alone, else as bind_buckling_strains does. A formula of both principal
-/// stretches and strains keeps its plain energy.
+/// depends on principal stretches alone, else as bind_buckling_strains does. Null for a formula of both
+/// principal stretches and strains.
 std::unique_ptr<BoundEnergy> bind_buckling(const Law& law, const Level& level, const Material& material,
                                            double s);
 /// Binds a formula to all hinges of the level. Throws std::runtime_error naming a hinge whose triangles have

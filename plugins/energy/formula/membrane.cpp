@@ -216,7 +216,7 @@ std::unique_ptr<BoundEnergy> bind_buckling(const Law& law, const Level& level, c
                                            double s) {
   const std::vector<MaterialTriangle> triangles = material_triangles(level);
   if (uses_strains(law)) {
-    if (uses_stretches(law)) return bind_membrane(law, level, material);
+    if (uses_stretches(law)) return nullptr;
     const Program program = compile_triangle(law, material, TriangleVariables::strains).all;
     const auto energy = [program](const auto& g, const auto* place) { return energy_at(program, g, place); };
     const auto value = [&](const Eigen::Vector3d& g, const double* place) { return energy(g, place).value; };

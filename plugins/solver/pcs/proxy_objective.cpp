@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "core/kernel/files/string_utils.h"
 #include "core/numerics/hierarchy/hierarchy.h"
 #include "core/numerics/model/level_model.h"
 #include "core/numerics/model/lone_pins.h"
@@ -79,7 +80,7 @@ ProxyObjective::ProxyObjective(const Problem& problem, int level, const ProxyOpt
 void ProxyObjective::model_changed() {
   effective_ = folded_ = nullptr;
   // A schedule may change which vertices a pin selects.
-  if (options_.effective && options_.seen_by.membrane == Interpolation::midpoint)
+  if (buckles_below_mesh())
     effective_ = std::make_shared<const LevelModel>(model().with_effective_membranes(
         finest_, lone_pins(model(), [&] { return problem_.model(problem_.finest()); })));
   const LevelModel& own = effective_ ? *effective_ : model();
@@ -157,6 +158,18 @@ bool ProxyObjective::switch_to_plain() {
     smooth_pattern_changed();
   }
   return true;
+}
+
+std::string ProxyObjective::remark() const {
+  if (!buckles_below_mesh()) return "";
+  const std::vector<std::string> names = effective_->unbuckling_membranes();
+  if (names.empty()) return "";
+  return names.size() == 1 ? "the membrane " + names[0] +
+                                 " has no law for cloth that buckles below the mesh (Energy::bind_buckling), "
+                                 "so this level resists compression with all its stiffness"
+                           : "the membranes " + joined(names) +
+                                 " resist compression with all their stiffness on this level: of several, "
+                                 "none buckles below the mesh";
 }
 
 const Positions& ProxyObjective::FinerPart::prolong(const Positions& x, int count) {

@@ -70,6 +70,7 @@ class ProxyObjective : public Objective {
     return is_plain_ || (finer_.empty() && options_.hessian == ProxyMatrix::galerkin);
   }
   bool switch_to_plain() override;
+  std::string remark() const override;
 
  protected:
   double smooth_gradient(const Positions& x, Positions& g) override;
@@ -96,6 +97,10 @@ class ProxyObjective : public Objective {
 
   void make_parts();
   void make_matrices();
+  /// Whether the level's own membranes are LevelModel::with_effective_membranes.
+  bool buckles_below_mesh() const {
+    return options_.effective && options_.seen_by.membrane == Interpolation::midpoint;
+  }
   /// The level's own energies.
   const LevelModel& own_model() const {
     return !is_plain_ && folded_ ? *folded_ : effective_ ? *effective_ : model();

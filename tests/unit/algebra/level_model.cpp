@@ -178,6 +178,7 @@ TEST_CASE("Membranes of coarse levels buckle at the stress of a clamped column o
     const LevelModel buckling = model.with_effective_membranes(k);
     CHECK(membrane->bound == Approx(4 * pi * pi * 3 / (h2 - h2 / std::pow(4, k)) * area));
     CHECK(buckling.pattern() == model.pattern());
+    CHECK(buckling.unbuckling_membranes().empty());
     CHECK(buckling.value(oblong.rest.vertices) == model.value(oblong.rest.vertices));
   }
   oblong_model({{"membrane", membrane}}).with_effective_membranes(1);
@@ -185,8 +186,14 @@ TEST_CASE("Membranes of coarse levels buckle at the stress of a clamped column o
   // Several membranes keep their laws: each alone would wrinkle where their sum is taut.
   const auto first = std::make_shared<Shell>(EnergyRole::membrane, 0),
              second = std::make_shared<Shell>(EnergyRole::membrane, 0);
-  oblong_model({{"first", first}, {"second", second}}).with_effective_membranes(1);
+  const LevelModel several = oblong_model({{"first", first}, {"second", second}}).with_effective_membranes(1);
   CHECK((first->bound == -1 && second->bound == -1));
+  CHECK(several.unbuckling_membranes() == std::vector<std::string>{"first", "second"});
+  const auto plain =
+      std::make_shared<CopyingEnergy<OriginSprings>>(OriginSprings(each_vertex(1)), EnergyRole::membrane);
+  const LevelModel kept = oblong_model({{"plain", plain}}).with_effective_membranes(1);
+  CHECK(kept.unbuckling_membranes() == std::vector<std::string>{"plain"});
+  CHECK(kept.value(oblong.rest.vertices) == oblong_model({{"plain", plain}}).value(oblong.rest.vertices));
 }
 
 TEST_CASE("A law that reads its triangle's area reads that at rest, also at a lone pin") {

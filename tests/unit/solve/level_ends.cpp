@@ -198,3 +198,25 @@ methods: {cascadic: {}}
   CHECK(s.levels[1].outcome == Outcome::infeasible);
   CHECK(s.levels[1].message == "at equilibrium, but it began from level 0, which had come to no end");
 }
+TEST_CASE("An equilibrium whose Hessian cannot be judged says that its stability was not tested") {
+  const auto ended = [](const std::string& stability) {
+    const Solved s = solve_yaml(R"(
+name: infinitely_stiff
+cloth: {shape: square, side: 1, vertices: 25}
+levels: 1
+energies:
+  - neo_hookean
+  - hinge
+  - {type: formula, name: cusp, per: vertex, constants: {k: {value: 1, unit: N/m},
+     unit: {value: 1, unit: m}}, energy: "k*area*abs(z/unit)^1.5"}
+methods: {newton: {newton: {stability: )" +
+                                stability + "}}}\n");
+    REQUIRE(s.levels.size() == 1);
+    REQUIRE(s.levels[0].outcome == Outcome::converged);
+    CHECK_FALSE(s.levels[0].stability);
+    CHECK(std::string(stability_word(s.levels[0])) == "untested");
+    return s.levels[0].message;
+  };
+  CHECK(ended("leave") == "stability not tested: the Hessian is not finite");
+  CHECK(ended("off").empty());
+}
