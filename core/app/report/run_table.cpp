@@ -105,9 +105,9 @@ std::string status_without_results(const RunRecord& run) {
                                                        : "failed";
 }
 
-/// Whether the last level that a method has reached has an energy that is a number.
+/// Whether the energy of a method's last level is a number, but for its strain limit.
 bool has_energy(const MethodRecord& method) {
-  return !method.levels.empty() && number_member(method.levels.back().values, "energy");
+  return !method.levels.empty() && number_member(method.levels.back().values, "energy_on_finest");
 }
 
 /// `is_measured`: the row is of a method that has_energy.
