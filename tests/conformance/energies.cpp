@@ -172,6 +172,7 @@ TEST_CASE("Membranes of coarse levels have consistent derivatives, resist less a
     ++membranes;
     INFO(candidate.name);
     const auto plain = candidate.energy->bind(level, material);
+    if (!candidate.energy->bind_buckling(level, material, 0)) continue;
     for (const double bound : {0.0, 1e-5, 1e-3}) {
       const auto buckling = candidate.energy->bind_buckling(level, material, bound);
       CHECK(buckling->stencils() == plain->stencils());
@@ -189,9 +190,8 @@ TEST_CASE("Membranes of coarse levels have consistent derivatives, resist less a
     const Positions narrow = level.rest.vertices * Eigen::Vector3d(1.05, 0.8, 1).asDiagonal();
     const double own = plain->value(narrow),
                  slack = candidate.energy->bind_buckling(level, material, 0)->value(narrow);
-    const bool keeps_its_law = slack == own;  // as a law with directions may
-    if (!keeps_its_law) CHECK(slack < 0.5 * own);
-    relaxed += !keeps_its_law;
+    CHECK(slack < 0.5 * own);
+    ++relaxed;
     if (!candidate.energy->midpoint_factor()) continue;  // its law depends on sizes
     Level soft = level;
     soft.softening = Eigen::Vector2d(0.25, 0.25);

@@ -118,8 +118,8 @@ TEST_CASE("every value that a metric declares is a column by its name") {
 }
 
 TEST_CASE("an intersection, an energy that is no number or lost results fail whatever the status") {
-  CHECK(passes(run_of("converged", {{"energy", 1}, {"intersections", 0}})));
-  CHECK(!passes(run_of("converged", {{"energy", 1}, {"intersections", 1}})));
+  CHECK(passes(run_of("converged", {{"energy_on_finest", 1}, {"intersections", 0}})));
+  CHECK(!passes(run_of("converged", {{"energy_on_finest", 1}, {"intersections", 1}})));
   CHECK(!passes(run_of("converged", {{"intersections", 0}})));
   RunRecord lost;
   lost.status = "converged";
@@ -127,7 +127,7 @@ TEST_CASE("an intersection, an energy that is no number or lost results fail wha
 }
 
 TEST_CASE("what has converged to rounding passes where it was to converge, and is told apart") {
-  const auto ended = [](const std::string& status) { return run_of(status, {{"energy", 1}}); };
+  const auto ended = [](const std::string& status) { return run_of(status, {{"energy_on_finest", 1}}); };
   CHECK(passes(ended("converged_to_rounding")));
   CHECK(passes(ended("converged_to_rounding"), "converged_to_rounding"));
   CHECK(!passes(ended("converged"), "converged_to_rounding"));

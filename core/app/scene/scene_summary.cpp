@@ -65,7 +65,7 @@ Eigen::AlignedBox2d plan_of(const TriangleMesh& mesh) {
           mesh.vertices.colwise().maxCoeff().head<2>().transpose()};
 }
 
-/// How the masses lie over an obstacle.
+/// How the masses lie over a bounded obstacle.
 void add_place(const Positions& start, const Eigen::VectorXd& masses, const Eigen::Vector2d& centre,
                const Eigen::AlignedBox2d& plan, ObstacleSummary& obstacle) {
   obstacle.beside = (centre - plan.center()).norm();
@@ -88,12 +88,18 @@ void add_contacts(const LevelModel& model, const Positions& start, SceneSummary&
       if (is_inside(points, meshes[k])) summary.enclosing = gaps[k].obstacle;
       summary.obstacles.push_back({std::move(gaps[k]), extents(meshes[k].vertices),
                                    start.col(2).minCoeff() - meshes[k].vertices.col(2).maxCoeff()});
+      ObstacleSummary& obstacle = summary.obstacles.back();
+      if (!obstacle.gap.is_bounded) {
+        obstacle.over = 1;
+        summary.is_centre_over = true;
+        continue;
+      }
       const Eigen::AlignedBox2d plan = plan_of(meshes[k]);
-      add_place(start, masses, centre, plan, summary.obstacles.back());
+      add_place(start, masses, centre, plan, obstacle);
       all.extend(plan);
     }
   }
-  summary.is_centre_over = all.contains(centre);
+  summary.is_centre_over = summary.is_centre_over || all.contains(centre);
 }
 
 std::string edges_text(double length, const SceneSummary& s) {
@@ -108,10 +114,10 @@ std::string range_text(double from, double to) {
   return (low == high ? low : low + "–" + high) + (small ? " mm" : " m");
 }
 
-/// Where a cloth lies that is not over the middle of its obstacle; "" for one that is.
+/// Where a cloth lies that is above its obstacle, but not over its middle; "" for another.
 std::string place_text(const ObstacleSummary& obstacle, const SceneSummary& s) {
   constexpr double near = 0.05;  // of the cloth
-  if (obstacle.beside < near * s.size.maxCoeff() || obstacle.over > 0.999) return "";
+  if (obstacle.drop < 0 || obstacle.beside < near * s.size.maxCoeff() || obstacle.over > 0.999) return "";
   return ", " + fixed_text(100 * obstacle.over, 0) + " % of the cloth over its bounding box, its centre " +
          length_text(obstacle.beside) + " beside the middle of that";
 }

@@ -88,6 +88,7 @@ struct ObstacleGap {
   std::string obstacle;       ///< its name in messages
   double gap = 0;             ///< the shortest distance [m]
   Eigen::Vector3d direction;  ///< unit, from the obstacle towards the cloth there
+  bool is_bounded = true;     ///< false for a half-space, of which obstacles() has a square
 };
 
 /// A contact model bound to one level and its obstacles. Immutable.

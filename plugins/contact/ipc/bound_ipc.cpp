@@ -202,7 +202,7 @@ std::vector<ObstacleGap> BoundIpc::obstacle_gaps(const Positions& x) const {
   std::vector<ObstacleGap> gaps;
   for (const Obstacle& body : obstacles_->bodies) {
     const Eigen::Vector3d connection = shortest_connection(near_cloth, SurfaceSearch(body.mesh()));
-    gaps.push_back({body.name, connection.norm(), connection.normalized()});
+    gaps.push_back({body.name, connection.norm(), connection.normalized(), true});
   }
   return gaps;
 }

@@ -134,7 +134,7 @@ class BoundShapes final : public BoundContact {
     std::vector<ObstacleGap> gaps;
     for (const Solid& solid : scene_->solids) {
       const SeparatingPlane nearest = nearest_triangle(*scene_, solid, triangles, x);
-      gaps.push_back({solid.name, nearest.separation, nearest.normal});
+      gaps.push_back({solid.name, nearest.separation, nearest.normal, solid.kind != SolidKind::half_space});
     }
     return gaps;
   }

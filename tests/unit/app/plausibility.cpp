@@ -323,6 +323,7 @@ TEST_CASE("A cloth beside its obstacle is told of, and warned of where nothing e
       "the cloth's centre is over no obstacle, but 0.5 m beside that of ball: sphere: it will ";
   check_warnings({{moved("0.25"), ""},
                   {moved("0.5"), warning},
+                  {scene_yaml(metre, "obstacles: [{shape: half_space, translate: [90, 0, -0.2]}]\n"), ""},
                   {moved("0.5", "pins: [{region: nearest, point: [0, 0, 0]}]\n"), ""},
                   {replaced(moved("0.5"), "]}]", "]}, {shape: half_space, translate: [0, 0, -2]}]"), ""}});
 }
