@@ -138,9 +138,10 @@ TEST_CASE("patterns that cannot be sewn are refused with file, line, panel and e
   check_error(said(&Bag::stitches, "{left: [front.left, back.left], again: [front.left, back.top]}"),
               "p.yaml:11:45: edge left of panel front is in seam again and in seam left; an edge is sewn to "
               "one other");
-  check_error(
-      said(&Bag::front, "{0: [0, 0], 1: [20, 0], 2: [20, 20], 3: [0, 30]}"),
-      "p.yaml:11:14: the sides of seam left are 30 and 20 cm long, which differ by 33.3 % of the longer one");
+  check_error(said(&Bag::front, "{0: [0, 0], 1: [20, 0], 2: [20, 20], 3: [0, 130]}"),
+              "p.yaml:11:14: the sides of seam left are 130 and 20 long in the file's unit, which differ by "
+              "84.6 % of "
+              "the longer one; an ease of at most 80 % is usual: draw them alike, or write \"ease\"");
   check_error(
       said(&Bag::stitches, "{left: [front.left, back.left], right: [front.right, back.right, right_wrong]}"),
       "p.yaml:11:45: seam right gives the cloth one side, as a Möbius band has");
@@ -220,6 +221,31 @@ TEST_CASE(
               "p.yaml:5:14: seam tuck sews the neighbouring edges t2 and t3 of panel front to each other, "
               "which would "
               "fold a tuck; there are no tucks and pleats: gather the edge by the \"ease\" of a seam");
+}
+
+TEST_CASE("a seam gathers its longer side, up to five to one, and says so beyond three tenths") {
+  const Scratch folder(of_pattern);
+  const auto checked = [&](const std::string& width, const std::string& more = "") {
+    folder.write(
+        "p.yaml",
+        "properties: {units_in_meter: 100}\npattern:\n  panels:\n    band: {translation: [0, 0, 10], "
+        "vertices: {a: [0, 0], b: [20, 0], c: [20, 6], d: [0, 6]}, edges: {bottom: [a, b], right: [b, "
+        "c], top: [c, d], left: [d, a]}}\n    ruffle: {vertices: {a: [0, 0], b: [" +
+            width + ", 0], c: [" + width +
+            ", -9], d: [0, -9]}, edges: {top: [b, a], left: [a, d], hem: [d, c], right: [c, b]}}\n  "
+            "stitches: {gather: [ruffle.top, band.bottom]}\n");
+    return drape_with("check e.yaml --set levels=1 --set cloth.edge_length=0.02 " + more, folder.path);
+  };
+  CHECK_THAT(checked("28").out, !Contains("gathers"));
+  const std::string remark = "cloth: seam gather gathers a length of 60 to 20, in the file's unit";
+  const Ended ended = checked("60");
+  CHECK(ended.exit_code == 0);
+  CHECK_THAT(ended.out + ended.err, Contains(remark));
+  CHECK_THAT(checked("60", "--set cloth.ease=0.5").err,
+             Contains("differ by 66.7 % of the longer one; an ease of at most 50 % is declared"));
+  CHECK(checked("130", "--set cloth.ease=0.9").exit_code == 0);
+  CHECK(checked("130").exit_code == 2);
+  CHECK(checked("130", "--set cloth.edge_length=0.6").exit_code == 0);  // within two edges of the mesh
 }
 
 TEST_CASE("a seam that gathers a panel in its plane says to place the other one out of it") {

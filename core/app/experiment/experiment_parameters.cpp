@@ -150,6 +150,12 @@ void ClothParameters::declare(Declaration<ClothParameters>& d) {
       .between(0, 0.1)
       .only_with("shape", {"file"});
   d.add_section("seams", &ClothParameters::seams, "the folds along the seams of flat pieces");
+  d.add("ease", &ClothParameters::ease,
+        "largest difference of the lengths of a seam's sides, as a part of the longer one, where the "
+        "pattern's "
+        "seam has none; null: 0.8, or two edges of the mesh if that is more")
+      .between(0, 1)
+      .only_with("shape", {"pattern"});
   d.add_section(
       "as_read", &ClothParameters::as_read,
       "written by drape to a run's config, for `drape export --as-read`: how the cloth's file was read");

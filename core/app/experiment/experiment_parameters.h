@@ -71,6 +71,7 @@ struct ClothParameters : FileCoordinates {
   std::optional<std::string> uv_unit;
   double join = 0;
   SeamParameters seams;
+  std::optional<double> ease;
   AsReadParameters as_read;
   std::string triangulation = "one_way";
   std::optional<int> vertices;

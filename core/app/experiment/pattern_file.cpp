@@ -134,6 +134,7 @@ std::optional<Pattern> read_pattern(const ConfigNode& source, ConfigErrors& erro
     if (auto panel = read_panel(named.name, *named.node, units, errors)) panels.push_back(std::move(*panel));
   if (errors.size() > before) return std::nullopt;  // seams would miss edges
   Pattern pattern;
+  pattern.unit = 1 / p.properties.units_in_meter;
   pattern.up = p.properties.up;
   SeamReader reader(panels, errors);
   constexpr std::size_t most_faults = 100;
@@ -149,7 +150,7 @@ std::optional<Pattern> read_pattern(const ConfigNode& source, ConfigErrors& erro
       pattern.seams.push_back({panels[k].panel.name + "." + edge.name,
                                {std::vector{EdgeIndex{int(k), leg}}, std::vector{EdgeIndex{int(k), other}}},
                                false,
-                               PatternSeamParameters().ease,
+                               std::nullopt,
                                edge.where});
     }
     pattern.panels.push_back(std::move(panels[k].panel));

@@ -71,7 +71,8 @@ void PatternSeamParameters::declare(Declaration<PatternSeamParameters>& d) {
         "behind the other along the seam")
       .required();
   d.add("ease", &PatternSeamParameters::ease,
-        "largest difference of the sides' lengths, as a part of the longer one, which is gathered")
+        "largest difference of the sides' lengths, as a part of the longer one, which is gathered; null: "
+        "`cloth.ease`")
       .between(0, 1);
   d.add(
       "right_wrong", &PatternSeamParameters::right_wrong,

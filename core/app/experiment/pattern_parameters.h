@@ -44,7 +44,7 @@ struct PanelParameters {
 struct PatternSeamParameters {
   std::optional<std::string> name;
   ConfigNode sides;
-  double ease = 0.3;
+  std::optional<double> ease;
   bool right_wrong = false;
   static void declare(Declaration<PatternSeamParameters>& d);
 };

@@ -74,6 +74,15 @@ double edge_length_of(const Pattern& pattern, const ClothParameters& c) {
   return length;
 }
 
+/// The pattern of the cloth, its seams eased as the cloth says where they do not; none for a faulty one.
+std::optional<Pattern> pattern_of(const ClothParameters& c, ConfigErrors& errors) {
+  std::optional<Pattern> pattern = read_pattern(c.file, errors);
+  if (pattern)
+    for (Seam& seam : pattern->seams)
+      if (!seam.ease) seam.ease = c.ease;
+  return pattern;
+}
+
 /// Whether the second edge begins where the first one ends, and in its direction.
 bool go_straight_on(const Panel& panel, int first, int second) {
   constexpr double straight = 0.985, part = 0.01;  // cosine of 10°; of an edge, for its direction
@@ -121,7 +130,7 @@ void sew(TriangleMesh& cloth, const ClothParameters& c) {
 std::optional<TriangleMesh> cloth_of_pattern(const ClothParameters& c, ConfigErrors& errors,
                                              LabelEdges* labels) {
   if (c.file.empty()) throw std::runtime_error("\"shape: pattern\" needs \"file\", the pattern to read");
-  const std::optional<Pattern> pattern = read_pattern(c.file, errors);
+  const std::optional<Pattern> pattern = pattern_of(c, errors);
   if (!pattern) return std::nullopt;
   std::optional<TriangleMesh> cloth = sew_pattern(*pattern, edge_length_of(*pattern, c), errors, labels);
   if (!cloth) return std::nullopt;
@@ -147,6 +156,24 @@ ConfigErrors tucks_in(const ClothParameters& c) {
                            "gather the edge by the \"ease\" of a seam, or take cloth away by \"darts\""});
   }
   return tucks;
+}
+
+std::vector<std::string> gather_remarks(const ClothParameters& c) {
+  std::vector<std::string> remarks;
+  ConfigErrors of_pattern;
+  const std::optional<Pattern> pattern =
+      c.shape == "pattern" ? read_pattern(c.file, of_pattern) : std::nullopt;
+  if (!pattern) return remarks;
+  constexpr double much = 0.3;
+  for (const Seam& seam : pattern->seams)
+    if (pattern->gathered(seam) > much) {
+      const auto [shorter, longer] =
+          std::minmax({pattern->length(seam.sides[0]), pattern->length(seam.sides[1])});
+      remarks.push_back("cloth: seam " + seam.name + " gathers a length of " +
+                        three_digits(longer / pattern->unit) + " to " +
+                        three_digits(shorter / pattern->unit) + ", in the file's unit");
+    }
+  return remarks;
 }
 
 std::optional<double> vertices_in_outlines(const ClothParameters& c) try {

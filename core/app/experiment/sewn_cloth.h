@@ -23,6 +23,10 @@ std::optional<TriangleMesh> cloth_of_pattern(const ClothParameters& c, ConfigErr
 /// The number of vertices of a sewing pattern, by the outlines of its panels; none for a faulty pattern.
 std::optional<double> vertices_in_outlines(const ClothParameters& c);
 
+/// A line for each seam of a sewing pattern that takes up more than three tenths of its longer side; none for
+/// other cloth and for a faulty pattern.
+std::vector<std::string> gather_remarks(const ClothParameters& c);
+
 /// The seams that sew two neighbouring edges of a panel on one line to each other, as a tuck is folded: an
 /// error for each; none for a faulty pattern.
 ConfigErrors tucks_in(const ClothParameters& c);

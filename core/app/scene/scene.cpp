@@ -214,6 +214,7 @@ std::vector<std::string> remarks_of(const Experiment& e, const Scene& scene) {
                                  scene.hierarchy.levels[scene.hierarchy.cloth].vertex_count()) +
                   " vertices of the cloth's file were joined to others (cloth.join)");
   if (const std::string text = sewing_text(coarsest); !text.empty()) all.push_back("cloth: " + text);
+  for (std::string& line : gather_remarks(cloth)) all.push_back(std::move(line));
   if (scene.dressing)
     all.push_back(
         "dress: the garment starts smoothed (smoothing " + general_text(scene.dressing->smoothing, 3) + ")" +

@@ -90,15 +90,17 @@ std::vector<Knot> knots_of(const Chain& first, const Chain& second, double edge_
 void divide_seam(const Pattern& pattern, const Seam& seam, double edge_length, int& stitch,
                  Divisions& divisions, ConfigErrors& errors) {
   const Chain first(pattern, seam, 0), second(pattern, seam, 1);
-  const double longer = std::max(first.length(), second.length());
-  const double difference = std::abs(first.length() - second.length()) / longer;
-  if (difference > seam.ease)
+  constexpr double usual = 0.8;  // gathers are drawn up to 5 to 1
+  const double difference = pattern.gathered(seam);
+  if (difference > seam.ease.value_or(usual) &&
+      (seam.ease || std::abs(first.length() - second.length()) > 2 * edge_length))
     errors.push_back(
-        {seam.where, "the sides of seam " + seam.name + " are " + three_digits(100 * first.length()) +
-                         " and " + three_digits(100 * second.length()) + " cm long, which differ by " +
-                         three_digits(100 * difference) + " % of the longer one; an ease of at most " +
-                         three_digits(100 * seam.ease) +
-                         " % is declared: draw them alike, or write \"ease\""});
+        {seam.where,
+         "the sides of seam " + seam.name + " are " + three_digits(first.length() / pattern.unit) + " and " +
+             three_digits(second.length() / pattern.unit) + " long in the file's unit, which differ by " +
+             three_digits(100 * difference) + " % of the longer one; an ease of at most " +
+             three_digits(100 * seam.ease.value_or(usual)) + " % is " + (seam.ease ? "declared" : "usual") +
+             ": draw them alike, or write \"ease\" at the seam, or in cloth for all"});
   const std::vector<Knot> knots = knots_of(first, second, edge_length);
   for (std::size_t k = 0; k + 1 < knots.size(); ++k) {
     const Knot &a = knots[k], &b = knots[k + 1];

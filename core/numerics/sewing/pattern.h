@@ -76,7 +76,9 @@ struct Seam {
   std::string name;
   std::array<std::vector<EdgeIndex>, 2> sides;
   bool right_wrong = false;
-  double ease = 0;  ///< largest difference of the sides' lengths, as a part of the longer one
+  /// The largest difference of the sides' lengths, as a part of the longer one. Without it they may differ by
+  /// 0.8, five to one, or by two edges of the mesh.
+  std::optional<double> ease;
   Location where;
 };
 
@@ -85,9 +87,14 @@ struct Seam {
 struct Pattern {
   std::vector<Panel> panels;
   std::vector<Seam> seams;
+  double unit = 1;       ///< that of its file [m]
   std::string up = "y";  ///< axis of the placement that points up, "y" or "z"
 
   const PanelEdge& edge(const EdgeIndex& i) const { return panels[i.panel].edges[i.edge]; }
+  /// The length of a chain of edges [m].
+  double length(const std::vector<EdgeIndex>& chain) const;
+  /// By how much the lengths of a seam's sides differ, as a part of the longer one.
+  double gathered(const Seam& seam) const;
 };
 
 }  // namespace drape

@@ -174,6 +174,17 @@ void check_joints(const Pattern& pattern, const TriangleMesh& cloth, double edge
 
 }  // namespace
 
+double Pattern::length(const std::vector<EdgeIndex>& chain) const {
+  double sum = 0;
+  for (const EdgeIndex& e : chain) sum += edge(e).curve.length();
+  return sum;
+}
+
+double Pattern::gathered(const Seam& seam) const {
+  const double first = length(seam.sides[0]), second = length(seam.sides[1]);
+  return std::abs(first - second) / std::max(first, second);
+}
+
 double area_of(const std::vector<int>& loop, const std::vector<PanelEdge>& edges) {
   constexpr int steps = 32;  // of a curve
   Polygon corners;
