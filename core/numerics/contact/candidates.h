@@ -41,8 +41,8 @@ inline std::array<int, 4> edge_edge(const SurfaceTopology& own, int e, const Sur
 /// A primitive of the cloth and one of the obstacles: a vertex and a triangle, a triangle and a vertex, or
 /// two edges. Most are too far apart for contact, so this has no weights yet.
 struct ObstaclePair {
-  static constexpr double offset = 0;
-  std::array<int, 4> vertices;  ///< as of ContactPair
+  static constexpr double offset = 0;  ///< triangles are not rounded
+  std::array<int, 4> vertices;         ///< as of ContactPair
   PairKind kind;
   int own, other;  ///< the primitives' indices in the two surfaces
 };

@@ -13,7 +13,8 @@
 
 namespace drape::ipc {
 
-/// What searches for the cloth's pairs reuse for speed. Results do not depend on earlier searches.
+/// Trees and lists of the searches for the cloth's pairs, reused for speed. Results do not depend on earlier
+/// searches.
 struct ClothSearch {
   std::mutex busy;                       // guards the other members
   std::unique_ptr<SelfPairSearch> self;  // null without self-contact
@@ -24,7 +25,7 @@ struct ClothSearch {
 
   /// Refers to the surface.
   ClothSearch(const Surface& cloth, bool self_contact, BroadPhaseKind kind);
-  /// Bounds a motion of the cloth for find_rows, as SweptBoxes::update.
+  /// Bounds a motion of the cloth by boxes and tree, as SweptBoxes::update.
   void update(const Positions& x0, const Positions& x1, double margin, const Eigen::RowVector3d& origin);
 };
 
@@ -45,7 +46,7 @@ struct RestCloth {
   }
 };
 
-/// What a search for pairs with a pose of the obstacles needs, for one d̂ and one kind of broad phase.
+/// A pose of the obstacles, prepared for searches with one d̂ and one kind of broad phase.
 struct ObstacleTree {
   std::shared_ptr<const Obstacles> obstacles;
   Eigen::RowVector3d origin;  // of the boxes, and of those that are compared with them
@@ -85,7 +86,7 @@ class BoundIpc final : public BoundContact {
   class Candidates;
 
   /// Sets `found`, and `boxes` to the number of overlapping boxes. Returns false if there are more pairs than
-  /// `limits`. The caller holds the cloth's search.
+  /// `limits`. The caller holds ClothSearch::busy.
   bool search(const Positions& x0, const Positions& x1, const PairLimits& limits,
               std::vector<ContactPair>& found, long& boxes) const;
 

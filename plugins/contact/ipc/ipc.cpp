@@ -55,15 +55,15 @@ Ipc::Ipc(const Parameters& parameters, const Ipc* before) : p_(parameters) {
 Ipc::LevelObstacles Ipc::level_obstacles(std::vector<Obstacle> bodies, const Ipc* before) const {
   const LevelObstacles* last =
       before && levels_.size() < before->levels_.size() ? &before->levels_[levels_.size()] : nullptr;
-  const auto have_same_triangles = [](const Obstacle& a, const Obstacle& b) {
+  const auto share_triangles = [](const Obstacle& a, const Obstacle& b) {
     return a.geometry.frames[0] == b.geometry.frames[0];
   };
-  const bool moved = last && std::ranges::equal(last->bodies, bodies, have_same_triangles),
+  const bool same_triangles = last && std::ranges::equal(last->bodies, bodies, share_triangles),
              same = last && last->bodies == bodies,
              same_kind = last && before->p_.broad_phase == p_.broad_phase;
   const auto topology =
-      moved ? last->topology : Deferred<ObstacleTopology>([bodies] { return topology_of(bodies); });
-  const auto trees = moved && same_kind ? last->trees : std::make_shared<PoseTrees>(p_.broad_phase);
+      same_triangles ? last->topology : Deferred<ObstacleTopology>([bodies] { return topology_of(bodies); });
+  const auto trees = same_triangles && same_kind ? last->trees : std::make_shared<PoseTrees>(p_.broad_phase);
   const auto obstacles =
       same ? last->obstacles
            : Deferred<Obstacles>([bodies, topology] { return Obstacles::of(bodies, topology.get()); });

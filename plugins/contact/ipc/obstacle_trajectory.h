@@ -15,7 +15,7 @@ struct ObstacleTree;
 
 /// The largest collision-free step of obstacles whose parameters change linearly from `before` to `after`,
 /// with the cloth at x. It leaves the minimum gap of core/numerics/collision_detection/nonlinear_ccd.h; the
-/// limit names the blocking pair. The caller holds the cloth's search. Throws std::runtime_error naming an
+/// limit names the blocking pair. The caller holds search.busy. Throws std::runtime_error naming an
 /// obstacle whose triangles changed.
 StepLimit max_trajectory_step(const ObstacleTree& before, const std::shared_ptr<const Obstacles>& after,
                               ClothSearch& search, const Positions& x, double dhat);
