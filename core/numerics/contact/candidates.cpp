@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <span>
 
 #include "core/kernel/threads/parallel.h"
 #include "core/numerics/contact/moving_pairs.h"
@@ -10,7 +11,7 @@
 namespace drape {
 namespace {
 
-constexpr int rows_per_task = 256, weights_per_task = 1024;
+constexpr int rows_per_task = 256, filtered_per_task = 4096, weights_per_task = 1024;
 
 /// The primitives that a triangle of the cloth represents, with their boxes.
 struct Represented {
@@ -53,7 +54,7 @@ void append_overlapping(const SweptBoxes& cloth, int s, const Represented& own, 
 }
 
 /// The pairs that may come within d̂, in their order.
-std::vector<ObstaclePair> near_of(const std::vector<ObstaclePair>& untested, const LinearMotion& motion) {
+std::vector<ObstaclePair> near_of(std::span<const ObstaclePair> untested, const LinearMotion& motion) {
   std::vector<char> near(untested.size());
   const auto mark = [&](const auto& moving, const int* indices, int size) {
     const auto reach = moving.speed + motion.dhat;
@@ -69,6 +70,14 @@ std::vector<ObstaclePair> near_of(const std::vector<ObstaclePair>& untested, con
   for (std::size_t i = 0; i < near.size(); ++i)
     if (near[i]) found.push_back(untested[i]);
   return found;
+}
+
+/// Whether the boxes of a pair's primitives overlap. The obstacles' vertex 0 has the index `first` in pairs.
+bool boxes_overlap(const ObstaclePair& pair, const SweptBoxes& cloth, const SweptBoxes& obstacles,
+                   int first) {
+  if (pair.kind == PairKind::edge_edge) return cloth.edge(pair.own).overlaps(obstacles.edge(pair.other));
+  if (pair.vertices[0] < first) return cloth.vertices[pair.own].overlaps(obstacles.triangles[pair.other]);
+  return obstacles.vertices[pair.other].overlaps(cloth.triangles[pair.own]);
 }
 
 /// The factor φ of the weight of a contact between the cloth's vertices, from the obstacle's sagitta there.
@@ -110,6 +119,17 @@ bool find_obstacle_pairs(const SweptBoxes& cloth, const SweptBoxes& obstacles, c
   if (number > limit) return false;
   for (const std::vector<ObstaclePair>& list : lists) found.insert(found.end(), list.begin(), list.end());
   return true;
+}
+
+std::vector<ObstaclePair> obstacle_pairs_among(const std::vector<ObstaclePair>& pairs,
+                                               const SweptBoxes& cloth, const SweptBoxes& obstacles,
+                                               const LinearMotion& motion) {
+  const auto first = static_cast<int>(motion.x0.rows());
+  const auto find = [&](int begin, int end, std::vector<ObstaclePair>& found) {
+    found = near_of(std::span(pairs).subspan(begin, end - begin), motion);
+    std::erase_if(found, [&](const ObstaclePair& p) { return !boxes_overlap(p, cloth, obstacles, first); });
+  };
+  return parallel_collect<ObstaclePair>(static_cast<int>(pairs.size()), filtered_per_task, find);
 }
 
 void append_contact_pairs(const std::vector<ObstaclePair>& pairs, const Surface& cloth,

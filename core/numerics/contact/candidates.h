@@ -53,6 +53,11 @@ struct ObstaclePair {
 bool find_obstacle_pairs(const SweptBoxes& cloth, const SweptBoxes& obstacles, const AdjacencyList& rows,
                          const LinearMotion& motion, long limit, std::vector<ObstaclePair>& found);
 
+/// The pairs that find_obstacle_pairs finds, if `pairs` has them all, in the order of `pairs`.
+std::vector<ObstaclePair> obstacle_pairs_among(const std::vector<ObstaclePair>& pairs,
+                                               const SweptBoxes& cloth, const SweptBoxes& obstacles,
+                                               const LinearMotion& motion);
+
 /// Appends pairs of find_obstacle_pairs, with their weights; `friction` is μ where an obstacle has none of
 /// its own.
 ///

@@ -102,17 +102,6 @@ class BoundIpc::Candidates final : public CollisionCandidates {
   std::vector<VertexTriangleCandidate> vertex_triangles_;
 };
 
-ClothSearch::ClothSearch(const Surface& cloth, bool self_contact, BroadPhaseKind kind)
-    : self(self_contact ? std::make_unique<SelfPairSearch>(cloth, kind) : nullptr),
-      boxes(cloth),
-      tree(make_broad_phase(kind)) {}
-
-void ClothSearch::update(const Positions& x0, const Positions& x1, double margin,
-                         const Eigen::RowVector3d& origin) {
-  boxes.update(x0, x1, margin, origin);
-  tree->update(boxes.triangles);
-}
-
 RestCloth::RestCloth(const Level& level, const Ipc::Parameters& p)
     : dhat(p.dhat),
       self_contact(p.self_contact),
@@ -120,16 +109,6 @@ RestCloth::RestCloth(const Level& level, const Ipc::Parameters& p)
       surface(Surface::of(level.rest, level.topology)),
       search(surface, self_contact, broad_phase) {
   if (self_contact) layers = RestLayers::of(surface, level, dhat);
-}
-
-ObstacleTree::ObstacleTree(std::shared_ptr<const Obstacles> all, double dhat, PoseTrees& trees)
-    : obstacles(std::move(all)),
-      origin(Eigen::RowVector3d::Zero()),
-      boxes(*obstacles->topology),
-      dihedrals(*obstacles) {
-  if (obstacles->vertices.rows() > 0) origin = obstacles->vertices.colwise().mean();
-  boxes.update(obstacles->vertices, obstacles->vertices, 0.5 * dhat, origin);
-  tree = trees.of(boxes.triangles);
 }
 
 BoundIpc::BoundIpc(const Ipc::Parameters& parameters, const BarrierParameters& barrier,
@@ -158,12 +137,16 @@ bool BoundIpc::search(const Positions& x0, const Positions& x1, const PairLimits
   if (own.self && !own.self->find(motion, p_.friction, limits, boxes, found)) return false;
   if (obstacles_->bodies.empty()) return true;
   const std::shared_ptr<const ObstacleTree> other = tree_.get();
-  own.update(x0, x1, 0.5 * barrier_.dhat, other->origin);
-  if (!own.tree->overlaps(*other->tree, limits.boxes - boxes, own.rows)) return false;
-  boxes += std::ssize(own.rows.items);
-  if (!find_obstacle_pairs(own.boxes, other->boxes, own.rows, motion, limits.primitives - std::ssize(found),
-                           own.pairs))
-    return false;
+  const long row_limit = limits.boxes - boxes, pair_limit = limits.primitives - std::ssize(found);
+  // Without limits the number of boxes is asked for, which a skin does not know.
+  if (limits.boxes != unlimited && own.find_in_skin(motion, other->boxes, *other, barrier_.dhat, row_limit)) {
+    if (std::ssize(own.pairs) > pair_limit) return false;
+  } else {
+    own.update(x0, x1, 0.5 * barrier_.dhat, other->origin);
+    if (!own.tree->overlaps(*other->tree, row_limit, own.rows)) return false;
+    boxes += std::ssize(own.rows.items);
+    if (!find_obstacle_pairs(own.boxes, other->boxes, own.rows, motion, pair_limit, own.pairs)) return false;
+  }
   append_contact_pairs(own.pairs, cloth_, *obstacles_, other->dihedrals, barrier_.dhat, p_.friction, found);
   return true;
 }

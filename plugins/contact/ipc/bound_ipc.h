@@ -1,33 +1,15 @@
 #pragma once
 
 #include <memory>
-#include <mutex>
 #include <vector>
 
 #include "core/kernel/interfaces/contact_model.h"
-#include "core/numerics/collision_detection/broad_phase.h"
-#include "core/numerics/contact/candidates.h"
 #include "core/numerics/contact/pair_geometry.h"
+#include "plugins/contact/ipc/cloth_search.h"
 #include "plugins/contact/ipc/ipc.h"
 #include "plugins/contact/ipc/rest_layers.h"
 
 namespace drape::ipc {
-
-/// Trees and lists of the searches for the cloth's pairs, reused for speed. Results do not depend on earlier
-/// searches.
-struct ClothSearch {
-  std::mutex busy;                       // guards the other members
-  std::unique_ptr<SelfPairSearch> self;  // null without self-contact
-  SweptBoxes boxes;
-  std::unique_ptr<BroadPhase> tree;
-  AdjacencyList rows;
-  std::vector<ObstaclePair> pairs;
-
-  /// Refers to the surface.
-  ClothSearch(const Surface& cloth, bool self_contact, BroadPhaseKind kind);
-  /// Bounds a motion of the cloth by boxes and tree, as SweptBoxes::update.
-  void update(const Positions& x0, const Positions& x1, double margin, const Eigen::RowVector3d& origin);
-};
 
 /// Data of the cloth's rest shape, shared when the level is bound again under other loads.
 struct RestCloth {
@@ -44,17 +26,6 @@ struct RestCloth {
   bool serves(const Ipc::Parameters& p) const {
     return dhat == p.dhat && self_contact == p.self_contact && broad_phase == p.broad_phase;
   }
-};
-
-/// A pose of the obstacles, prepared for searches with one d̂ and one kind of broad phase.
-struct ObstacleTree {
-  std::shared_ptr<const Obstacles> obstacles;
-  Eigen::RowVector3d origin;  // of the boxes, and of those that are compared with them
-  SweptBoxes boxes;
-  Dihedrals dihedrals;
-  std::shared_ptr<const BroadPhase> tree;
-
-  ObstacleTree(std::shared_ptr<const Obstacles> all, double dhat, PoseTrees& trees);
 };
 
 /// The contact model `ipc` bound to one level.

@@ -16,7 +16,7 @@
 #include "core/numerics/linear_algebra/interpolate.h"
 #include "core/numerics/mesh/rotation.h"
 #include "core/numerics/mesh/same_entries.h"
-#include "plugins/contact/ipc/bound_ipc.h"
+#include "plugins/contact/ipc/cloth_search.h"
 #include "plugins/contact/ipc/trajectory_segment.h"
 
 namespace drape::ipc {
@@ -71,9 +71,7 @@ class ObstacleTrajectory {
         dhat_(dhat),
         search_(search),
         boxes_(*after_->topology),
-        tree_(before.tree->copy()) {
-    search_.update(x, x, 0.5 * dhat, before.origin);
-  }
+        tree_(before.tree->copy()) {}
 
   /// The smallest gap at the start, at most d̂ [m].
   double smallest_gap() {
@@ -189,11 +187,21 @@ class ObstacleTrajectory {
     TrajectorySegment next = segment(begin, end);
     segment_.reset();
     boxes_.update(*next.begin.world, *next.end.world, 0.5 * dhat_ + next.chord_error, tree_before_.origin);
-    tree_->update(boxes_.triangles);
-    if (!search_.tree->overlaps(*tree_, limit, search_.rows)) return false;
-    remove_static(search_.rows, moves_, *after_);
     const LinearMotion motion{x_, x_, dhat_ + next.chord_error, *next.begin.world, *next.end.world};
-    if (!find_obstacle_pairs(search_.boxes, boxes_, search_.rows, motion, limit, search_.pairs)) return false;
+    if (search_.find_in_skin(motion, boxes_, tree_before_, dhat_, limit)) {
+      const auto n = static_cast<int>(x_.rows());
+      std::erase_if(search_.pairs, [&](const ObstaclePair& pair) {
+        return !moves_[after_->body_of(*std::ranges::max_element(pair.vertices) - n)];
+      });
+      if (std::ssize(search_.pairs) > limit) return false;
+    } else {
+      search_.update(x_, x_, 0.5 * dhat_, tree_before_.origin);
+      tree_->update(boxes_.triangles);
+      if (!search_.tree->overlaps(*tree_, limit, search_.rows)) return false;
+      remove_static(search_.rows, moves_, *after_);
+      if (!find_obstacle_pairs(search_.boxes, boxes_, search_.rows, motion, limit, search_.pairs))
+        return false;
+    }
     segment_ = std::move(next);
     return true;
   }
