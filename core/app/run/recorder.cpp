@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "core/app/experiment/declared_metrics.h"
+#include "core/app/experiment/garment_place.h"
 #include "core/app/report/run_data.h"
 #include "core/app/report/run_table.h"
 #include "core/app/run/garment_pieces.h"

@@ -6,6 +6,7 @@
 #include <map>
 #include <set>
 
+#include "core/app/experiment/garment_place.h"
 #include "core/app/scene/load_schedule.h"
 #include "core/app/scene/scene_summary.h"
 #include "core/kernel/files/message_text.h"

@@ -1,8 +1,9 @@
+#include "core/app/experiment/garment_place.h"
+
 #include <Eigen/Geometry>
 #include <limits>
 
 #include "core/app/experiment/pattern_file.h"
-#include "core/app/scene/dressing.h"
 #include "core/kernel/files/string_utils.h"
 
 namespace drape {
