@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "core/app/files/machine.h"
-#include "core/app/scene/scene.h"
+#include "core/app/setup/build_scene.h"
 #include "core/kernel/plugin/loader.h"
 #include "core/kernel/threads/parallel.h"
 #include "core/kernel/version.h"

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "core/app/scene/scene.h"
+#include "core/app/setup/build_scene.h"
 #include "tests/support/command.h"
 #include "tests/support/registry.h"
 

@@ -14,6 +14,7 @@
 #include "core/app/files/machine.h"
 #include "core/app/files/yaml_file.h"
 #include "core/app/scene/scene_summary.h"
+#include "core/app/setup/build_scene.h"
 #include "core/app/sweep/sweep.h"
 #include "core/kernel/files/message_text.h"
 #include "core/kernel/files/number_text.h"

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "core/app/cli/commands.h"
+#include "core/app/setup/build_scene.h"
 #include "core/kernel/files/message_text.h"
 #include "core/kernel/files/number_text.h"
 #include "core/kernel/files/string_utils.h"

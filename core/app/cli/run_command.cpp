@@ -9,7 +9,7 @@
 #include "core/app/report/run_table.h"
 #include "core/app/run/runner.h"
 #include "core/app/run/saved_run.h"
-#include "core/app/scene/scene.h"
+#include "core/app/setup/build_scene.h"
 #include "core/app/view/live_view.h"
 #include "core/kernel/files/message_text.h"
 #include "core/kernel/files/string_utils.h"

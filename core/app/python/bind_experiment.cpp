@@ -3,6 +3,7 @@
 #include "core/app/python/module.h"
 #include "core/app/python/values.h"
 #include "core/app/scene/scene_summary.h"
+#include "core/app/setup/build_scene.h"
 
 namespace drape::python {
 

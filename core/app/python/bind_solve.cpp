@@ -4,7 +4,7 @@
 #include "core/app/python/module.h"
 #include "core/app/python/values.h"
 #include "core/app/run/saved_run.h"
-#include "core/app/scene/scene.h"
+#include "core/app/setup/build_scene.h"
 #include "core/numerics/solve/stepped_solve.h"
 
 namespace drape::python {

@@ -6,6 +6,7 @@
 #include "core/app/files/yaml_file.h"
 #include "core/app/report/run_data.h"
 #include "core/app/run/recorder_files.h"
+#include "core/app/setup/build_scene.h"
 #include "core/kernel/files/file.h"
 #include "core/kernel/files/string_utils.h"
 #include "core/numerics/mesh_files/io.h"

@@ -50,15 +50,6 @@ struct Scene : Problem {
   const LevelModel& finest_model() const { return *model(finest()); }
 };
 
-/// Whether a start that intersects something is refused.
-enum class IntersectingStart { refused, allowed };
-
-/// Builds the scene of an experiment that is not too large; null if there are errors already, and, with every
-/// fault of the mesh, of pins and of the start appended, if that is not possible. An intersecting start is
-/// `allowed` for repair_start and warm starts alone.
-std::unique_ptr<Scene> build_scene(const Experiment& experiment, ConfigErrors& errors, LargeMemory large,
-                                   IntersectingStart intersecting = IntersectingStart::refused);
-
 /// How the contact models treat their input and the scene, a line each: repaired obstacles, pairs of the
 /// cloth that have no barrier.
 std::vector<std::string> remarks_of(const Experiment& experiment, const Scene& scene);
