@@ -182,7 +182,7 @@ TEST_CASE("A garment beside its body gets a warning, and one around it none") {
 
 TEST_CASE("a body of an animation is refused with what to dress in its place") {
   const Scratch folder;
-  TubeDress().write(folder);
+  TubeDress().write(folder, "energies: [neo_hookean, hinge, gravity]\n");
   CHECK_THAT(
       refused_by(
           "check e.yaml --set 'dress={obstacle: body}' --set 'obstacles=[{name: body, animation: [body.obj, "
