@@ -1,10 +1,8 @@
 #include "core/app/experiment/dress.h"
 
-#include <algorithm>
-#include <cmath>
-
 #include "core/app/experiment/experiment.h"
 #include "core/app/experiment/experiment_path.h"
+#include "core/kernel/files/message_text.h"
 #include "core/kernel/plugin/parameters.h"
 #include "core/kernel/plugin/placement.h"
 
@@ -16,12 +14,6 @@ namespace {
 constexpr const char* placement_keys[] = {"unit", "up", "scale", "rotate", "translate"};
 /// The name of a body that `dress` reads.
 constexpr const char* body_name = "body";
-/// The weight of the placed metric at the start, where a triangle without area still rests as one with some,
-/// and in the last increment of sewing but one.
-constexpr double first_weight = 0.99, least_weight = 1e-4;
-/// A strain limit that limits nothing, where it begins, and the increments in which it comes down.
-constexpr double loosest_limit = 100;
-constexpr int limit_increments = 12;
 
 }  // namespace
 
@@ -85,10 +77,9 @@ void apply_dress(ConfigNode& experiment, ConfigErrors& errors) {
   obstacles->items.push_back(body);
 }
 
-void make_dressing_schedule(Experiment& e, ConfigErrors& errors) {
-  ExperimentParameters& p = e.parameters;
-  DressParameters& dress = p.dress;
-  if (!dress.is_asked()) return;
+void check_dress(const Experiment& e, ConfigErrors& errors) {
+  const ExperimentParameters& p = e.parameters;
+  if (!p.dress.is_asked()) return;
   const auto refuse = [&](const std::string& key, const std::string& why) {
     errors.push_back({e.location_of(key), "\"dress\" " + why});
   };
@@ -99,50 +90,12 @@ void make_dressing_schedule(Experiment& e, ConfigErrors& errors) {
            "makes the schedule itself; leave \"schedule\" out, and move what is dressed in a second run: "
            "drape run --resume FOLDER --out OTHER --set dress={} --set schedule=…");
   if (!errors.empty()) return;
-  const auto is_limit = [](const NamedEnergy& energy) { return energy.energy->role() == EnergyRole::limit; };
-  dress.tightening = std::ranges::any_of(e.energies, is_limit) ? limit_increments : 0;
-  const double grown = dress.growth, sewn = grown + dress.sewing, whole = sewn + dress.tightening + 1;
-  const std::string body = "obstacles." + dress.obstacle;
-  const auto add = [&](const std::string& parameter, const std::vector<double>& times,
-                       const std::vector<double>& values,
-                       KeyInterpolation interpolation = KeyInterpolation::linear) {
-    ConfigNode written = parameter_detail::to_node(values);
-    written.where = e.location_of("dress");
-    p.schedule.keys.push_back({parameter, times, std::move(written), interpolation, {}, {}, 0});
-  };
-  add(body + ".contraction", {0}, {0});
-  add(body + ".grown", {0, grown}, {0, 1});
-  std::vector<double> times = {0}, weights = {first_weight};
-  for (int k = 0; k <= dress.sewing; ++k) {
-    times.push_back(grown + k);
-    weights.push_back(
-        k == dress.sewing ? 0 : first_weight * std::pow(least_weight, k / std::max(1.0, dress.sewing - 1.0)));
-  }
-  add("dress.placed", times, weights);
-  add("dress.loads", {0, whole}, {0, 1}, KeyInterpolation::step);
-  if (p.friction > 0) add("friction", {0, whole}, {0, p.friction}, KeyInterpolation::step);
-  for (std::size_t k = 0; k < e.energies.size(); ++k) {
-    if (!is_limit(e.energies[k])) continue;
-    const std::string path = "energies." + std::to_string(k) + ".limit";
-    const double limit = value_at(e.resolved, path)->number;
-    std::vector<double> limit_times = {0}, limits = {loosest_limit};  // geometric above 1
-    for (int i = 0; i <= dress.tightening; ++i) {
-      limit_times.push_back(sewn + i);
-      limits.push_back(1 + (loosest_limit - 1) *
-                               std::pow((limit - 1) / (loosest_limit - 1), double(i) / dress.tightening));
-    }
-    limits.back() = limit;
-    add(path, limit_times, limits);
-  }
-  p.schedule.steps = static_cast<int>(whole);
-}
-
-std::string dressing_phase(const DressParameters& dress, int increment) {
-  if (increment == 0) return "start";
-  if (increment <= dress.growth) return "growth";
-  if (increment <= dress.growth + dress.sewing) return "sewing";
-  if (increment <= dress.growth + dress.sewing + dress.tightening) return "limit";
-  return increment == dress.growth + dress.sewing + dress.tightening + 1 ? "weight" : "";
+  const std::string body = "obstacles." + p.dress.obstacle;
+  if (!value_at(e.resolved, body))
+    refuse("dress", "names an obstacle \"" + excerpt(p.dress.obstacle) + "\", and there is none");
+  else if (const ConfigNode* own = value_at(e.resolved, body + ".contraction"); !own || !own->is_number())
+    refuse("dress", "shrinks its body, and the obstacle \"" + excerpt(p.dress.obstacle) +
+                        "\" has no \"contraction\"; take one with a \"mesh\"");
 }
 
 }  // namespace drape

@@ -159,7 +159,7 @@ std::optional<Experiment> read_experiment(ConfigNode source, const Registry& reg
   check_schedule(e, errors);
   check_material(e, errors);
   make_plugins(e, errors);
-  make_dressing_schedule(e, errors);
+  check_dress(e, errors);
   read_keys(e, errors);
   if (errors.empty()) return e;
   // The scene, which would append the faults of mesh files, cannot be built.

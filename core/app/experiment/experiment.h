@@ -50,20 +50,6 @@ struct Experiment {
   std::vector<std::string> obstacle_names() const;
 };
 
-/// What the models of all levels are made from under one load. Shares with other loads what is equal.
-struct Load {
-  std::vector<double> values;                              ///< of all keys, one after another
-  std::shared_ptr<const ExperimentParameters> parameters;  ///< for material, pins, handles and `dress`
-  std::vector<NamedEnergy> energies;                       ///< handles last, if a scene has made them
-  std::vector<std::shared_ptr<ContactModel>> contacts;
-};
-
-/// Makes again what differs from `load` with these values of the keys: what the experiment's source gives
-/// with the values in it. Returns the keys whose values differ. Appends an error for every value that is
-/// refused.
-std::vector<const ScheduleKey*> set_values(const Experiment& experiment, std::vector<double> values,
-                                           Load& load, ConfigErrors& errors);
-
 /// A number of the method's `newton` in a resolved or saved config; empty if there is none.
 std::optional<double> newton_number(const ConfigNode& config, const std::string& method, const char* key);
 

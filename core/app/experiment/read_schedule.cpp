@@ -1,13 +1,12 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <span>
 
 #include "core/app/experiment/experiment_path.h"
+#include "core/app/experiment/load.h"
 #include "core/app/experiment/read_experiment.h"
 #include "core/kernel/files/message_text.h"
 #include "core/kernel/files/string_utils.h"
-#include "core/kernel/plugin/make.h"
 #include "core/kernel/plugin/parameters.h"
 
 namespace drape {
@@ -19,9 +18,6 @@ using NodeKind = ConfigNode::Kind;
 /// Sections whose parameters may change; the others choose the discretisation and the methods.
 const std::vector<std::string> changeable = {"material", "energies", "contact", "obstacles",
                                              "friction", "pins",     "handles"};
-/// The changeable sections that contact models are made from.
-const std::vector<std::string> of_contact = {"contact", "obstacles", "friction"};
-
 bool is_changeable(const std::string& path) { return is_one_of(path.substr(0, path.find('.')), changeable); }
 
 /// A number or a list of them; empty for anything else.
@@ -55,12 +51,6 @@ std::vector<const ConfigNode*> numbers_at(const ConfigNode& resolved, const Sche
   for (std::size_t c = 0; node && c < node->items.size(); ++c)
     if (node->items[c].kind == NodeKind::number) numbers.push_back(&node->items[c]);
   return numbers;
-}
-
-/// A key's value as its parameter has it.
-ConfigNode node_of(const ScheduleKey& key, std::span<const double> value) {
-  if (key.written.items[0].kind != NodeKind::list) return ConfigNode::of(value[0]);
-  return parameter_detail::to_node(std::vector<double>(value.begin(), value.end()));
 }
 
 class KeyReader {
@@ -103,7 +93,7 @@ class KeyReader {
     if (key.parameter.empty()) return;  // the schema has reported it
     key.values = values_of(key);
     const auto not_positive = [](const std::vector<double>& value) { return std::ranges::min(value) <= 0; };
-    if (!is_changeable(key.parameter) && !e_.parameters.dress.is_asked())  // whose keys drape makes itself
+    if (!is_changeable(key.parameter))
       refuse(key, "cannot change while a level is solved; keys are for parameters of " + joined(changeable));
     else if (!std::is_sorted(key.times.begin(), key.times.end(), std::less_equal<>()))
       refuse(key, "must have ascending \"times\"");
@@ -120,8 +110,7 @@ class KeyReader {
     const std::vector<std::string> words = words_of_path(e_.resolved, key.parameter);
     key.section = words[0];
     if (words.size() > 1) key.item = e_.resolved.find(words[0])->index_of(words[1]).value_or(0);
-    if (key.section != "dress" && numbers_at(e_.resolved, key).size() != key.values[0].size())
-      refuse_parameter(key);
+    if (numbers_at(e_.resolved, key).size() != key.values[0].size()) refuse_parameter(key);
   }
 
   /// Why the path of a key leads nowhere: as of an option --set, or that it names no number.
@@ -171,7 +160,7 @@ class KeyReader {
         Load load = first;
         std::vector<double> values = first.values;
         std::ranges::copy(key.values[i], values.begin() + static_cast<std::ptrdiff_t>(begin));
-        set_values(e_, std::move(values), load, own);
+        set_values(e_, load_values(keys_, values, first.values), load, own);
       }
       for (const ConfigError& error : own)
         errors_.push_back({key.written.where, name(key) + ": " + error.message});
@@ -267,61 +256,6 @@ void set_first_keys(ConfigNode& source) {
   }
 }
 
-bool ScheduleKey::is_of_contact() const { return is_one_of(section, of_contact); }
-
 void read_keys(Experiment& experiment, ConfigErrors& errors) { KeyReader(experiment, errors).read_all(); }
-
-std::vector<const ScheduleKey*> set_values(const Experiment& e, std::vector<double> values, Load& load,
-                                           ConfigErrors& errors) {
-  ConfigNode source(NodeKind::map);  // without the schedule, of which each load would have a copy
-  source.where = e.source.where;
-  for (std::size_t i = 0; i < e.source.entries.size(); ++i) {
-    if (e.source.entries[i].first == "schedule") continue;
-    source.entries.push_back(e.source.entries[i]);
-    source.key_locations.push_back(e.source.key_locations[i]);
-  }
-  DressParameters dress = e.parameters.dress;
-  std::vector<const ScheduleKey*> changed;
-  for (std::size_t first = 0; const ScheduleKey& key : e.parameters.schedule.keys) {
-    const std::span<const double> value(&values[first], key.values[0].size());
-    if (!std::equal(value.begin(), value.end(), &load.values[first])) changed.push_back(&key);
-    first += value.size();
-    if (key.parameter == "dress.placed")
-      dress.placed = value[0];
-    else if (key.parameter == "dress.loads")
-      dress.loads = value[0];
-    else
-      set_parameter(source, key.parameter, node_of(key, value), {}, errors);
-  }
-  ExperimentParameters now = parameters_of(source, errors);
-  if (!errors.empty()) return changed;
-  const auto has_changed = [&](const auto& is_meant) {
-    return std::ranges::any_of(changed, [&](const ScheduleKey* key) { return is_meant(*key); });
-  };
-  for (std::size_t k = 0; k < now.energies.size(); ++k)
-    if (has_changed([&](const ScheduleKey& key) { return key.section == "energies" && key.item == k; })) {
-      std::shared_ptr<const Energy>& energy = load.energies[k].energy;
-      energy = make_from<Energy>(*e.registry, now.energies[k], errors, nullptr, energy.get());
-    }
-  for (std::size_t k = 0; k < load.contacts.size(); ++k)
-    if (has_changed([&](const ScheduleKey& key) {
-          return key.section == "friction" || (key.section == "contact" && key.item == k) ||
-                 (key.section == "obstacles" && std::ranges::count(e.obstacles_of[k], key.item) > 0);
-        })) {
-      std::shared_ptr<ContactModel>& contact = load.contacts[k];
-      contact = make_from<ContactModel>(*e.registry, contact_section(e, now, k, errors), errors, nullptr,
-                                        contact.get());
-    }
-  if (has_changed([](const ScheduleKey& key) { return !key.is_of_contact() && key.section != "energies"; })) {
-    now.dress = std::move(dress);
-    for (std::size_t k = 0; k < now.pins.size(); ++k)  // which a pattern's source does not have
-      now.pins[k].label_edges = e.parameters.pins[k].label_edges;
-    for (std::size_t k = 0; k < now.handles.size(); ++k)
-      now.handles[k].label_edges = e.parameters.handles[k].label_edges;
-    load.parameters = std::make_shared<const ExperimentParameters>(std::move(now));
-  }
-  load.values = std::move(values);
-  return changed;
-}
 
 }  // namespace drape

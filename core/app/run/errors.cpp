@@ -33,7 +33,7 @@ std::vector<Snapshot> SnapshotRecorder::end_level(const Cost& cost, const Positi
 }
 
 std::optional<double> energy_released(const Scene& scene, double energy) {
-  if (scene.dressing) return std::nullopt;
+  if (scene.garment) return std::nullopt;
   return scene.finest_model().value(scene.placed.back()) - energy;
 }
 

@@ -59,11 +59,11 @@ struct ErrorTarget {
 };
 
 /// What a cloth releases of the finest level's energy from the scene's start, without noise and with pins
-/// where they begin, to a state with this `energy` [J]. None of a garment that is dressed: its start has the
+/// where they begin, to a state with this `energy` [J]. None of a garment: its start has the
 /// strain of its placement, of which nothing remains.
 std::optional<double> energy_released(const Scene& scene, double energy);
 /// What energy gaps at a target x of the finest level, with this `energy`, are over: energy_released; of a
-/// garment that is dressed the elastic energy there [J].
+/// garment the elastic energy there [J].
 double energy_scale(const Scene& scene, const Positions& x, double energy);
 
 /// The error of a state x of the finest level, whose energy is given [J]. A target whose scale is not

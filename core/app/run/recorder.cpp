@@ -9,7 +9,6 @@
 #include "core/app/report/run_table.h"
 #include "core/app/run/garment_pieces.h"
 #include "core/app/run/recorder_files.h"
-#include "core/app/scene/dressing.h"
 #include "core/kernel/files/file.h"
 #include "core/kernel/files/number_text.h"
 #include "core/kernel/threads/parallel.h"
@@ -251,7 +250,7 @@ Json Recorder::state_entry(const LevelResult& r, const Cost& cost) {
           {"energy_parts", parts},
           {"energy_on_finest", on_finest},
           {"energy_released", json_of(energy_released(scene_, on_finest))},
-          {"energy_parts_released", scene_.dressing ? Json() : released_parts},
+          {"energy_parts_released", scene_.garment ? Json() : released_parts},
           {"decrement", r.decrement},
           {"force_residual", r.force_residual},
           {"stability", stability_entry(r)},
@@ -276,13 +275,12 @@ void Recorder::increment_finished(const IncrementRow& r, const Positions& x) {
        {"seconds", seconds},
        {"energy", r.energy},
        {"energy_released",
-        scene_.dressing ? Json() : Json(model.value(scene_.placed[r.level]) - model.value(x))},
+        scene_.garment ? Json() : Json(model.value(scene_.placed[r.level]) - model.value(x))},
        {"force_residual", r.force_residual},
        {"max_constraint_violation", r.max_constraint_violation}});
   const std::string phase = scene_.load_stepping->phase();
   if (!phase.empty()) increments.back()["phase"] = phase;
-  if (scene_.dressing && phase != dressing_phase(experiment_.parameters.dress, r.increment + 1) &&
-      experiment_.parameters.snapshots > 0)
+  if (scene_.load_stepping->ends_phase() && experiment_.parameters.snapshots > 0)
     s_.snapshots.keep(s_.last, x);
   exclude(watch);
 }
@@ -303,7 +301,7 @@ void Recorder::level_finished(const LevelResult& r) {
                                  {"load_before", s_.load},
                                  {"load_after", load_average()},
                                  {"mesh_checksum", mesh_checksum}});
-  if (scene_.dressing)
+  if (scene_.garment)
     entry["levels"].back()["pieces"] =
         garment_pieces(scene_.hierarchy.levels[r.level], r.x, garment.back().values, state.contact_pressure);
   if (experiment_.parameters.snapshots > 0)

@@ -99,7 +99,7 @@ class Recorder : public Observer {
   void write_obstacles();
   /// Returns the checksum of the .ply.
   std::uint32_t write_state(const RecordedState& state, const VertexFields& garment);
-  /// None of a scene without dressing.
+  /// None of a cloth that is no garment.
   VertexFields garment_fields_of(const RecordedState& state) const;
   /// The states of a method as a ParaView collection.
   void write_collection(const std::string& method);

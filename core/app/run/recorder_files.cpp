@@ -139,7 +139,7 @@ void Recorder::follow_schedule() {
 }
 
 VertexFields Recorder::garment_fields_of(const RecordedState& state) const {
-  if (!scene_.dressing) return {};
+  if (!scene_.garment) return {};
   return garment_fields_at(scene_.hierarchy.levels[state.level], state.x, scene_.finest_model().obstacles());
 }
 

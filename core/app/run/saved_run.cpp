@@ -250,10 +250,7 @@ void warm_start_scene(const Experiment& experiment, Scene& scene, int level, con
                       ConfigErrors& errors) {
   const LevelModel& model = *scene.model(level);
   if (x.rows() != model.level().vertex_count()) throw std::logic_error("a state of another level");
-  if (experiment.parameters.dress.is_asked())
-    errors.push_back({experiment.location_of("dress"),
-                      "\"dress\" begins from pieces as they are placed, and from no other state; a dressed "
-                      "garment goes on without: --set dress={}"});
+  if (scene.garment) errors.push_back(scene.garment->no_restart);
   scene.starts[level] = x;
   refuse_intersecting_start(experiment, model, x, errors);
   for (std::size_t l = level + 1; l < scene.starts.size(); ++l)

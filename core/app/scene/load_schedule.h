@@ -3,28 +3,18 @@
 #include <memory>
 #include <vector>
 
-#include "core/app/scene/scene.h"
-#include "core/kernel/threads/deferred.h"
+#include "core/app/scene/load_state.h"
 
 namespace drape {
 
-/// A load of a scene. Immutable.
-struct LoadState : Load {
-  /// By level, rests of membranes between the shape that pieces were placed in and their own, if any.
-  std::vector<Deferred<Level>> rests;
-  /// Where pins hold a garment that has been sewn: its positions then, prolonged to the finest level from the
-  /// one that it was sewn on, n×3 [m]; null: where the scene placed it.
-  std::shared_ptr<const Positions> sewn;
-};
-
-/// The loads of a scene, with its levels and models, as a function of its keyed parameters. Immutable; has a
-/// copy of the experiment, and refers to the scene, which must outlive it.
+/// The loads of a scene as a function of its keyed parameters. Immutable; has a copy of the experiment, and
+/// refers to the scene, which must outlive it.
 class LoadSchedule {
  public:
   LoadSchedule(const Experiment& experiment, const Scene& scene);
 
   /// The keys and their times.
-  const ScheduleParameters& keys() const { return keys_; }
+  const ScheduleParameters& keys() const { return experiment_.parameters.schedule; }
   /// The values of all keys at the end of an increment.
   std::vector<double> values(int increment) const { return keys().values_at(keys().time(increment)); }
 
@@ -37,24 +27,11 @@ class LoadSchedule {
     return at(std::move(values), *first_);
   }
 
-  /// The plain model of a level under a load, which shares with `before`, a model of the same level under
-  /// another load, what is equal.
-  std::shared_ptr<const LevelModel> model(const LoadState& load, int level, const LevelModel& before) const;
-
  private:
-  void dress(LoadState& load, const LoadState& before) const;
-  /// Where pins without a transform hold, n×3 [m]: where the garment was sewn, else where the scene placed
-  /// it.
-  Positions placed(const LoadState& load, int level) const;
-
   const Experiment experiment_;
   const Scene& scene_;
-  const ScheduleParameters keys_;
   std::shared_ptr<const LoadState> first_;
 };
-
-/// The positions of a coarser level's vertices, which are among those of a finer level (x, n×3).
-Positions own_of(const Hierarchy& hierarchy, const Positions& x, int fine, int coarse);
 
 /// Load stepping along the schedule of an experiment with keys; refers to the scene, which owns it. Null,
 /// with an error at the key's location appended, for every key at one of whose times a pin or handle selects

@@ -26,7 +26,6 @@ constexpr double largest_dhat = 1.5;                            // d̂ over an e
 constexpr double largest_obstacle = 100;                        // diagonal [m]
 constexpr double largest_ratio = 50;                            // of that to the cloth's
 constexpr double largest_stretch = 2;                           // of the start, or its inverse
-constexpr double least_enclosure = 0.15;                        // winding number of a garment about its body
 
 /// Warns of the value at a key.
 using Warn = std::function<void(const std::string& key, const std::string& message)>;
@@ -108,7 +107,7 @@ void check_obstacles(const Experiment& e, const Scene& scene, const SceneSummary
   const auto moves = [](const ScheduleKey& key) {
     return key.section != "material" && key.section != "energies";
   };
-  if (s.obstacles.empty() || std::ranges::any_of(e.parameters.schedule.keys, moves)) return;
+  if (s.obstacles.empty() || scene.garment || std::ranges::any_of(e.parameters.schedule.keys, moves)) return;
   const ObstacleGap& nearest = s.nearest()->gap;
   if (const double length = s.size.maxCoeff(); nearest.gap > length)
     warn("start", "the cloth starts " + length_text(nearest.gap) + " from the nearest obstacle, " +
@@ -155,18 +154,7 @@ void check_membrane(const Experiment& e, const Warn& warn) {
          "no energy resists stretching, so that the cloth may stretch without end; add neo_hookean");
 }
 
-void check_start(const Experiment& e, const Scene& scene, const SceneSummary& s, const Warn& warn) {
-  if (e.parameters.dress.is_asked()) {  // whose seams start long
-    if (scene.dressing && scene.dressing->enclosure < least_enclosure)
-      warn("dress",
-           "the garment encloses hardly anything of its body, as if it were beside it or the body on its "
-           "side: are \"up\", \"translate\" and \"unit\" of the body right?");
-    if (e.parameters.pins.empty() && e.parameters.friction == 0)
-      warn("dress",
-           "no pin and no friction holds the garment: it stays only where the body's shape carries it, "
-           "and falls elsewhere; set \"friction\", or pin a piece, as in {region: piece, piece: NAME}");
-    return;
-  }
+void check_start(const Experiment& e, const SceneSummary& s, const Warn& warn) {
   if (!s.enclosing.empty())
     warn("start", "the cloth starts inside the obstacle " + s.enclosing +
                       "; if it should lie on it, move it by \"translate\"");
@@ -248,7 +236,10 @@ ConfigErrors plausibility_warnings(const Experiment& e, const Scene& scene, cons
   for (ConfigError& warning : unread_measures(e, s.median_edge)) all.push_back(std::move(warning));
   check_nearest(e, "pins", e.parameters.pins, scene.hierarchy.levels[0], coarse_edge, all);
   check_nearest(e, "handles", e.parameters.handles, scene.hierarchy.levels[0], coarse_edge, all);
-  check_start(e, scene, s, warn);
+  if (scene.garment)  // whose seams start long
+    all.insert(all.end(), scene.garment->warnings.begin(), scene.garment->warnings.end());
+  else
+    check_start(e, s, warn);
   check_contact(s, warn);
   check_obstacles(e, scene, s, warn);
   return all;

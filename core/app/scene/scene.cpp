@@ -93,13 +93,7 @@ std::vector<std::string> remarks_of(const Experiment& e, const Scene& scene) {
                   " vertices of the cloth's file were joined to others (cloth.join)");
   if (const std::string text = sewing_text(coarsest); !text.empty()) all.push_back("cloth: " + text);
   for (std::string& line : gather_remarks(cloth)) all.push_back(std::move(line));
-  if (scene.dressing)
-    all.push_back(
-        "dress: the garment starts smoothed (smoothing " + general_text(scene.dressing->smoothing, 3) + ")" +
-        (scene.dressing->inflation > 0
-             ? ", each layer moved by " + length_text(scene.dressing->inflation) + " to its right side"
-             : "") +
-        ", the body shrunk (contraction " + general_text(scene.dressing->contraction, 3) + " of its area)");
+  if (scene.garment) all.push_back(scene.garment->remark);
   for (const auto& contact : e.contacts)
     for (std::string& line : contact->input_remarks()) all.push_back(std::move(line));
   for (const auto& model : scene.models)

@@ -24,13 +24,12 @@ struct FollowingVertex {
 };
 using FollowingVertices = std::vector<FollowingVertex>;
 
-/// The start of a garment around a contracted body, as find_dressing_start found it.
-struct DressingStart {
-  double contraction = 0;           ///< of the body, of its area [1]
-  double smoothing = 0;             ///< of the placed garment [1]
-  double inflation = 0;             ///< of the smoothed garment, along its normals [m]
-  std::vector<Positions> garments;  ///< of every level, n×3 [m]
-  double enclosure = 0;             ///< the largest winding number around a point of the contracted body
+/// A cloth that is put on a body before it is loaded. Its pieces are measured one by one, and energies are
+/// not compared with the start, where its seams are long.
+struct Garment {
+  std::string remark;      ///< on its start
+  ConfigErrors warnings;   ///< on its start
+  ConfigError no_restart;  ///< why it begins from no other state
 };
 
 /// The problem of an experiment, and what it was made from.
@@ -43,7 +42,7 @@ struct Scene : Problem {
   std::vector<NamedEnergy> energies;         ///< of the models, handles included
   std::vector<Positions> placed;             ///< the starts without noise, where pins and handles hold [m]
   std::vector<FollowingVertices> following;  ///< of each level
-  std::optional<DressingStart> dressing;     ///< if the experiment asks for `dress`
+  std::optional<Garment> garment;            ///< if the cloth is one
   std::optional<Positions> reference;        ///< on the finest level, if the experiment names its file
 
   /// The finest level's model under the load that it has reached; valid until the next load step.

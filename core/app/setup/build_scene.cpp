@@ -4,8 +4,9 @@
 #include <array>
 #include <cmath>
 
+#include "core/app/dressing/dressing.h"
+#include "core/app/experiment/sewn_cloth.h"
 #include "core/app/scene/boundary_conditions.h"
-#include "core/app/scene/dressing.h"
 #include "core/app/scene/load_schedule.h"
 #include "core/kernel/files/message_text.h"
 #include "core/numerics/dressing/implicit_smoothing.h"
@@ -185,9 +186,11 @@ std::unique_ptr<Scene> build_scene(const Experiment& e, ConfigErrors& errors, La
     if (!errors.empty()) return nullptr;
   }
   scene->following = following_vertices(e, *scene, errors);
-  if (p.dress.is_asked() && errors.empty()) find_dressing_start(e, *scene, errors);
   if (!errors.empty()) return nullptr;
-  if (!p.schedule.keys.empty()) scene->load_stepping = load_stepping_of(e, *scene, errors);
+  if (p.dress.is_asked())
+    scene->load_stepping = dress(e, *scene, errors);
+  else if (!p.schedule.keys.empty())
+    scene->load_stepping = load_stepping_of(e, *scene, errors);
   if (!errors.empty()) return nullptr;
   scene->reference = read_reference(e, scene->hierarchy, errors);
   return errors.empty() ? std::move(scene) : nullptr;

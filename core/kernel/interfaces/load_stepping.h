@@ -12,7 +12,7 @@ class LevelModel;
 /// How far load stepping has come.
 struct LoadSteppingState {
   int increment = 0;
-  std::vector<double> values;  ///< of all keyed parameters, one after another
+  std::vector<double> values;  ///< what the load was made for, and what else it depends on
 };
 
 /// Incremental loading: boundary conditions, obstacles, material and loads follow a pseudo-time while a level
@@ -47,6 +47,8 @@ class LoadStepping {
   virtual double time() const = 0;
   /// The name of the phase that the current increment belongs to; empty for a schedule without phases.
   virtual std::string phase() const { return ""; }
+  /// Whether the current increment is the last one of its phase.
+  virtual bool ends_phase() const { return false; }
   /// How many times the force tolerance is enough for an equilibrium of the current increment [1].
   virtual double slack() const { return 1; }
 

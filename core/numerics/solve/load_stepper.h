@@ -66,7 +66,7 @@ class LoadStepper {
   }
   /// How many times the force tolerance is enough for an equilibrium of the current increment [1].
   double slack() const { return load_stepping_ ? load_stepping_->slack() : 1; }
-  /// Whether the current increment only makes room for the next, as before the last one of a dressing.
+  /// Whether the current increment only makes room for the next, which is then not solved to equilibrium.
   bool makes_room() const { return slack() > 1; }
   /// Stores how far load stepping has come.
   void store_progress(LevelResult& result) const;

@@ -35,7 +35,7 @@ struct Scheduled : Solved {
   LoadSchedule schedule{experiment, *scene};
 
   std::shared_ptr<const LevelModel> model_of(const std::vector<double>& values, int level = 0) const {
-    return schedule.model(*schedule.at(values), level, *scene->models[level]);
+    return model_under(*schedule.at(values), *scene, level, *scene->models[level]);
   }
   std::shared_ptr<const LevelModel> model_at(double time) const {
     return model_of(schedule.keys().values_at(time));
@@ -103,12 +103,12 @@ TEST_CASE("A load is a value: equal when asked for twice, from whatever load, an
   for (int level = 0; level < 2; ++level) {
     const LevelModel& first = *s.scene->models[level];
     const Figures at_first = figures_of(first);
-    const auto model = schedule.model(*half, level, first);
+    const auto model = model_under(*half, *s.scene, level, first);
     const Figures at_half = figures_of(*model);
-    const auto last = schedule.model(*end, level, *model);
+    const auto last = model_under(*end, *s.scene, level, *model);
     const Figures at_end = figures_of(*last);
-    CHECK(figures_of(*schedule.model(*again, level, first)) == at_half);
-    CHECK(figures_of(*schedule.model(*back, level, *last)) == at_half);
+    CHECK(figures_of(*model_under(*again, *s.scene, level, first)) == at_half);
+    CHECK(figures_of(*model_under(*back, *s.scene, level, *last)) == at_half);
     // All that is keyed has changed, and the earlier models have not.
     CHECK(at_half.obstacle != at_first.obstacle);
     CHECK(at_end.obstacle != at_half.obstacle);
@@ -133,7 +133,7 @@ TEST_CASE("Loads share what is equal in them") {
   for (std::size_t k = 0; k < first.energies.size(); ++k)
     CHECK(moved->energies[k].energy == first.energies[k].energy);
   const LevelModel& before = *s.scene->models[1];
-  const auto model = s.schedule.model(*moved, 1, before);
+  const auto model = model_under(*moved, *s.scene, 1, before);
   CHECK(model->pattern() == before.pattern());
   for (const int k : {0, 1}) {  // ipc, which has no obstacle, is shared
     CHECK((moved->contacts[k] == first.contacts[k]) == (k == 0));

@@ -1,4 +1,4 @@
-#include "core/app/scene/dressing.h"
+#include "core/app/dressing/dressing_start.h"
 
 #include <algorithm>
 #include <array>
@@ -6,11 +6,10 @@
 #include <map>
 #include <set>
 
+#include "core/app/dressing/dressing_loads.h"
 #include "core/app/experiment/garment_place.h"
-#include "core/app/scene/load_schedule.h"
 #include "core/app/scene/scene_summary.h"
 #include "core/kernel/files/message_text.h"
-#include "core/numerics/dressing/garment_rest.h"
 #include "core/numerics/dressing/implicit_smoothing.h"
 
 namespace drape {
@@ -31,9 +30,6 @@ constexpr Shaping shapings[] = {{0, {1, 0.3, 2, 4}}, {0.2, {1, 0.3, 2, 4}}, {0, 
 /// Times of the contraction that are tried.
 constexpr double contractions[] = {0.009, 0.018, 0.028, 0.05};
 
-/// A body that fits stretches the placed pieces, which are much longer than they are sewn, by less than a
-/// hundredth while it grows.
-constexpr double largest_placed_stretch = 0.1;
 /// Smallest size of a body over the garment's; a smaller one is in another unit.
 constexpr double smallest_body = 0.01;
 
@@ -74,13 +70,11 @@ double enclosure(const TriangleMesh& garment, const TriangleMesh& body) {
   return largest;
 }
 
-/// Makes a garment without intersections the scene's start, on every level.
-void take(DressingStart start, double contraction, Scene& scene) {
-  start.contraction = contraction;
-  for (const ProlongationMatrix& linear : scene.hierarchy.linear)
+/// The start with a garment on every level.
+DressingStart on_all_levels(DressingStart start, const Hierarchy& hierarchy) {
+  for (const ProlongationMatrix& linear : hierarchy.linear)
     start.garments.push_back(linear * start.garments.back());
-  scene.placed = scene.starts = start.garments;
-  scene.dressing = std::move(start);
+  return start;
 }
 
 /// The error of the best start that was tried, at the panel of most of its intersections.
@@ -105,21 +99,10 @@ ConfigError refusal(const Experiment& e, const std::vector<Intersection>& found,
   return error;
 }
 
-/// A garment whose tightest piece is stretched beyond what is allowed; `when` says when it was measured.
-std::string too_tight(const ClothParameters& cloth, const Level& level, const Positions& x, double allowed,
-                      const std::string& when) {
-  const Tightness tightest = tightest_piece(level, x);
-  if (tightest.stretch <= allowed) return "";
-  const auto percent = [](double part) { return three_digits(100 * part) + " %"; };
-  const GarmentPlace place = place_in_garment(cloth, level, tightest.triangle);
-  return (place.where ? place.where->text() + ": " : "") + "the garment is too tight for its body: " + when +
-         ", a tenth of " + place.text + ", is stretched by more than " + percent(tightest.stretch) +
-         ", and " + percent(allowed) + " is allowed; ";
-}
-
 }  // namespace
 
-void find_dressing_start(const Experiment& e, Scene& scene, ConfigErrors& errors) {
+std::optional<DressingStart> find_dressing_start(const Experiment& e, const Scene& scene,
+                                                 ConfigErrors& errors) {
   const Level& level = scene.hierarchy.levels[0];
   const Location& where = e.location_of("dress");
   const Eigen::AlignedBox3d own = bounding_box(scene.placed[0]),
@@ -128,6 +111,7 @@ void find_dressing_start(const Experiment& e, Scene& scene, ConfigErrors& errors
     errors.push_back({where, "the garment is " + what + " its body: it is " + size_text(own.sizes()) +
                                  ", and the body " + size_text(body.sizes()) +
                                  "; are the unit, the axis and the place of both right?"});
+    return std::nullopt;
   };
   if (!body.intersects(own)) return refuse("nowhere near");
   if (body.sizes().norm() < smallest_body * own.sizes().norm()) return refuse("far too large for");
@@ -142,10 +126,9 @@ void find_dressing_start(const Experiment& e, Scene& scene, ConfigErrors& errors
     }
     std::set<std::size_t> crossed;  // shapes that cross themselves
     for (const double contraction : contractions) {
-      scene.dressing = shapes[0];
-      scene.dressing->contraction = contraction;
-      const LoadSchedule schedule(e, scene);
-      const auto model = schedule.model(*schedule.at(schedule.values(0)), 0, *scene.models[0]);
+      for (DressingStart& shape : shapes) shape.contraction = contraction;
+      const DressingLoads loads(e, scene, shapes[0]);
+      const auto model = model_under(*loads.at(loads.values(0), *loads.worn()), scene, 0, *scene.models[0]);
       const TriangleMesh small = body_of(e, *model);
       for (std::size_t k = 0; k < shapes.size(); ++k) {
         if (crossed.contains(k)) continue;
@@ -157,8 +140,7 @@ void find_dressing_start(const Experiment& e, Scene& scene, ConfigErrors& errors
         }
         if (found.empty()) {
           shapes[k].enclosure = enclosure({x, level.rest.triangles}, small);
-          take(std::move(shapes[k]), contraction, scene);
-          return;
+          return on_all_levels(std::move(shapes[k]), scene.hierarchy);
         }
         if (touches_itself(found)) crossed.insert(k);
         if (least.empty() || found.size() < least.size()) least = std::move(found);
@@ -168,21 +150,7 @@ void find_dressing_start(const Experiment& e, Scene& scene, ConfigErrors& errors
   }
   if (least.empty() && inside) return refuse("inside");
   errors.push_back(refusal(e, least, level));
-}
-
-std::string too_tight_as_placed(const ClothParameters& cloth, const Level& placed, const Positions& x) {
-  const std::string fault = too_tight(cloth, placed, x, largest_placed_stretch,
-                                      "as it was placed, before it is sewn to its smaller size");
-  return fault.empty() ? "" : fault + "is it for another body, or placed around another part of it?";
-}
-
-std::string too_tight_as_sewn(const ClothParameters& cloth, const DressParameters& dress, const Level& level,
-                              const Positions& x) {
-  const std::string fault = too_tight(cloth, level, x, dress.largest_stretch, "sewn");
-  return fault.empty() ? ""
-                       : fault +
-                             "take a larger size or a smaller body, or raise \"dress.largest_stretch\" for a "
-                             "cloth that stretches so far";
+  return std::nullopt;
 }
 
 }  // namespace drape
