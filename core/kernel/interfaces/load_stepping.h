@@ -12,7 +12,8 @@ class LevelModel;
 /// How far load stepping has come.
 struct LoadSteppingState {
   int increment = 0;
-  std::vector<double> values;  ///< what the load was made for, and what else it depends on
+  std::vector<double> values;        ///< that the load was made for
+  std::vector<Positions> kept = {};  ///< states of the cloth on which this or a later load depends, n×3 [m]
 };
 
 /// Incremental loading: boundary conditions, obstacles, material and loads follow a pseudo-time while a level
@@ -52,6 +53,11 @@ class LoadStepping {
   /// How many times the force tolerance is enough for an equilibrium of the current increment [1].
   virtual double slack() const { return 1; }
 
+  /// Once an increment has been solved to x (n×3) [m] on this level: where the cloth was under an earlier
+  /// load, to which load stepping has gone back; null to go on.
+  virtual const Positions* step_back([[maybe_unused]] int level, [[maybe_unused]] const Positions& x) {
+    return nullptr;
+  }
   /// Continues the current increment, or begins the next, as far as a cloth at x (n×3) [m] allows on this
   /// level. Returns the fraction of the remaining increment that was applied.
   virtual StepLimit advance(int level, const Positions& x) = 0;

@@ -46,6 +46,7 @@ void LoadStepper::advance(bool at_equilibrium) {
   const bool begins = load_stepping_->complete();
   if (begins && (at_equilibrium || load_stepping_->increment() > 0)) report_increment();
   if (begins) s_.start = {result.steps, result.iterations};
+  if (begins && step_back()) return;
   const Positions from = iterate_.x();
   double applied = at_equilibrium && !begins ? extrapolate() : 0;
   Positions predicted = iterate_.x();
@@ -82,6 +83,18 @@ void LoadStepper::advance(bool at_equilibrium) {
     blocked_text_ +=
         "; if there is room up to the target, raise the schedule's \"steps\": a part below a thousandth of "
         "what remains of an increment counts as none";
+}
+
+/// Goes back to an earlier load, with the cloth as it was then, if load stepping asks for that.
+bool LoadStepper::step_back() {
+  const Positions* back = load_stepping_->step_back(iterate_.result().level, iterate_.x());
+  if (!back) return false;
+  iterate_.objective().contacts().reset();
+  iterate_.move_to(*back);
+  update_model(iterate_.x());
+  s_.response = IncrementResponse();
+  s_.blocked_increments = 0;
+  return true;
 }
 
 /// Gives the iterate the model of the load that was reached. The cloth was at `from` when the load changed.

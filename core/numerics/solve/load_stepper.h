@@ -86,6 +86,7 @@ class LoadStepper {
 
   double trust_factor() const;
   double extrapolate();
+  bool step_back();
   StepLimit advance_alone();
   bool advance_with(const Positions& trial, double fraction);
   bool is_finite_at(const Positions& x);
