@@ -1,9 +1,8 @@
 // Garments that are dressed: killed in each phase, on any number of threads, symmetric, narrow, and refused
 // in a sentence.
 
-#include "core/app/report/run_data.h"
 #include "core/numerics/elements/vertex_fields.h"
-#include "tests/configs/resuming.h"
+#include "tests/configs/killed_dressings.h"
 #include "tests/support/any_threads.h"
 #include "tests/support/refusal.h"
 #include "tests/support/solve.h"
@@ -62,33 +61,7 @@ std::string refused(const TubeDress& tube) {
 TEST_CASE("A dressing that is killed in each phase resumes to the same bits") {
   const Scratch folder;
   small_tube().write(folder, replaced(held, "gravity]", "gravity, {type: strain_limit, limit: 1.3}]"));
-  const Experiment experiment = experiment_in(folder / "e.yaml");
-  run_experiment(experiment, *scene_of(experiment), silent(folder / "whole"));
-  std::map<std::string, int> steps;  // at the end of each phase
-  int all = 0;
-  const Json whole = read_results(folder / "whole");
-  for (const auto& row : whole["methods"]["newton"]["increments"]) {
-    all += row["steps"].get<int>();
-    if (row.contains("phase")) steps[row["phase"]] = all;
-  }
-  for (const std::string phase : {"growth", "sewing", "limit", "weight"}) {
-    INFO(phase);
-    REQUIRE(steps.contains(phase));
-    RunOptions options = silent(folder / phase);
-    options.checkpoint = 0;
-    int polled = 0;
-    options.stop = [&] { return ++polled > steps[phase] - 1; };  // asked at every step
-    run_experiment(experiment, *scene_of(experiment), options);
-    REQUIRE_FALSE(is_complete(folder / phase));
-    std::vector<std::string> warnings;
-    ConfigErrors errors;
-    auto saved = read_saved_run(folder / phase, test_registry(), LargeMemory::allowed, warnings, errors);
-    throw_errors(errors);
-    REQUIRE(saved->interrupted);
-    resume_experiment(saved->experiment, *saved->scene, silent(folder / phase),
-                      std::move(*saved->interrupted));
-    check_equal(folder / phase, folder / "whole");
-  }
+  check_killed_in(folder, {"growth", "sewing", "limit", "weight"});
 }
 
 TEST_CASE("A dressing that is killed by the system in each phase resumes to the same bits") {

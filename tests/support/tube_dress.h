@@ -5,9 +5,11 @@
 
 #include "tests/support/command.h"
 
-/// A tube of two rectangles, a front and a back, that is dressed on an upright cylinder. Lengths in metres.
+/// A tube of two rectangles, a front and a back, that is dressed on an upright cylinder or cone. Lengths in
+/// metres.
 struct TubeDress {
   double radius = 0.1, body_height = 0.6, height = 0.2;
+  double widening = 0;  ///< of the body's radius in its middle, per height
   double width = 0.28;  ///< of a rectangle: half of the tube's length around
   int columns = 16, rows = 12, facets = 96;
   double apart = 0.2;           ///< of each rectangle from the axis, where it is placed
@@ -18,9 +20,9 @@ struct TubeDress {
     for (int k = 0; k < 2; ++k)
       for (int i = 0; i < facets; ++i) {
         const double angle = 2 * M_PI * i / facets;
-        vertices += "v " + std::to_string(at.x() + radius * std::cos(angle)) + " " +
-                    std::to_string(at.y() + radius * std::sin(angle)) + " " +
-                    std::to_string(at.z() + (k - 0.5) * body_height) + "\n";
+        const double up = (k - 0.5) * body_height, own = radius + widening * up;
+        vertices += "v " + std::to_string(at.x() + own * std::cos(angle)) + " " +
+                    std::to_string(at.y() + own * std::sin(angle)) + " " + std::to_string(at.z() + up) + "\n";
       }
     for (int i = 1; i <= facets; ++i) {
       const int next = i % facets + 1;

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "core/app/dressing/dressing_loads.h"
+#include "core/app/dressing/sinking.h"
 #include "core/app/scene/scene_summary.h"
 #include "core/app/scene/value_stepping.h"
 #include "core/kernel/files/number_text.h"
@@ -14,11 +15,16 @@ namespace {
 
 /// Before the last increment an equilibrium only makes room for the next.
 constexpr double room_slack = 1e6;
+/// A garment that sinks by more while it is sewn, without friction, slides off [m].
+constexpr double largest_sinking = 0.005;
 /// Winding number of a garment about its body.
 constexpr double least_enclosure = 0.15;
 
 /// The load stepping of a garment that is put on. A schedule that follows it is one phase more, whose values
 /// are those of its keys.
+///
+/// It is sewn without friction: pieces are placed low and wide, and slide up the body to where they belong. A
+/// garment that sinks meanwhile slides off where friction would hold it, and is sewn again with friction.
 class Dressing final : public ValueStepping {
  public:
   /// Refers to the scene.
@@ -29,30 +35,44 @@ class Dressing final : public ValueStepping {
   bool equilibrates() const override { return false; }
   double time() const override { return increment(); }
   std::string phase() const override {
-    return increment() == 0 ? "start" : loads_->place(increment()).phase->name();
+    if (increment() == 0) return "start";
+    const std::string name = loads_->place(increment()).phase->name();
+    return held_ && increment() <= loads_->end_of("sewing") ? "sewing again" : name;
   }
   bool ends_phase() const override {
     if (increment() == 0) return true;
     const auto [phase, own] = loads_->place(increment());
-    return own == phase->increment_count();
+    const bool is_back = held_ && increment() == loads_->end_of("growth");
+    return own == phase->increment_count() && !is_back;
   }
   double slack() const override { return increment() < increment_count() ? room_slack : 1; }
 
-  /// The values of the load; with pins, followed by where they hold the garment.
+  /// Keeps where pins hold the garment; until it is sewn, where it was when the body had grown.
   LoadSteppingState state() const override {
     LoadSteppingState state = ValueStepping::state();
-    const Positions& sewn = load().held_at ? *load().held_at : scene().starts.back();
-    if (loads_->has_pins()) state.values.insert(state.values.end(), sewn.data(), sewn.data() + sewn.size());
+    const bool is_sewn = held_ || increment() > loads_->end_of("sewing");
+    state.kept = {load().held_at ? *load().held_at : Positions(), is_sewn ? Positions() : grown_};
     return state;
   }
 
   void restore(int level, const LoadSteppingState& state) override {
-    const auto values_end = state.values.begin() + std::ptrdiff_t(load().values.size());
-    ValueStepping::restore(level, {state.increment, {state.values.begin(), values_end}});
-    if (!loads_->has_pins() || !load().pins_hold || values_end == state.values.end()) return;
-    Positions sewn(scene().starts.back().rows(), 3);
-    std::copy(values_end, state.values.end(), sewn.data());
-    set(level, state.increment, held_at(load(), std::move(sewn)));
+    ValueStepping::restore(level, state);
+    held_ = loads_->can_hold() && loads_->has_friction(state.values);
+    grown_ = Positions();
+    if (state.kept.size() != 2) return;
+    grown_ = state.kept[1];
+    if (state.kept[0].rows() > 0) set(level, state.increment, held_at(load(), state.kept[0]));
+  }
+
+  const Positions* step_back(int level, const Positions& x) override {
+    const int grown = loads_->end_of("growth"), sewn = loads_->end_of("sewing");
+    if (held_ || !loads_->can_hold()) return nullptr;
+    if (increment() == grown) grown_ = x;
+    if (increment() != sewn || grown_.rows() != x.rows()) return nullptr;
+    const Level& own = scene().hierarchy.levels[level];
+    held_ = sinking(own, loads_->forces(own, grown_), grown_, x) > largest_sinking;
+    if (held_) set(level, grown, load_at(values(grown), load()));
+    return held_ ? &grown_ : nullptr;
   }
 
   /// Throws LoadRefused for a garment that is too tight for its body.
@@ -66,7 +86,7 @@ class Dressing final : public ValueStepping {
   }
 
  private:
-  std::vector<double> values(int increment) const override { return loads_->values(increment); }
+  std::vector<double> values(int increment) const override { return loads_->values(increment, held_); }
   std::shared_ptr<const LoadState> load_at(std::vector<double> values,
                                            const LoadState& before) const override {
     return loads_->at(std::move(values), before);
@@ -87,6 +107,8 @@ class Dressing final : public ValueStepping {
   }
 
   const std::unique_ptr<const DressingLoads> loads_;
+  bool held_ = false;  // by friction, while it is sewn
+  Positions grown_;    // where the garment was when the body had grown [m]
 };
 
 Garment garment_of(const Experiment& e, const DressingStart& start) {

@@ -128,7 +128,8 @@ std::optional<DressingStart> find_dressing_start(const Experiment& e, const Scen
     for (const double contraction : contractions) {
       for (DressingStart& shape : shapes) shape.contraction = contraction;
       const DressingLoads loads(e, scene, shapes[0]);
-      const auto model = model_under(*loads.at(loads.values(0), *loads.worn()), scene, 0, *scene.models[0]);
+      const auto model =
+          model_under(*loads.at(loads.values(0, false), *loads.worn()), scene, 0, *scene.models[0]);
       const TriangleMesh small = body_of(e, *model);
       for (std::size_t k = 0; k < shapes.size(); ++k) {
         if (crossed.contains(k)) continue;

@@ -5,25 +5,17 @@ namespace drape {
 
 namespace {
 
-/// The garment gets its loads, pins and friction. The last value is a factor on loads.
+/// The garment gets its loads, by a factor that is the value, and pins.
 class WeightPhase final : public DressingPhase {
  public:
-  explicit WeightPhase(const DressingSetup& setup)
-      : energies_(setup.scene.energies), friction_(setup.experiment.parameters.friction) {}
+  explicit WeightPhase(const DressingSetup& setup) : energies_(setup.scene.energies) {}
 
   std::string name() const override { return "weight"; }
   int increment_count() const override { return 1; }
-  std::vector<double> values(int increment) const override {
-    if (friction_ == 0) return {double(increment)};
-    return {increment * friction_, double(increment)};
-  }
-  std::vector<std::string> parameters() const override {
-    if (friction_ == 0) return {};
-    return {"friction"};
-  }
+  std::vector<double> values(int increment) const override { return {double(increment)}; }
 
   void apply(std::span<const double> values, LoadState& load) const override {
-    const double loads = values.back();
+    const double loads = values[0];
     for (std::size_t k = 0; k < load.energies.size(); ++k) {
       const std::shared_ptr<const Energy>& whole = energies_[k].energy;
       if (whole->role() == EnergyRole::external) load.energies[k].energy = scaled(whole, loads);
@@ -34,7 +26,6 @@ class WeightPhase final : public DressingPhase {
 
  private:
   const std::vector<NamedEnergy>& energies_;
-  const double friction_;
 };
 
 }  // namespace

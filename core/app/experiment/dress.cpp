@@ -3,6 +3,7 @@
 #include "core/app/experiment/experiment.h"
 #include "core/app/experiment/experiment_path.h"
 #include "core/kernel/files/message_text.h"
+#include "core/kernel/plugin/bounds.h"
 #include "core/kernel/plugin/parameters.h"
 #include "core/kernel/plugin/placement.h"
 
@@ -36,6 +37,14 @@ void DressParameters::declare(Declaration<DressParameters>& d) {
   d.add("sewing", &DressParameters::sewing,
         "increments in which the pieces go from the shape that they were placed in to their own")
       .between(1, 500)
+      .only_with("obstacle");
+  d.add("friction", &DressParameters::friction,
+        "friction that acts from the beginning, while the body grows and the garment is sewn, for a cover "
+        "that "
+        "would spring off; without it none acts at first, and a garment that slides off while it is sewn is "
+        "sewn "
+        "again with the experiment's `friction`")
+      .between(0, bounds::largest_friction)
       .only_with("obstacle");
   d.add("largest_stretch", &DressParameters::largest_stretch,
         "a garment is too tight, and refused, if more than a tenth of the area of one of its pieces is "

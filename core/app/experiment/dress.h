@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -12,14 +13,15 @@ namespace drape {
 struct Experiment;
 
 /// A garment of flat pieces that is put on a body: the body grows inside the garment, which is then sewn, and
-/// at last has weight and friction.
+/// at last has weight.
 struct DressParameters : FileCoordinates {
   std::string body;  ///< a file, which apply_dress makes an obstacle; with its placement:
   double scale = 1;
   Eigen::Vector3d rotate{0, 0, 0}, translate{0, 0, 0};
   std::string obstacle;  ///< the body's name among the obstacles; empty without dressing
   int growth = 10, sewing = 30;
-  double largest_stretch = 0.5;  ///< of a sewn garment, as Tightness::stretch
+  std::optional<double> friction;  ///< while the body grows and the garment is sewn
+  double largest_stretch = 0.5;    ///< of a sewn garment, as Tightness::stretch
 
   bool is_asked() const { return !obstacle.empty(); }
   static void declare(Declaration<DressParameters>& d);

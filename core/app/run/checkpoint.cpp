@@ -21,7 +21,7 @@ namespace {
 
 constexpr std::string_view magic = "drapestt";
 /// Raise it with the first change after a release to what a checkpoint holds.
-constexpr std::uint32_t format = 2;
+constexpr std::uint32_t format = 3;
 
 struct Header {
   std::uint32_t format = drape::format, checksum = 0;

@@ -86,6 +86,13 @@ class Check {
     require(s.increment >= 0 && s.increment <= scene_.load_stepping->increment_count() &&
                 s.values.size() == scene_.load_stepping->state().values.size(),
             "the schedule's increment");
+    require(s.kept.size() == scene_.load_stepping->state().kept.size(), "the states that the schedule keeps");
+    for (const Positions& x : s.kept)
+      require(x.rows() == 0 || std::ranges::any_of(scene_.hierarchy.levels,
+                                                   [&](const Level& level) {
+                                                     return x.rows() == level.vertex_count() && x.allFinite();
+                                                   }),
+              "the states that the schedule keeps");
   }
 
   void under_way(const NewtonState& s) const {

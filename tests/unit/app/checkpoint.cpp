@@ -68,7 +68,7 @@ TEST_CASE("Any changed, missing or additional byte of a checkpoint is detected")
     CHECK(checkpoint_error(bytes.substr(0, length)) == "is cut short");
   CHECK(checkpoint_error("ply\nformat ascii 1.0\n") == "is no checkpoint of drape");
   CHECK(with_byte(8, 77) ==
-        "is a checkpoint of format 77, but this drape reads format 2; resume it with the drape "
+        "is a checkpoint of format 77, but this drape reads format 3; resume it with the drape "
         "that wrote it");
 }
 
