@@ -1,7 +1,9 @@
 #include <cmath>
+#include <optional>
 
 #include "core/app/dressing/phase.h"
 #include "core/app/dressing/tightness.h"
+#include "core/kernel/files/message_text.h"
 #include "core/numerics/dressing/garment_rest.h"
 
 namespace drape {
@@ -36,13 +38,14 @@ class SewingPhase final : public DressingPhase {
   }
 
   std::string fault(int increment, bool complete, const LoadState&, const Positions& x) const override {
-    if (increment < increment_count() || !complete) return "";
-    const std::string fault = too_tight(parameters_.cloth, scene_.hierarchy.levels[0], x,
-                                        parameters_.dress.largest_stretch, "sewn");
-    return fault.empty() ? ""
-                         : fault +
-                               "take a larger size or a smaller body, or raise \"dress.largest_stretch\" for "
-                               "a cloth that stretches so far";
+    const std::optional<double> allowed = parameters_.dress.largest_stretch;
+    if (!allowed || increment < increment_count() || !complete) return "";
+    const std::string tight = tightness_text("the garment is too tight for its body", parameters_.cloth,
+                                             scene_.hierarchy.levels[0], x, *allowed);
+    return tight.empty() ? ""
+                         : tight + ", and " + three_digits(100 * *allowed) +
+                               " % is allowed; take a larger size or a smaller body, or raise "
+                               "\"dress.largest_stretch\" for a cloth that stretches so far";
   }
 
  private:

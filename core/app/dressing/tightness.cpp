@@ -6,15 +6,13 @@
 
 namespace drape {
 
-std::string too_tight(const ClothParameters& cloth, const Level& level, const Positions& x, double allowed,
-                      const std::string& when) {
+std::string tightness_text(const std::string& verdict, const ClothParameters& cloth, const Level& level,
+                           const Positions& x, double much) {
   const Tightness tightest = tightest_piece(level, x);
-  if (tightest.stretch <= allowed) return "";
-  const auto percent = [](double part) { return three_digits(100 * part) + " %"; };
+  if (tightest.stretch <= much) return "";
   const GarmentPlace place = place_in_garment(cloth, level, tightest.triangle);
-  return (place.where ? place.where->text() + ": " : "") + "the garment is too tight for its body: " + when +
-         ", a tenth of " + place.text + ", is stretched by more than " + percent(tightest.stretch) +
-         ", and " + percent(allowed) + " is allowed; ";
+  return (place.where ? place.where->text() + ": " : "") + verdict + ": a tenth of " + place.text +
+         ", is stretched by more than " + three_digits(100 * tightest.stretch) + " %";
 }
 
 }  // namespace drape

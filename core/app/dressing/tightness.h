@@ -7,9 +7,10 @@
 
 namespace drape {
 
-/// Why a garment at x is too tight for its body: its tightest piece is stretched beyond what is allowed from
-/// its rest shape on this level; `when` says when that was measured. Empty for one that is not.
-std::string too_tight(const ClothParameters& cloth, const Level& level, const Positions& x, double allowed,
-                      const std::string& when);
+/// A message that begins with the place of a panel in its pattern, and with `verdict`, and names the tightest
+/// piece of a garment at x (n×3) [m], if more than a tenth of its area is stretched from its rest shape on
+/// this level by more than `much` [1]; else empty.
+std::string tightness_text(const std::string& verdict, const ClothParameters& cloth, const Level& level,
+                           const Positions& x, double much);
 
 }  // namespace drape

@@ -47,8 +47,9 @@ void DressParameters::declare(Declaration<DressParameters>& d) {
       .between(0, bounds::largest_friction)
       .only_with("obstacle");
   d.add("largest_stretch", &DressParameters::largest_stretch,
-        "a garment is too tight, and refused, if more than a tenth of the area of one of its pieces is "
-        "stretched beyond this once it is sewn; 0.5 is by half")
+        "a garment is too tight, and not solved any further, if more than a tenth of the area of one of its "
+        "pieces is stretched beyond this once it is sewn, 0.5 by half; null: it is solved, and its message "
+        "says which piece is stretched by more than half")
       .between(0.01, 10)
       .only_with("obstacle");
 }

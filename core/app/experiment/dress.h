@@ -20,8 +20,8 @@ struct DressParameters : FileCoordinates {
   Eigen::Vector3d rotate{0, 0, 0}, translate{0, 0, 0};
   std::string obstacle;  ///< the body's name among the obstacles; empty without dressing
   int growth = 10, sewing = 30;
-  std::optional<double> friction;  ///< while the body grows and the garment is sewn
-  double largest_stretch = 0.5;    ///< of a sewn garment, as Tightness::stretch
+  std::optional<double> friction;         ///< while the body grows and the garment is sewn
+  std::optional<double> largest_stretch;  ///< of a sewn garment, as Tightness::stretch
 
   bool is_asked() const { return !obstacle.empty(); }
   static void declare(Declaration<DressParameters>& d);
