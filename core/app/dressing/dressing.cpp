@@ -4,6 +4,7 @@
 
 #include "core/app/dressing/dressing_loads.h"
 #include "core/app/dressing/sinking.h"
+#include "core/app/dressing/worn.h"
 #include "core/app/scene/scene_summary.h"
 #include "core/app/scene/value_stepping.h"
 #include "core/kernel/files/number_text.h"
@@ -128,6 +129,9 @@ Garment garment_of(const Experiment& e, const DressingStart& start) {
         {where,
          "the garment encloses hardly anything of its body, as if it were beside it or the body on its side: "
          "are \"up\", \"translate\" and \"unit\" of the body right?"});
+  if (!start.not_placed.empty())
+    garment.warnings.push_back({where, "the garment may not be worn: as it is placed, " + start.not_placed +
+                                           "; " + remedy_of_not_placed});
   if (e.parameters.pins.empty() && e.parameters.friction == 0)
     garment.warnings.push_back(
         {where,

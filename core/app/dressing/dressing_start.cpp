@@ -7,6 +7,7 @@
 #include <set>
 
 #include "core/app/dressing/dressing_loads.h"
+#include "core/app/dressing/worn.h"
 #include "core/app/experiment/garment_place.h"
 #include "core/app/scene/scene_summary.h"
 #include "core/kernel/files/message_text.h"
@@ -38,13 +39,6 @@ std::vector<Intersection> intersections_of(const LevelModel& model, const Positi
   for (const auto& contact : model.contacts())
     for (Intersection& pair : contact->intersections(x)) all.push_back(std::move(pair));
   return all;
-}
-
-/// The body that is dressed, as a model has it.
-TriangleMesh body_of(const Experiment& e, const LevelModel& model) {
-  const std::vector<std::string> names = e.obstacle_names();
-  const auto index = std::ranges::find(names, e.parameters.dress.obstacle) - names.begin();
-  return model.obstacles().at(index);
 }
 
 /// The largest winding number of the garment around those points of a contracted body that are within its
@@ -105,8 +99,8 @@ std::optional<DressingStart> find_dressing_start(const Experiment& e, const Scen
                                                  ConfigErrors& errors) {
   const Level& level = scene.hierarchy.levels[0];
   const Location& where = e.location_of("dress");
-  const Eigen::AlignedBox3d own = bounding_box(scene.placed[0]),
-                            body = bounding_box(body_of(e, *scene.models[0]).vertices);
+  const TriangleMesh full = dressed_body(e, *scene.models[0]);
+  const Eigen::AlignedBox3d own = bounding_box(scene.placed[0]), body = bounding_box(full.vertices);
   const auto refuse = [&](const std::string& what) {
     errors.push_back({where, "the garment is " + what + " its body: it is " + size_text(own.sizes()) +
                                  ", and the body " + size_text(body.sizes()) +
@@ -130,7 +124,7 @@ std::optional<DressingStart> find_dressing_start(const Experiment& e, const Scen
       const DressingLoads loads(e, scene, shapes[0]);
       const auto model =
           model_under(*loads.at(loads.values(0, false), *loads.worn()), scene, 0, *scene.models[0]);
-      const TriangleMesh small = body_of(e, *model);
+      const TriangleMesh small = dressed_body(e, *model);
       for (std::size_t k = 0; k < shapes.size(); ++k) {
         if (crossed.contains(k)) continue;
         const Positions& x = shapes[k].garments[0];
@@ -141,6 +135,10 @@ std::optional<DressingStart> find_dressing_start(const Experiment& e, const Scen
         }
         if (found.empty()) {
           shapes[k].enclosure = enclosure({x, level.rest.triangles}, small);
+          shapes[k].not_placed = not_placed_text(e.parameters.cloth, level, x, small, full);
+          if (e.parameters.dress.worn && !shapes[k].not_placed.empty())
+            errors.push_back({where, "the garment will not be worn: as it is placed, " +
+                                         shapes[k].not_placed + "; " + remedy_of_not_placed});
           return on_all_levels(std::move(shapes[k]), scene.hierarchy);
         }
         if (touches_itself(found)) crossed.insert(k);

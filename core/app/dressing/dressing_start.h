@@ -13,6 +13,7 @@ struct DressingStart {
   double inflation = 0;             ///< of the smoothed garment, along its normals [m]
   std::vector<Positions> garments;  ///< of every level, n×3 [m]
   double enclosure = 0;             ///< the largest winding number around a point of the contracted body
+  std::string not_placed = {};      ///< not_placed_text
 };
 
 /// Finds a start without intersections of a garment around its body: the placed garment smoothed, the body

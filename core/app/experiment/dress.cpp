@@ -52,6 +52,10 @@ void DressParameters::declare(Declaration<DressParameters>& d) {
         "says which piece is stretched by more than half")
       .between(0.01, 10)
       .only_with("obstacle");
+  d.add("worn", &DressParameters::worn,
+        "whether it is an error, and not a warning, if no part of the body passes through one of the "
+        "garment's openings, at the start or at the end")
+      .only_with("obstacle");
 }
 
 void apply_dress(ConfigNode& experiment, ConfigErrors& errors) {

@@ -22,6 +22,7 @@ struct DressParameters : FileCoordinates {
   int growth = 10, sewing = 30;
   std::optional<double> friction;         ///< while the body grows and the garment is sewn
   std::optional<double> largest_stretch;  ///< of a sewn garment, as Tightness::stretch
+  bool worn = false;  ///< refuse a garment with an opening that no part of the body passes through
 
   bool is_asked() const { return !obstacle.empty(); }
   static void declare(Declaration<DressParameters>& d);

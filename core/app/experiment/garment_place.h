@@ -2,6 +2,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "core/app/experiment/experiment_parameters.h"
 #include "core/kernel/interfaces/level.h"
@@ -21,5 +22,17 @@ GarmentPlace place_in_garment(const ClothParameters& cloth, const Level& coarses
 /// The place of a vertex in a cloth of flat pieces, "piece front" or "the seam of front and sleeve_left"; ""
 /// in another cloth.
 std::string place_in_garment(const Level& level, int vertex);
+
+/// An edge of a piece as its pattern's file draws it.
+struct PieceEdge {
+  std::string piece;
+  std::string edge;  ///< its name, or its number from 0; "" of a cloth that was not read from a pattern
+  bool operator==(const PieceEdge&) const = default;
+};
+
+/// The edges that each of these borders of a cloth of flat pieces runs along, each once, in the order of the
+/// border's half-edges.
+std::vector<std::vector<PieceEdge>> edges_along(const ClothParameters& cloth, const Level& level,
+                                                const std::vector<std::vector<int>>& borders);
 
 }  // namespace drape

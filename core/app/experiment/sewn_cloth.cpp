@@ -75,7 +75,7 @@ double edge_length_of(const Pattern& pattern, const ClothParameters& c) {
 }
 
 /// The pattern of the cloth, its seams eased as the cloth says where they do not; none for a faulty one.
-std::optional<Pattern> pattern_of(const ClothParameters& c, ConfigErrors& errors) {
+std::optional<Pattern> eased_pattern(const ClothParameters& c, ConfigErrors& errors) {
   std::optional<Pattern> pattern = read_pattern(c.file, errors);
   if (pattern)
     for (Seam& seam : pattern->seams)
@@ -130,7 +130,7 @@ void sew(TriangleMesh& cloth, const ClothParameters& c) {
 std::optional<TriangleMesh> cloth_of_pattern(const ClothParameters& c, ConfigErrors& errors,
                                              LabelEdges* labels) {
   if (c.file.empty()) throw std::runtime_error("\"shape: pattern\" needs \"file\", the pattern to read");
-  const std::optional<Pattern> pattern = pattern_of(c, errors);
+  const std::optional<Pattern> pattern = eased_pattern(c, errors);
   if (!pattern) return std::nullopt;
   std::optional<TriangleMesh> cloth = sew_pattern(*pattern, edge_length_of(*pattern, c), errors, labels);
   if (!cloth) return std::nullopt;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "core/app/dressing/worn.h"
 #include "core/app/experiment/declared_metrics.h"
 #include "core/app/experiment/garment_place.h"
 #include "core/app/report/run_data.h"
@@ -53,9 +54,10 @@ std::vector<std::pair<const char*, std::string>> cells_of(const IterationRow& ro
 }
 
 /// The message of a level, and where a garment that is not at rest is farthest from it.
-std::string message_of(const LevelResult& r, const LevelModel& model) {
+std::string message_of(const LevelResult& r, const LevelModel& model, double force_tolerance) {
   const std::vector<std::string>& pieces = model.level().rest.piece_names;
-  if (pieces.empty() || has_converged(r.outcome) || !r.x.allFinite()) return r.message;
+  if (pieces.empty() || has_converged(r.outcome) || r.force_residual <= force_tolerance || !r.x.allFinite())
+    return r.message;
   Positions force;
   model.energy_gradient(r.x, force);
   Eigen::Index vertex = 0;
@@ -63,6 +65,21 @@ std::string message_of(const LevelResult& r, const LevelModel& model) {
     if (model.fixed()[i]) force.row(i).setZero();
   force.rowwise().squaredNorm().maxCoeff(&vertex);
   return r.message + "; the largest force is at " + place_in_garment(model.level(), static_cast<int>(vertex));
+}
+
+/// The table of a garment's openings.
+Json entries_of(const std::vector<GarmentOpening>& openings) {
+  Json entries = Json::array();
+  for (const GarmentOpening& opening : openings) {
+    Json edges = Json::array();
+    for (const PieceEdge& edge : opening.edges)
+      edges.push_back({{"piece", edge.piece}, {"edge", edge.edge.empty() ? Json() : Json(edge.edge)}});
+    entries.push_back({{"opening", opening.text()},
+                       {"edges", edges},
+                       {"length", opening.length},
+                       {"passes", opening.passed}});
+  }
+  return entries;
 }
 
 /// What runs, and where.
@@ -237,7 +254,8 @@ Json Recorder::state_entry(const LevelResult& r, const Cost& cost) {
           {"vertices", level.vertex_count()},
           {"triangles", level.triangle_count()},
           {"status", to_string(apart ? r.outcome : Outcome::infeasible)},
-          {"message", apart ? message_of(r, model) : "the state has intersections; log.jsonl names them"},
+          {"message", apart ? message_of(r, model, experiment_.force_tolerance(s_.method))
+                            : "the state has intersections; log.jsonl names them"},
           {"steps", r.steps},
           {"iterations", r.iterations},
           {"from_initial_state", r.from_initial_state},
@@ -301,9 +319,13 @@ void Recorder::level_finished(const LevelResult& r) {
                                  {"load_before", s_.load},
                                  {"load_after", load_average()},
                                  {"mesh_checksum", mesh_checksum}});
-  if (scene_.garment)
+  if (scene_.garment) {
+    const Level& level = scene_.hierarchy.levels[r.level];
     entry["levels"].back()["pieces"] =
-        garment_pieces(scene_.hierarchy.levels[r.level], r.x, garment.back().values, state.contact_pressure);
+        garment_pieces(level, r.x, garment.back().values, state.contact_pressure);
+    entry["levels"].back()["openings"] = entries_of(
+        garment_openings(experiment_.parameters.cloth, level, r.x, dressed_body(experiment_, model)));
+  }
   if (experiment_.parameters.snapshots > 0)
     entry["levels"].back()["snapshots"] = add_snapshots(r, cost, state);
   s_.states.push_back(std::move(state));

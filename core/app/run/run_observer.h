@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/app/dressing/verdict.h"
 #include "core/app/run/audit.h"
 #include "core/app/run/checkpoint.h"
 #include "core/app/run/recorder.h"
@@ -75,7 +76,8 @@ class RunObserver : public Observer {
   void level_finished(const LevelResult& reported) override {
     const WorkClock watch;
     const LevelResult result =
-        audited(scene_, reported, experiment_.force_tolerance(now_.methods.at(now_.method)));
+        with_verdict(experiment_, scene_,
+                     audited(scene_, reported, experiment_.force_tolerance(now_.methods.at(now_.method))));
     const Work audit = watch.work();
     if (const auto& before = now_.state.finished; !before.empty() && result.level <= before.back().level)
       throw std::runtime_error("the method reported level " + std::to_string(result.level) + " after level " +

@@ -1,0 +1,13 @@
+#pragma once
+
+#include "core/app/experiment/experiment.h"
+#include "core/app/scene/scene.h"
+
+namespace drape {
+
+/// The result with what a garment that was dressed, and has come to rest on the finest level, is found to be:
+/// its message says which piece is stretched by more than half, and through which openings no part of the
+/// body passes (not_worn_text). The latter is `infeasible` if the experiment has `dress.worn`.
+LevelResult with_verdict(const Experiment& experiment, const Scene& scene, LevelResult result);
+
+}  // namespace drape
