@@ -21,7 +21,7 @@ struct DrapePluginDescriptor {
 
 #define DRAPE_ABI_MAGIC 0x50415244u  // "DRAP"
 /// Raise it with the first change after a release to a class that crosses the library boundary.
-#define DRAPE_ABI_NUMBER 2u
+#define DRAPE_ABI_NUMBER 3u
 
 #define DRAPE_TEXT_(x) #x
 #define DRAPE_TEXT(x) DRAPE_TEXT_(x)

@@ -72,7 +72,7 @@ class SaddleExit {
   bool stopped_ = false;
   bool factor_serves_ = false;  // the walk's
   std::string fault_;
-  double observed_ = 0;         // seconds that observers of relaxations took
+  double observed_ = 0;  // seconds that observers of relaxations took
   LineSearch line_search_;
   State s_;
 };

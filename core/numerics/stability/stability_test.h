@@ -10,7 +10,7 @@ namespace drape {
 
 /// An equilibrium's stability, and its least stable motion.
 struct StabilityTest {
-  std::string fault;    ///< why the equilibrium could not be judged; empty: it was
+  std::string fault;  ///< why the equilibrium could not be judged; empty: it was
   Stability stability;
   Positions mode;        ///< n×3, of the curvature ratio: largest entry 1 or −1, rows of fixed vertices 0
   double curvature = 0;  ///< vᵀHv of this v [N/m]
@@ -22,8 +22,8 @@ struct StabilityTest {
 /// Where levels are factorised, a factorisation of H decides; elsewhere iterations that multigrid
 /// preconditions. Negative eigenvalues that the forces left out of balance can feign, such as those of a
 /// cloth that is free to slide or to turn, count as neutral. There is a fault if H has entries that are
-/// not finite, if it has no factor as a preconditioner, or if iterations run out. With `verdict_only` a stable
-/// equilibrium has neither numbers nor a mode, which takes a third of the time.
+/// not finite, if it has no factor as a preconditioner, or if iterations run out. With `verdict_only` a
+/// stable equilibrium has neither numbers nor a mode, which takes a third of the time.
 StabilityTest test_stability(Iterate& iterate, FactorCache& factor, bool verdict_only);
 
 }  // namespace drape
