@@ -65,7 +65,8 @@ std::vector<std::string> GarmentOpening::pieces() const {
 
 std::string GarmentOpening::text() const {
   const bool has_edges = std::ranges::none_of(edges, [](const PieceEdge& edge) { return edge.edge.empty(); });
-  if (edges.empty() || !has_edges) return few(pieces(), " and ") + " at " + point_text(middle);
+  if (edges.empty() || !has_edges)
+    return few(pieces(), " and ") + " at " + point_text((1000 * middle.array()).round() / 1000 + 0.0);
   std::vector<std::string> parts;
   for (const std::string& piece : pieces()) {
     std::vector<std::string> own;

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <limits>
 #include <map>
+#include <set>
+#include <utility>
 
 #include "core/app/experiment/pattern_file.h"
 #include "core/kernel/files/string_utils.h"
@@ -112,20 +114,20 @@ std::vector<std::vector<PieceEdge>> edges_along(const ClothParameters& parameter
   if (cloth.piece_names.empty()) return edges;
   const std::optional<Pattern> pattern = pattern_of(parameters, cloth);
   std::map<int, Eigen::Vector2d> ways;  // of each piece
-  const auto edge_at = [&](int half_edge) -> PieceEdge {
+  const auto edge_at = [&](int half_edge) {
     const int t = half_edge / 3, piece = cloth.piece[t];
-    const std::string& name = cloth.piece_names[piece];
-    if (!pattern) return {name, ""};
+    if (!pattern) return -1;
     if (!ways.contains(piece)) ways[piece] = way_to_drawn(pattern->panels[piece], cloth, piece);
     const Eigen::Matrix3d corners = rest_corners(cloth, t);
     const Eigen::Vector3d middle = (corners.col((half_edge + 1) % 3) + corners.col((half_edge + 2) % 3)) / 2;
-    const int edge = nearest_open_edge(*pattern, piece, middle.head<2>() + ways[piece]);
-    return {name, edge < 0 ? "" : pattern->panels[piece].edges[edge].name};
+    return nearest_open_edge(*pattern, piece, middle.head<2>() + ways[piece]);
   };
-  for (std::size_t b = 0; b < borders.size(); ++b)
-    for (const int h : borders[b])
-      if (PieceEdge own = edge_at(h); std::ranges::find(edges[b], own) == edges[b].end())
-        edges[b].push_back(std::move(own));
+  for (std::size_t b = 0; b < borders.size(); ++b) {
+    std::set<std::pair<int, int>> along;  // pieces, and edges of their panels
+    for (const int h : borders[b]) along.emplace(cloth.piece[h / 3], edge_at(h));
+    for (const auto& [piece, edge] : along)
+      edges[b].push_back({cloth.piece_names[piece], edge < 0 ? "" : pattern->panels[piece].edges[edge].name});
+  }
   return edges;
 }
 

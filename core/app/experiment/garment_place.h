@@ -27,11 +27,10 @@ std::string place_in_garment(const Level& level, int vertex);
 struct PieceEdge {
   std::string piece;
   std::string edge;  ///< its name, or its number from 0; "" of a cloth that was not read from a pattern
-  bool operator==(const PieceEdge&) const = default;
 };
 
-/// The edges that each of these borders of a cloth of flat pieces runs along, each once, in the order of the
-/// border's half-edges.
+/// The edges that each of these borders of a cloth of flat pieces runs along, each once, in the pattern's
+/// order. A border is given by its half-edges.
 std::vector<std::vector<PieceEdge>> edges_along(const ClothParameters& cloth, const Level& level,
                                                 const std::vector<std::vector<int>>& borders);
 

@@ -77,11 +77,10 @@ class BodyParts {
     edges_.build(boxes);
   }
 
-  /// The largest part that the fan of a closed curve separates from a larger one of its connected component
-  /// [m]; 0 without one.
-  double separated_by(const Positions& curve) const {
+  /// Whether a part of the body passes through a closed curve.
+  bool pass(const Positions& curve) const {
     const std::vector<int> cut = edges_through(curve);
-    if (cut.empty()) return 0;
+    if (cut.empty()) return false;
     std::vector<char> is_cut(topology_.edges.rows(), 0);
     for (const int e : cut) is_cut[e] = 1;
     DisjointSets sets(static_cast<int>(x_.rows()));
@@ -94,16 +93,15 @@ class BodyParts {
       if (const auto own = parts.find(component_[v]); own != parts.end())
         if (const auto part = own->second.find(sets.find(v)); part != own->second.end())
           part->second.extend(x_.row(v).transpose());
-    double largest = 0;
-    for (const auto& [component, own] : parts) {
-      double most = 0;  // of this component
-      for (const auto& [set, box] : own) {
-        const double extent = box.sizes().norm();
-        largest = std::max(largest, std::min(most, extent));
-        most = std::max(most, extent);
-      }
-    }
-    return largest;
+    // Of a body that the cloth intersects, the fan may cut into a component without leaving it.
+    const bool goes_through = std::ranges::none_of(topology_.triangle_edges.rowwise(), [&](const auto& own) {
+      return is_cut[own[0]] + is_cut[own[1]] + is_cut[own[2]] == 1;
+    });
+    return std::ranges::any_of(parts, [&](const auto& component) {
+      const auto& own = component.second;
+      const auto is_large = [](const auto& part) { return part.second.sizes().norm() >= least_part; };
+      return (own.size() == 1 && goes_through) || std::ranges::count_if(own, is_large) > 1;
+    });
   }
 
  private:
@@ -197,7 +195,7 @@ std::vector<Positions> curves_at(double distance, const std::vector<double>& dis
 bool is_passed(const std::vector<int>& border, const Topology& topology, const Positions& x,
                const BodyParts& body) {
   const Positions loop = x(border, Eigen::all);
-  if (body.separated_by(loop) >= least_part) return true;
+  if (body.pass(loop)) return true;
   const double length = length_of(loop);
   const std::vector<double> distances = distances_from(border, topology, x);
   for (double distance = curve_step;; distance += curve_step) {
@@ -209,7 +207,7 @@ bool is_passed(const std::vector<int>& border, const Topology& topology, const P
     if (std::ranges::count_if(lengths, [&](double own) { return own > smallest_branch * *longest; }) > 1)
       return false;
     if (*longest > widest_tube * length + steepest_tube * distance) return false;
-    if (body.separated_by(curves[longest - lengths.begin()]) >= least_part) return true;
+    if (body.pass(curves[longest - lengths.begin()])) return true;
   }
 }
 

@@ -1,0 +1,76 @@
+// A garment that is not worn, as the command tells it.
+
+#include "core/app/report/run_data.h"
+#include "core/kernel/files/file.h"
+#include "tests/support/command.h"
+
+using namespace drape;
+
+namespace {
+
+/// A T-shirt, coarsely, on a figure with arms at this angle below the horizontal.
+void write_dressed(const Scratch& folder, int arm_angle) {
+  const std::filesystem::path garments = folders::source() / "configs/garments";
+  const Ended made = Command((garments / "make_body").string() + " --cell 0.03 --arm-angle " +
+                                 std::to_string(arm_angle) + " body.obj",
+                             folder.path)
+                         .wait();
+  INFO(made.err);
+  REQUIRE(made.exit_code == 0);
+  folder.write(
+      "e.yaml",
+      "name: garment\nlevels: 1\ncloth: {shape: pattern, file: " + (garments / "tshirt.yaml").string() +
+          ", edge_length: 0.05}\nmaterial: {density: 300, thickness: 4e-4, membrane_modulus: 8e5, "
+          "bending_modulus: 2e5}\nenergies: [neo_hookean, hinge, gravity]\ncontact: {type: ipc, "
+          "dhat: 0.002}\nfriction: 0.4\ndress: {body: body.obj, up: y}\nmethods: {pcs: {}}\nmetrics: "
+          "[]\n");
+}
+
+Json last_level(const Scratch& folder) {
+  return read_results(folder / "out")["methods"]["pcs"]["levels"].back();
+}
+
+const std::string left =
+    "the opening of sleeve_left_front, by its edge cuff, and sleeve_left_back, by its edge cuff";
+
+}  // namespace
+
+TEST_CASE(
+    "A T-shirt with its arms beside the sleeves is told by check and run, and refused with dress.worn") {
+  const Scratch folder;
+  write_dressed(folder, 80);
+  const std::string placed =
+      "the garment may not be worn: as it is placed, no part of the body passes through ";
+  const Ended checked = drape_ends("check e.yaml", folder);
+  CHECK_THAT(checked.err, Catch::Contains("warning: e.yaml:8:8: " + placed + left));
+  const Ended refused = drape_ends("check e.yaml --set dress.worn=true", folder, 2);
+  CHECK_THAT(refused.err,
+             Catch::Contains("the garment will not be worn: as it is placed, no part of the body"));
+  const Ended ran = drape_ends("run e.yaml -o out", folder);
+  const std::string fault = "the garment is not worn: no part of the body passes through ";
+  CHECK_THAT(ran.err, Catch::Contains(placed + left) && Catch::Contains(fault));
+  const Json level = last_level(folder);
+  CHECK(level["status"] == "converged");
+  CHECK_THAT(level["message"].get<std::string>(),
+             Catch::StartsWith(fault) && Catch::Contains("sleeve_left_back"));
+  CHECK_THAT(read_file(folder / "out/report.html"), Catch::Contains(fault));
+  int missed = 0;
+  for (const Json& opening : level["openings"]) {
+    const bool is_cuff = opening["edges"][0]["edge"] == "cuff";
+    CHECK(opening["passes"] == !is_cuff);
+    missed += is_cuff;
+    CHECK(opening["length"].get<double>() > 0.2);
+  }
+  CHECK(missed == 2);
+}
+
+TEST_CASE("A T-shirt whose arms are in its sleeves is worn") {
+  const Scratch folder;
+  write_dressed(folder, 45);
+  const Ended ran = drape_ends("run e.yaml -o out --no-report --set dress.worn=true", folder);
+  CHECK_THAT(ran.err, !Catch::Contains("worn"));
+  const Json level = last_level(folder);
+  CHECK(level["message"] == "");
+  CHECK(level["openings"].size() == 4);
+  for (const Json& opening : level["openings"]) CHECK(opening["passes"] == true);
+}
