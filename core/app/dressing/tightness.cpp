@@ -12,7 +12,8 @@ std::string tightness_text(const std::string& verdict, const ClothParameters& cl
   if (tightest.stretch <= much) return "";
   const GarmentPlace place = place_in_garment(cloth, level, tightest.triangle);
   return (place.where ? place.where->text() + ": " : "") + verdict + ": a tenth of " + place.text +
-         ", is stretched by more than " + three_digits(100 * tightest.stretch) + " %";
+         (place.where ? "," : "") + " is stretched by more than " + three_digits(100 * tightest.stretch) +
+         " %";
 }
 
 }  // namespace drape
