@@ -13,6 +13,17 @@ namespace {
 
 constexpr std::size_t most_named = 4;  // pieces of an opening, and openings, in a message
 
+/// An opening of a garment, and what its border is called.
+struct GarmentOpening : Opening {
+  std::vector<PieceEdge> edges;  ///< along its border
+
+  /// The names of its pieces, each once.
+  std::vector<std::string> pieces() const;
+  /// "sleeve_left, by its edge cuff", "front, by its edge hem, and back, by its edge hem", "front and back at
+  /// (0, 0.1, 1.2)".
+  std::string text() const;
+};
+
 /// "a, b and c", or the first few and how many more there are.
 std::string few(const std::vector<std::string>& words, const char* last) {
   return words.size() > most_named ? joined(first_of(words, most_named)) : joined(words, ", ", last);
@@ -21,6 +32,26 @@ std::string few(const std::vector<std::string>& words, const char* last) {
 /// "by its edge cuff", "by its edges 2 and 3".
 std::string text_of_edges(const std::vector<std::string>& names) {
   return std::string("by its edge") + (names.size() > 1 ? "s " : " ") + few(names, " and ");
+}
+
+std::vector<std::string> GarmentOpening::pieces() const {
+  std::vector<std::string> names;
+  for (const PieceEdge& edge : edges) add_new(names, edge.piece);
+  return names;
+}
+
+std::string GarmentOpening::text() const {
+  const bool has_edges = std::ranges::none_of(edges, [](const PieceEdge& edge) { return edge.edge.empty(); });
+  if (edges.empty() || !has_edges)
+    return few(pieces(), " and ") + " at " + point_text((1000 * middle.array()).round() / 1000 + 0.0);
+  std::vector<std::string> parts;
+  for (const std::string& piece : pieces()) {
+    std::vector<std::string> own;
+    for (const PieceEdge& edge : edges)
+      if (edge.piece == piece) own.push_back(edge.edge);
+    parts.push_back(piece + ", " + text_of_edges(own));
+  }
+  return few(parts, ", and ");
 }
 
 std::vector<GarmentOpening> named(const ClothParameters& cloth, const Level& level,
@@ -55,31 +86,6 @@ TriangleMesh dressed_body(const Experiment& e, const LevelModel& model) {
   const std::vector<std::string> names = e.obstacle_names();
   const auto index = std::ranges::find(names, e.parameters.dress.obstacle) - names.begin();
   return model.obstacles().at(index);
-}
-
-std::vector<std::string> GarmentOpening::pieces() const {
-  std::vector<std::string> names;
-  for (const PieceEdge& edge : edges) add_new(names, edge.piece);
-  return names;
-}
-
-std::string GarmentOpening::text() const {
-  const bool has_edges = std::ranges::none_of(edges, [](const PieceEdge& edge) { return edge.edge.empty(); });
-  if (edges.empty() || !has_edges)
-    return few(pieces(), " and ") + " at " + point_text((1000 * middle.array()).round() / 1000 + 0.0);
-  std::vector<std::string> parts;
-  for (const std::string& piece : pieces()) {
-    std::vector<std::string> own;
-    for (const PieceEdge& edge : edges)
-      if (edge.piece == piece) own.push_back(edge.edge);
-    parts.push_back(piece + ", " + text_of_edges(own));
-  }
-  return few(parts, ", and ");
-}
-
-std::vector<GarmentOpening> garment_openings(const ClothParameters& cloth, const Level& level,
-                                             const Positions& x, const TriangleMesh& body) {
-  return named(cloth, level, openings_of(level, x, body));
 }
 
 std::string not_worn_text(const ClothParameters& cloth, const Level& level, const Positions& x,

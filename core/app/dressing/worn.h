@@ -12,21 +12,6 @@ namespace drape {
 /// The body that `dress` names, as a model has it.
 TriangleMesh dressed_body(const Experiment& experiment, const LevelModel& model);
 
-/// An opening of a garment, and what its border is called.
-struct GarmentOpening : Opening {
-  std::vector<PieceEdge> edges;  ///< along its border
-
-  /// The names of its pieces, each once.
-  std::vector<std::string> pieces() const;
-  /// "sleeve_left, by its edge cuff", "front, by its edge hem, and back, by its edge hem", "front and back at
-  /// (0, 0.1, 1.2)".
-  std::string text() const;
-};
-
-/// The openings of a garment at x (n×3) [m] on one of a scene's own levels.
-std::vector<GarmentOpening> garment_openings(const ClothParameters& cloth, const Level& level,
-                                             const Positions& x, const TriangleMesh& body);
-
 /// Says through which openings no part of the body passes, as "no part of the body passes through the
 /// opening of sleeve_left, by its edge cuff". "" if there is none, and for a garment that hangs on a smaller
 /// body, such as a hanger, of which a part passes through one opening.

@@ -67,15 +67,16 @@ std::string message_of(const LevelResult& r, const LevelModel& model, double for
   return r.message + "; the largest force is at " + place_in_garment(model.level(), static_cast<int>(vertex));
 }
 
-/// The table of a garment's openings.
-Json entries_of(const std::vector<GarmentOpening>& openings) {
+/// The table of a garment's openings. It has nothing of the pattern's file, which a resumed run does not
+/// read.
+Json entries_of(const std::vector<Opening>& openings, const TriangleMesh& cloth) {
   Json entries = Json::array();
-  for (const GarmentOpening& opening : openings) {
-    Json edges = Json::array();
-    for (const PieceEdge& edge : opening.edges)
-      edges.push_back({{"piece", edge.piece}, {"edge", edge.edge.empty() ? Json() : Json(edge.edge)}});
-    entries.push_back({{"opening", opening.text()},
-                       {"edges", edges},
+  for (const Opening& opening : openings) {
+    std::vector<std::string> pieces;
+    for (const int h : opening.half_edges) add_new(pieces, cloth.piece_names.at(cloth.piece[h / 3]));
+    const Eigen::Vector3d& middle = opening.middle;
+    entries.push_back({{"pieces", pieces},
+                       {"middle", {middle.x(), middle.y(), middle.z()}},
                        {"length", opening.length},
                        {"passes", opening.passed}});
   }
@@ -323,8 +324,8 @@ void Recorder::level_finished(const LevelResult& r) {
     const Level& level = scene_.hierarchy.levels[r.level];
     entry["levels"].back()["pieces"] =
         garment_pieces(level, r.x, garment.back().values, state.contact_pressure);
-    entry["levels"].back()["openings"] = entries_of(
-        garment_openings(experiment_.parameters.cloth, level, r.x, dressed_body(experiment_, model)));
+    entry["levels"].back()["openings"] =
+        entries_of(openings_of(level, r.x, dressed_body(experiment_, model)), level.rest);
   }
   if (experiment_.parameters.snapshots > 0)
     entry["levels"].back()["snapshots"] = add_snapshots(r, cost, state);
