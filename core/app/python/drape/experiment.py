@@ -45,7 +45,9 @@ class ConfigError(ValueError):
 
 def _write_mesh(path: str, mesh: Sequence[Any], rest: Optional[Any]) -> None:
     """Write a PLY of arrays: (x, triangles), and the flat pieces' corners as texture coordinates."""
-    x, triangles = numpy.asarray(mesh[0], float), numpy.asarray(mesh[1], int)
+    x, triangles = numpy.asarray(mesh[0], float), numpy.asarray(mesh[1])
+    if triangles.dtype.kind not in "iu":
+        raise TypeError(f"the mesh's triangles must be integers, not {triangles.dtype}")
     if x.ndim != 2 or x.shape[1] != 3 or triangles.ndim != 2 or triangles.shape[1] != 3:
         raise ValueError(f"mesh is (n×3 positions, m×3 triangles), not {x.shape} and {triangles.shape}")
     corners = None if rest is None else numpy.asarray(rest, float).reshape(-1, 6)
