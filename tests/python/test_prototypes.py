@@ -106,8 +106,8 @@ def test_a_coarse_level_says_that_its_membrane_does_not_buckle(small):
                            (["neo_hookean", "stvk"], "the membranes neo_hookean, stvk " + said)):
         levels = run({**small, "energies": [*energies, "hinge", "gravity"]}, methods=["pcs"])["pcs"].levels
         assert levels[0].message.startswith(told) and bool(levels[0].message) == bool(told) and not levels[-1].message
-    plain = {"pcs": {"membranes": "plain"}}
-    assert not run({**small, "energies": ["numpy_stvk", "hinge", "gravity"], "methods": plain})["pcs"].levels[0].message
+    plain = {"pcs": {"membranes": "plain"}, "newton": {}}
+    assert not run({**small, "energies": ["numpy_stvk", "hinge", "gravity"], "methods": plain}, methods=["pcs"])["pcs"].levels[0].message
 
 
 def test_parameters_are_checked_like_a_plugins(small):
