@@ -94,6 +94,7 @@ def test_what_a_schedule_sets_is_refused(small, key):
     *((lambda e, of=of: of(e, value), TypeError, "incompatible function arguments")
       for value in (numpy.float32(1.5), fractions.Fraction(3, 2), decimal.Decimal("1.5"), numpy.array(1.5))
       for of in (lambda _, v: drape.set_threads(v), lambda e, v: e.scene()[v], lambda e, v: e.scene().start(v),
+                 lambda e, v: e.scene().prolong("newton", v, e.scene().start(0)),
                  lambda e, v: e.scene().metric("energy", v, e.scene().start(0)))),
     (lambda _: drape.Experiment({"name": "cut"}, mesh=(numpy.eye(3), [[0, 1, 2.7]])), TypeError, "must be integers, not float64"),
     (lambda _: drape.Material(densty=300), drape.ConfigError, 'did you mean "density"'),

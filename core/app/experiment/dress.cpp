@@ -40,10 +40,8 @@ void DressParameters::declare(Declaration<DressParameters>& d) {
       .only_with("obstacle");
   d.add("friction", &DressParameters::friction,
         "friction that acts from the beginning, while the body grows and the garment is sewn, for a cover "
-        "that "
-        "would spring off; without it none acts at first, and a garment that slides off while it is sewn is "
-        "sewn "
-        "again with the experiment's `friction`")
+        "that would spring off; without it none acts at first, and a garment that slides off while it is "
+        "sewn is sewn again with the experiment's `friction`")
       .between(0, bounds::largest_friction)
       .only_with("obstacle");
   d.add("largest_stretch", &DressParameters::largest_stretch,

@@ -179,10 +179,9 @@ void bind_scene(py::module_& m) {
       .def_property_readonly(
           "linear", [](const SceneHandle& s) { return read_only(s.scene->hierarchy.linear); },
           "Likewise linear interpolation over the coarse rest shape.")
-      .def("prolong", &prolonged, py::arg("method"), py::arg("level"), py::arg("x"),
+      .def("prolong", &prolonged, py::arg("method"), whole("level"), py::arg("x"),
            "A method's state x (n×3) [m] of a level on the finest one, by the method's own interpolation: so "
-           "its "
-           "previews are measured and shown.")
+           "its previews are measured and shown.")
       .def_property_readonly("metrics",
                              [](const SceneHandle& s) {
                                std::vector<std::string> names;

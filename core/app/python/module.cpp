@@ -183,12 +183,10 @@ PYBIND11_MODULE(_core, m) {
   m.def("plugins", &python::plugins, pybind11::arg("kind"),
         "Name and summary of every plugin of a kind: energy, refiner, contact, solver or metric. Prototypes "
         "that are registered count.");
-  m.def(
-      "load_plugin", &python::load_source, pybind11::arg("file"),
-      "Compile a plugin, one C++ file, unless it was compiled before, and load it, as `drape run --plugin "
-      "FILE` "
-      "does; experiments then know what it registers. Of a file that has changed since, the new entries take "
-      "the place of the old ones. Raises RuntimeError, with what the compiler says.");
+  m.def("load_plugin", &python::load_source, pybind11::arg("file"),
+        "Compile a plugin, one C++ file, unless it was compiled before, and load it, as `drape run --plugin "
+        "FILE` does; experiments then know what it registers. Of a file that has changed since, the new "
+        "entries take the place of the old ones. Raises RuntimeError, with what the compiler says.");
   m.def("_plugin_sources", &python::loaded_sources);
   python::bind_errors(m);
   python::bind_scene(m);

@@ -52,8 +52,8 @@ void refuse_intersecting_start(const Experiment& e, const LevelModel& model, con
              std::string(pins.empty() ? "" : " and pins") + " lie" +
              (is_gathered(e, model.level(), found)
                   ? "; where a seam gathers a panel in the plane of the other, the panel folds over itself: "
-                    "place "
-                    "the shorter one out of that plane, as a band in front of the cloth, by \"translation\""
+                    "place the shorter one out of that plane, as a band in front of the cloth, by "
+                    "\"translation\""
                   : "");
     if (!pins.empty()) return "; change the start, the pins or the obstacle";
     return "; change the start or the obstacle, or let --allow-start-repair move the start";

@@ -67,8 +67,7 @@ std::vector<FieldKind> field_kinds(bool worn) {
        "distance to an obstacle or another part of the cloth; farther away in cloth colour"},
       {"contact_pressure", "contact force", "Pa", "force",
        "force of contact on a vertex over its area as it is stretched; without one in cloth colour; known "
-       "for "
-       "the ends of levels"},
+       "for the ends of levels"},
       {"stretch_warp", "stretch along warp", "%", "diverging",
        "of the triangles around, on both sides of a seam; 0 is unstretched"},
       {"stretch_weft", "stretch along weft", "%", "diverging",
