@@ -107,7 +107,7 @@ TEST_CASE("every value that a metric declares is a column by its name") {
     one.level = level;
     one.values = {{"sag", 3 - level}, {"worst", 3 - level}};
   }
-  method.consistency.push_back({0, 1, {{"drift", 0.5}}, ""});
+  method.consistency.push_back({0, 1, {{"drift", 0.5}}, {}});
   RunRecord run;
   run.data = data;
   const RunTable table = table_of({"set", "", true, {run}});

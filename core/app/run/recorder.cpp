@@ -12,6 +12,7 @@
 #include "core/app/run/recorder_files.h"
 #include "core/kernel/files/file.h"
 #include "core/kernel/files/number_text.h"
+#include "core/kernel/files/string_utils.h"
 #include "core/kernel/threads/parallel.h"
 #include "core/kernel/threads/stopwatch.h"
 #include "core/kernel/version.h"
