@@ -79,7 +79,7 @@ DRAPE_FOLD(fold, "A crease.", Crease) { return k * square(theta - rest); }
 DRAPE_FOLD(one, "One.") { return k * square(theta); }
 DRAPE_FOLD(other, "Another.") { return k * square(bend); }
 )");
-  CHECK_THAT(folder.refused(listed + "two.cpp"), Contains("each_plugin_macro_needs_a_file_of_its_own"));
+  CHECK_THAT(folder.refused(listed + "two.cpp"), Contains("drape_plugin_macro_needs_a_file_of_its_own"));
 }
 
 TEST_CASE("An empty part of a list of folders stands for no folder: the user's has no programs or headers") {

@@ -97,7 +97,8 @@ std::filesystem::path JsonFile::inside(const Json& object, const std::string& ke
 }
 
 std::filesystem::path JsonFile::place(const Json& object, const std::string& key) const {
-  const std::filesystem::path place = inside(object, key), folder = path_.parent_path();
+  const std::filesystem::path folder = path_.parent_path();
+  std::filesystem::path place = inside(object, key);
   refuse_links(folder, place.lexically_relative(folder));
   return place;
 }

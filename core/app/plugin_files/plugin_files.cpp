@@ -124,7 +124,7 @@ fs::path compiled_plugin(const fs::path& file, std::ostream& said) {
   name << boost::replace_all_copy(source.stem().string(), ":", "_") << '-' << std::hex
        << std::hash<std::string>()(key);
   fs::path folder = cache_folder() / name.str();
-  const fs::path library = folder / (source.stem().string() + ".so");
+  fs::path library = folder / (source.stem().string() + ".so");
   make_cache(folder);
   if (is_own(library)) return library;
 

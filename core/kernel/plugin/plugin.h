@@ -13,7 +13,7 @@
 /// It exports one C function, `drape_plugin`, whose descriptor is checked before any other call. The enum
 /// tells by its name what a second one in a file is an error for.
 #define DRAPE_PLUGIN(registry)                                                                    \
-  enum class each_plugin_macro_needs_a_file_of_its_own {};                                        \
+  enum class DRAPE_JOINED(drape_plugin, _macro_needs_a_file_of_its_own) {};                       \
   static void DRAPE_JOINED(drape_plugin, _entries)(drape::Registry & registry);                   \
   extern "C" __attribute__((visibility("default"))) const DrapePluginDescriptor* drape_plugin() { \
     static constexpr DrapePluginDescriptor descriptor =                                           \

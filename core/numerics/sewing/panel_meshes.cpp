@@ -50,7 +50,7 @@ std::string edges_text(const Panel& panel, int one, int other) {
 /// Whether all points of the loop lie on one line, but for rounding.
 bool is_on_line(const Polygon& loop) {
   constexpr double rounding = 1e-12;
-  const Eigen::Vector2d start = loop[0];
+  const Eigen::Vector2d& start = loop[0];
   const Eigen::Vector2d far =
       *std::ranges::max_element(loop, {}, [&](const auto& p) { return (p - start).squaredNorm(); }) - start;
   return std::ranges::all_of(loop, [&](const Eigen::Vector2d& p) {
