@@ -140,7 +140,8 @@ std::vector<FileFingerprint> fingerprints_of_files(const ConfigNode& saved, cons
 }
 
 bool is_complete(const fs::path& folder) {
-  if (!has_checkpoint(folder)) return member_of(read_results(folder), "complete") == true;
+  if (!has_checkpoint(folder) && fs::exists(folder / "results.json"))
+    return member_of(read_results(folder), "complete") == true;
   const Json results = complete_results(folder);  // damaged ones are written again from the checkpoint
   return !results.is_null() && member_of(results, "measured") != false;
 }
