@@ -64,13 +64,17 @@ TEST_CASE(
   CHECK(missed == 2);
 }
 
-TEST_CASE("A T-shirt whose arms are in its sleeves is worn") {
-  const Scratch folder;
-  write_dressed(folder, 45);
-  const Ended ran = drape_ends("run e.yaml -o out --no-report --set dress.worn=true", folder);
-  CHECK_THAT(ran.err, !Catch::Contains("worn"));
-  const Json level = last_level(folder);
-  CHECK(level["message"] == "");
-  CHECK(level["openings"].size() == 4);
-  for (const Json& opening : level["openings"]) CHECK(opening["passes"] == true);
+TEST_CASE("A T-shirt is worn whose arms are in its sleeves, or cross them as it is placed") {
+  for (const int arm_angle : {45, 55}) {
+    INFO(arm_angle);
+    const Scratch folder;
+    write_dressed(folder, arm_angle);
+    const Ended ran = drape_ends("run e.yaml -o out --no-report --set dress.worn=true", folder);
+    CHECK_THAT(ran.err, !Catch::Contains("worn"));
+    const Json level = last_level(folder);
+    CHECK(level["message"] == "");
+    CHECK(level["openings"].size() == 4);
+    for (const Json& opening : level["openings"]) CHECK(opening["passes"] == true);
+    if (arm_angle == 55) CHECK_THAT(ran.err, Catch::Contains("untangled where it crossed"));
+  }
 }

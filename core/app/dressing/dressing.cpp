@@ -119,7 +119,8 @@ Garment garment_of(const Experiment& e, const DressingStart& start) {
           (start.inflation > 0
                ? ", each layer moved by " + length_text(start.inflation) + " to its right side"
                : "") +
-          ", the body shrunk (contraction " + general_text(start.contraction, 3) + " of its area)",
+          (start.is_untangled ? ", untangled where it crossed" : "") + ", the body shrunk (contraction " +
+          general_text(start.contraction, 3) + " of its area)",
       {},
       {where,
        "\"dress\" begins from pieces as they are placed, and from no other state; a dressed garment goes on "

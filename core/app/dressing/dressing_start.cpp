@@ -12,6 +12,7 @@
 #include "core/app/scene/scene_summary.h"
 #include "core/kernel/files/message_text.h"
 #include "core/numerics/dressing/implicit_smoothing.h"
+#include "core/numerics/dressing/untangling.h"
 
 namespace drape {
 
@@ -30,6 +31,8 @@ struct Shaping {
 constexpr Shaping shapings[] = {{0, {1, 0.3, 2, 4}}, {0.2, {1, 0.3, 2, 4}}, {0, {8, 16, 32, 64}}};
 /// Times of the contraction that are tried.
 constexpr double contractions[] = {0.009, 0.018, 0.028, 0.05};
+/// Starts that are untangled, those that intersect least.
+constexpr std::size_t most_untangled = 8;
 
 /// Smallest size of a body over the garment's; a smaller one is in another unit.
 constexpr double smallest_body = 0.01;
@@ -64,13 +67,6 @@ double enclosure(const TriangleMesh& garment, const TriangleMesh& body) {
   return largest;
 }
 
-/// The start with a garment on every level.
-DressingStart on_all_levels(DressingStart start, const Hierarchy& hierarchy) {
-  for (const ProlongationMatrix& linear : hierarchy.linear)
-    start.garments.push_back(linear * start.garments.back());
-  return start;
-}
-
 /// The error of the best start that was tried, at the panel of most of its intersections.
 ConfigError refusal(const Experiment& e, const std::vector<Intersection>& found, const Level& level) {
   std::map<int, std::vector<int>> pieces;  // the triangles that intersect
@@ -93,14 +89,106 @@ ConfigError refusal(const Experiment& e, const std::vector<Intersection>& found,
   return error;
 }
 
+/// Searches for a start without intersections: shape after shape around a body that is contracted more and
+/// more, then those that intersect least, untangled.
+class StartSearch {
+ public:
+  StartSearch(const Experiment& experiment, const Scene& scene)
+      : e_(experiment), scene_(scene), full_(dressed_body(experiment, *scene.models[0])) {}
+
+  const TriangleMesh& full_body() const { return full_; }
+  /// The intersections of the best start that was tried; none if all were free, but inside the body, which
+  /// smoothing has drawn them into.
+  const std::vector<Intersection>& least() const { return trials_.empty() ? none_ : trials_[0].found; }
+
+  /// None if none was found; one that is worn if any is.
+  std::optional<DressingStart> run() {
+    for (const Shaping& shaping : shapings)
+      if (shape(shaping)) return std::move(best_);
+    std::ranges::stable_sort(trials_, {}, [](const Trial& trial) { return trial.found.size(); });
+    for (std::size_t k = 0; k < std::min(trials_.size(), most_untangled); ++k)
+      if (untangle(trials_[k].start)) break;
+    return std::move(best_);
+  }
+
+ private:
+  /// A start, and what of it intersects.
+  struct Trial {
+    DressingStart start;
+    std::vector<Intersection> found;
+  };
+
+  /// The model of the start's contraction.
+  const LevelModel& model_of(const DressingStart& start) {
+    std::shared_ptr<const LevelModel>& model = models_[start.contraction];
+    if (!model) {
+      const DressingLoads loads(e_, scene_, start);
+      model = model_under(*loads.at(loads.values(0, false), *loads.worn()), scene_, 0, *scene_.models[0]);
+    }
+    return *model;
+  }
+
+  /// Takes a start without intersections, unless it lies inside the body or an earlier one is as good.
+  /// Whether the garment will be worn, so that no better one is to be found.
+  bool take(DressingStart start) {
+    const Positions& x = start.garments[0];
+    const TriangleMesh small = dressed_body(e_, model_of(start));
+    if (is_inside(x.topRows(1), small)) return false;
+    start.enclosure = enclosure({x, level_.rest.triangles}, small);
+    start.not_placed = not_placed_text(e_.parameters.cloth, level_, x, small, full_);
+    const bool is_worn = start.not_placed.empty();
+    if (is_worn || !best_) best_ = std::move(start);
+    return is_worn;
+  }
+
+  /// Tries the starts of a shaping until one is worn.
+  bool shape(const Shaping& shaping) {
+    const double way = shaping.inflation * median_edge(level_);
+    std::vector<DressingStart> shapes;
+    for (const double t : shaping.smoothings) {
+      const Positions smooth = smoothed(level_.rest.triangles, scene_.starts[0], t);
+      shapes.push_back({0, t, way, false, {inflated({smooth, level_.rest.triangles}, way)}});
+    }
+    std::set<std::size_t> crossed;  // shapes that cross themselves
+    for (const double contraction : contractions) {
+      for (DressingStart& start : shapes) start.contraction = contraction;
+      const LevelModel& model = model_of(shapes[0]);
+      for (std::size_t k = 0; k < shapes.size(); ++k) {
+        if (crossed.contains(k)) continue;
+        std::vector<Intersection> found = intersections_of(model, shapes[k].garments[0]);
+        if (found.empty() && take(shapes[k])) return true;
+        if (touches_itself(found)) crossed.insert(k);
+        if (!found.empty()) trials_.push_back({shapes[k], std::move(found)});
+      }
+    }
+    return false;
+  }
+
+  bool untangle(DressingStart start) {
+    const LevelModel& model = model_of(start);
+    start.is_untangled = true;
+    start.garments[0] = untangled({start.garments[0], level_.rest.triangles}, model.obstacles()).vertices;
+    return intersections_of(model, start.garments[0]).empty() && take(std::move(start));
+  }
+
+  const Experiment& e_;
+  const Scene& scene_;
+  const Level& level_ = scene_.hierarchy.levels[0];
+  const TriangleMesh full_;
+  const std::vector<Intersection> none_;
+  std::map<double, std::shared_ptr<const LevelModel>> models_;  // by contraction
+  std::vector<Trial> trials_;
+  std::optional<DressingStart> best_;
+};
+
 }  // namespace
 
 std::optional<DressingStart> find_dressing_start(const Experiment& e, const Scene& scene,
                                                  ConfigErrors& errors) {
-  const Level& level = scene.hierarchy.levels[0];
   const Location& where = e.location_of("dress");
-  const TriangleMesh full = dressed_body(e, *scene.models[0]);
-  const Eigen::AlignedBox3d own = bounding_box(scene.placed[0]), body = bounding_box(full.vertices);
+  StartSearch search(e, scene);
+  const TriangleMesh& body_mesh = search.full_body();
+  const Eigen::AlignedBox3d own = bounding_box(scene.placed[0]), body = bounding_box(body_mesh.vertices);
   const auto refuse = [&](const std::string& what) {
     errors.push_back({where, "the garment is " + what + " its body: it is " + size_text(own.sizes()) +
                                  ", and the body " + size_text(body.sizes()) +
@@ -109,47 +197,18 @@ std::optional<DressingStart> find_dressing_start(const Experiment& e, const Scen
   };
   if (!body.intersects(own)) return refuse("nowhere near");
   if (body.sizes().norm() < smallest_body * own.sizes().norm()) return refuse("far too large for");
-  std::vector<Intersection> least;
-  bool inside = false;  // of the starts without intersections, which smoothing has drawn into the body
-  for (const Shaping& shaping : shapings) {
-    const double way = shaping.inflation * median_edge(level);
-    std::vector<DressingStart> shapes;
-    for (const double t : shaping.smoothings) {
-      const Positions smooth = smoothed(level.rest.triangles, scene.starts[0], t);
-      shapes.push_back({0, t, way, {inflated({smooth, level.rest.triangles}, way)}});
-    }
-    std::set<std::size_t> crossed;  // shapes that cross themselves
-    for (const double contraction : contractions) {
-      for (DressingStart& shape : shapes) shape.contraction = contraction;
-      const DressingLoads loads(e, scene, shapes[0]);
-      const auto model =
-          model_under(*loads.at(loads.values(0, false), *loads.worn()), scene, 0, *scene.models[0]);
-      const TriangleMesh small = dressed_body(e, *model);
-      for (std::size_t k = 0; k < shapes.size(); ++k) {
-        if (crossed.contains(k)) continue;
-        const Positions& x = shapes[k].garments[0];
-        std::vector<Intersection> found = intersections_of(*model, x);
-        if (found.empty() && is_inside(x.topRows(1), small)) {
-          inside = true;
-          continue;
-        }
-        if (found.empty()) {
-          shapes[k].enclosure = enclosure({x, level.rest.triangles}, small);
-          shapes[k].not_placed = not_placed_text(e.parameters.cloth, level, x, small, full);
-          if (e.parameters.dress.worn && !shapes[k].not_placed.empty())
-            errors.push_back({where, "the garment will not be worn: as it is placed, " +
-                                         shapes[k].not_placed + "; " + remedy_of_not_placed});
-          return on_all_levels(std::move(shapes[k]), scene.hierarchy);
-        }
-        if (touches_itself(found)) crossed.insert(k);
-        if (least.empty() || found.size() < least.size()) least = std::move(found);
-      }
-    }
-    if (crossed.size() < shapes.size()) break;
+  std::optional<DressingStart> start = search.run();
+  if (!start) {
+    if (search.least().empty()) return refuse("inside");
+    errors.push_back(refusal(e, search.least(), scene.hierarchy.levels[0]));
+    return std::nullopt;
   }
-  if (least.empty() && inside) return refuse("inside");
-  errors.push_back(refusal(e, least, level));
-  return std::nullopt;
+  if (e.parameters.dress.worn && !start->not_placed.empty())
+    errors.push_back({where, "the garment will not be worn: as it is placed, " + start->not_placed + "; " +
+                                 remedy_of_not_placed});
+  for (const ProlongationMatrix& linear : scene.hierarchy.linear)
+    start->garments.push_back(linear * start->garments.back());
+  return start;
 }
 
 }  // namespace drape

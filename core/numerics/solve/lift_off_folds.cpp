@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/numerics/collision_detection/edge_crossings.h"
 #include "core/numerics/model/required.h"
 
 namespace drape {
@@ -71,9 +72,7 @@ struct Meetings {
   }
 };
 
-/// The state with these pairs of triangles, which intersect, drawn apart by up to `length` [m], in the
-/// direction in which the curves along which layers intersect grow shorter: intersection contour minimisation
-/// (Volino and Magnenat-Thalmann 2006), of each pair on its own.
+/// The state with these pairs of triangles, which intersect, drawn apart by up to `length` [m].
 Positions drawn_apart(const LevelModel& model, const std::vector<std::array<int, 2>>& pairs, double length,
                       Positions x) {
   const auto& triangles = model.level().rest.triangles;
@@ -85,28 +84,15 @@ Positions drawn_apart(const LevelModel& model, const std::vector<std::array<int,
     weights[v] += std::abs(weight);
   };
   const auto add_edges_through = [&](int pierced, int other) {
-    const Eigen::Matrix3d t = corners(pierced), s = corners(other);
-    const Eigen::Vector3d normal = (t.col(1) - t.col(0)).cross(t.col(2) - t.col(0)),
-                          other_normal = (s.col(1) - s.col(0)).cross(s.col(2) - s.col(0));
-    for (int k = 0; k < 3; ++k) {
-      const int l = (k + 1) % 3;
+    visit_edge_crossings(corners(other), corners(pierced), [&](const EdgeCrossing& crossing) {
+      const int k = triangles(other, crossing.corner), l = triangles(other, (crossing.corner + 1) % 3);
       const auto own = triangles.row(pierced).array();
-      if ((own == triangles(other, k) || own == triangles(other, l)).any()) continue;  // they share a vertex
-      const Eigen::Vector3d edge = s.col(l) - s.col(k);
-      const double at = normal.dot(t.col(0) - s.col(k)) / normal.dot(edge);
-      const Eigen::Matrix3d to = t.colwise() - s.col(k);
-      Eigen::Vector3d in_pierced;  // barycentric, where the edge meets its plane
-      for (int c = 0; c < 3; ++c)
-        in_pierced[c] = to.col((c + 1) % 3).cross(to.col((c + 2) % 3)).dot(edge) / normal.dot(edge);
-      if (!(at >= 0 && at <= 1 && in_pierced.minCoeff() >= 0)) continue;
-      Eigen::Vector3d curve = normal.cross(other_normal).normalized();  // from there into `other`
-      if (curve.dot(other_normal.cross(edge)) < 0) curve = -curve;
-      const Eigen::RowVector3d away =
-          (curve - curve.dot(edge) / normal.dot(edge) * normal).normalized().transpose();
-      push(triangles(other, k), 1 - at, away);
-      push(triangles(other, l), at, away);
-      for (int c = 0; c < 3; ++c) push(triangles(pierced, c), in_pierced[c], -away);
-    }
+      if ((own == k || own == l).any()) return;  // they share a vertex
+      const Eigen::RowVector3d away = crossing.away.transpose();
+      push(k, 1 - crossing.along, away);
+      push(l, crossing.along, away);
+      for (int c = 0; c < 3; ++c) push(triangles(pierced, c), crossing.weights[c], -away);
+    });
   };
   for (const auto& [first, second] : pairs) {
     add_edges_through(first, second);

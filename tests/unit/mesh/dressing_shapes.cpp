@@ -1,7 +1,10 @@
-// Bodies that contract, starts that are smoothed, and rest shapes between two.
+// Bodies that contract, starts that are smoothed and untangled, and rest shapes between two.
 
+#include "core/app/scene/scene.h"
+#include "core/numerics/collision_detection/intersections.h"
 #include "core/numerics/dressing/garment_rest.h"
 #include "core/numerics/dressing/implicit_smoothing.h"
+#include "core/numerics/dressing/untangling.h"
 #include "core/numerics/elements/stretch.h"
 #include "core/numerics/patterns/generate.h"
 #include "tests/support/sewn.h"
@@ -49,6 +52,41 @@ TEST_CASE("Smoothing shares a long edge's length with its neighbours and keeps t
   CHECK(longest(smooth) < 0.4 * longest(x));
   CHECK((smooth.colwise().mean() - x.colwise().mean()).norm() < 1e-12);
   CHECK((smoothed(sheet.triangles, x, 0) - x).norm() < 1e-12);
+}
+
+TEST_CASE("A sheet whose corner pokes through another one is untangled there, and stays elsewhere") {
+  const TriangleMesh flat = grid({1, 1}, 11, 11, Diagonals::criss_cross);
+  const int n = static_cast<int>(flat.vertices.rows());
+  const Eigen::Vector3d corner = flat.vertices.colwise().maxCoeff();
+  TriangleMesh both = flat;  // and an upright copy across that corner
+  both.vertices.conservativeResize(2 * n, 3);
+  both.triangles.conservativeResize(2 * flat.triangles.rows(), 3);
+  both.triangles.bottomRows(flat.triangles.rows()) = flat.triangles.array() + n;
+  for (int v = 0; v < n; ++v) {
+    const double along = flat.vertices(v, 0) - flat.vertices.col(0).mean() + 0.013;
+    both.vertices.row(n + v) << corner.x() - 0.08 + along, corner.y() - 0.07 - along,
+        flat.vertices(v, 1) - flat.vertices.col(1).mean() + 0.02;
+  }
+  REQUIRE(self_intersections(both).size() > 5);
+  const TriangleMesh apart = untangled(both, {});
+  CHECK(self_intersections(apart).empty());
+  const Eigen::VectorXd moves = (apart.vertices - both.vertices).rowwise().norm();
+  CHECK(moves.maxCoeff() < 0.15);  // the corner is .11 beyond the other sheet
+  CHECK(moves.minCoeff() < 1e-3);
+  CHECK(untangled(flat, {}).vertices == flat.vertices);
+}
+
+TEST_CASE("A sheet whose corner pokes into an obstacle leaves it, which stays") {
+  TriangleMesh ball = unit_sphere(3);
+  ball.vertices = 0.3 * ball.vertices;
+  TriangleMesh sheet = grid({1, 1}, 13, 13, Diagonals::criss_cross);
+  sheet.vertices.rowwise() += Eigen::RowVector3d(-sheet.vertices.col(0).minCoeff() + 0.13,
+                                                 -sheet.vertices.col(1).minCoeff() + 0.11, 0);
+  REQUIRE(!intersections(sheet, ball).empty());
+  const TriangleMesh apart = untangled(sheet, {ball});
+  CHECK(intersections(apart, ball).empty());
+  CHECK(self_intersections(apart).empty());
+  CHECK(!is_inside(apart.vertices, ball));
 }
 
 TEST_CASE("Inflation moves a surface along its normals, and leaves two layers' common edge") {
