@@ -17,7 +17,8 @@ std::vector<EdgeCrossing> crossings_of(const Eigen::Matrix3d& triangle, const Ei
 
 }  // namespace
 
-TEST_CASE("The tip of a triangle that pierces another one leaves it by the way in which their curve shortens") {
+TEST_CASE(
+    "The tip of a triangle that pierces another one leaves it by the way in which their curve shortens") {
   Eigen::Matrix3d pierced, tip;
   pierced << -2, 3, 0, -2, -1, 3, 0, 0, 0;
   tip << 0.1, -0.6, 0.9, 0.2, -0.1, 0.3, -0.4, 1, 1.3;  // its first corner is beyond
