@@ -4,6 +4,7 @@
 
 #include "core/app/dressing/dressing_loads.h"
 #include "core/app/dressing/sinking.h"
+#include "core/app/dressing/verdict.h"
 #include "core/app/dressing/worn.h"
 #include "core/app/scene/scene_summary.h"
 #include "core/app/scene/value_stepping.h"
@@ -112,7 +113,7 @@ class Dressing final : public ValueStepping {
   Positions grown_;    // where the garment was when the body had grown [m]
 };
 
-Garment garment_of(const Experiment& e, const DressingStart& start) {
+Garment garment_of(const Experiment& e, const Scene& scene, const DressingStart& start) {
   const Location& where = e.location_of("dress");
   Garment garment{
       "dress: the garment starts smoothed (smoothing " + general_text(start.smoothing, 3) + ")" +
@@ -124,7 +125,11 @@ Garment garment_of(const Experiment& e, const DressingStart& start) {
       {},
       {where,
        "\"dress\" begins from pieces as they are placed, and from no other state; a dressed garment goes on "
-       "without: --set dress={}"}};
+       "without: --set dress={}"},
+      [e](const LevelModel& model, const Positions& x) {
+        return garment_openings(model.level(), x, dressed_body(e, model));
+      },
+      [e, &scene](LevelResult result) { return with_verdict(e, scene, std::move(result)); }};
   if (start.enclosure < least_enclosure)
     garment.warnings.push_back(
         {where,
@@ -147,7 +152,7 @@ std::unique_ptr<LoadStepping> dress(const Experiment& experiment, Scene& scene, 
   std::optional<DressingStart> start = find_dressing_start(experiment, scene, errors);
   if (!start) return nullptr;
   scene.placed = scene.starts = start->garments;
-  scene.garment = garment_of(experiment, *start);
+  scene.garment = garment_of(experiment, scene, *start);
   return std::make_unique<Dressing>(
       std::make_unique<const DressingLoads>(experiment, scene, std::move(*start)), scene);
 }

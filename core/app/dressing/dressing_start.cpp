@@ -103,8 +103,11 @@ class StartSearch {
 
   /// None if none was found; one that is worn if any is.
   std::optional<DressingStart> run() {
-    for (const Shaping& shaping : shapings)
+    for (const Shaping& shaping : shapings) {
       if (shape(shaping)) return std::move(best_);
+      if (std::ranges::any_of(trials_, [](const Trial& trial) { return !touches_itself(trial.found); }))
+        worn_only_ = true;
+    }
     std::ranges::stable_sort(trials_, {}, [](const Trial& trial) { return trial.found.size(); });
     for (std::size_t k = 0; k < std::min(trials_.size(), most_untangled); ++k)
       if (untangle(trials_[k].start)) break;
@@ -137,7 +140,7 @@ class StartSearch {
     start.enclosure = enclosure({x, level_.rest.triangles}, small);
     start.not_placed = not_placed_text(e_.parameters.cloth, level_, x, small, full_);
     const bool is_worn = start.not_placed.empty();
-    if (is_worn || !best_) best_ = std::move(start);
+    if (is_worn || (!best_ && !worn_only_)) best_ = std::move(start);
     return is_worn;
   }
 
@@ -179,6 +182,7 @@ class StartSearch {
   std::map<double, std::shared_ptr<const LevelModel>> models_;  // by contraction
   std::vector<Trial> trials_;
   std::optional<DressingStart> best_;
+  bool worn_only_ = false;  // where the body is in the way, the cloth could leave it on the wrong side
 };
 
 }  // namespace

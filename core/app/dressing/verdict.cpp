@@ -7,7 +7,7 @@ namespace drape {
 
 LevelResult with_verdict(const Experiment& e, const Scene& scene, LevelResult result) {
   constexpr double tight = 0.5;
-  if (!scene.garment || result.level != scene.finest() || !has_converged(result.outcome)) return result;
+  if (result.level != scene.finest() || !has_converged(result.outcome)) return result;
   const auto add = [&](const std::string& text) {
     result.message += (result.message.empty() || text.empty() ? "" : "; ") + text;
   };

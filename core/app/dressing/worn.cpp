@@ -14,7 +14,7 @@ namespace {
 constexpr std::size_t most_named = 4;  // pieces of an opening, and openings, in a message
 
 /// An opening of a garment, and what its border is called.
-struct GarmentOpening : Opening {
+struct NamedOpening : Opening {
   std::vector<PieceEdge> edges;  ///< along its border
 
   /// The names of its pieces, each once.
@@ -34,13 +34,13 @@ std::string text_of_edges(const std::vector<std::string>& names) {
   return std::string("by its edge") + (names.size() > 1 ? "s " : " ") + few(names, " and ");
 }
 
-std::vector<std::string> GarmentOpening::pieces() const {
+std::vector<std::string> NamedOpening::pieces() const {
   std::vector<std::string> names;
   for (const PieceEdge& edge : edges) add_new(names, edge.piece);
   return names;
 }
 
-std::string GarmentOpening::text() const {
+std::string NamedOpening::text() const {
   const bool has_edges = std::ranges::none_of(edges, [](const PieceEdge& edge) { return edge.edge.empty(); });
   if (edges.empty() || !has_edges)
     return few(pieces(), " and ") + " at " + point_text((1000 * middle.array()).round() / 1000 + 0.0);
@@ -54,12 +54,12 @@ std::string GarmentOpening::text() const {
   return few(parts, ", and ");
 }
 
-std::vector<GarmentOpening> named(const ClothParameters& cloth, const Level& level,
-                                  std::vector<Opening> openings) {
+std::vector<NamedOpening> named(const ClothParameters& cloth, const Level& level,
+                                std::vector<Opening> openings) {
   std::vector<std::vector<int>> borders;
   for (const Opening& opening : openings) borders.push_back(opening.half_edges);
   std::vector<std::vector<PieceEdge>> edges = edges_along(cloth, level, borders);
-  std::vector<GarmentOpening> all;
+  std::vector<NamedOpening> all;
   for (std::size_t k = 0; k < openings.size(); ++k)
     all.push_back({std::move(openings[k]), std::move(edges[k])});
   return all;
@@ -74,7 +74,7 @@ std::string missed_text(const ClothParameters& cloth, const Level& level, const 
   std::string text;
   const std::size_t more = openings.size() - std::min(openings.size(), most_named);
   openings.resize(openings.size() - more);
-  for (const GarmentOpening& opening : named(cloth, level, std::move(openings)))
+  for (const NamedOpening& opening : named(cloth, level, std::move(openings)))
     text += (text.empty() ? "no part of the body passes through the opening of " : "; nor through that of ") +
             opening.text();
   return text + (more > 0 ? "; nor through " + std::to_string(more) + " more" : "");
@@ -86,6 +86,20 @@ TriangleMesh dressed_body(const Experiment& e, const LevelModel& model) {
   const std::vector<std::string> names = e.obstacle_names();
   const auto index = std::ranges::find(names, e.parameters.dress.obstacle) - names.begin();
   return model.obstacles().at(index);
+}
+
+std::vector<GarmentOpening> garment_openings(const Level& level, const Positions& x,
+                                             const TriangleMesh& body) {
+  std::vector<GarmentOpening> all;
+  for (const Opening& opening : openings_of(level, x, body)) {
+    GarmentOpening& own = all.emplace_back();
+    for (const int h : opening.half_edges)
+      add_new(own.pieces, level.rest.piece_names.at(level.rest.piece[h / 3]));
+    own.length = opening.length;
+    own.middle = opening.middle;
+    own.passed = opening.passed;
+  }
+  return all;
 }
 
 std::string not_worn_text(const ClothParameters& cloth, const Level& level, const Positions& x,

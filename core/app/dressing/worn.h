@@ -12,6 +12,11 @@ namespace drape {
 /// The body that `dress` names, as a model has it.
 TriangleMesh dressed_body(const Experiment& experiment, const LevelModel& model);
 
+/// The openings of a garment at x (n×3) [m]. They have nothing of the pattern's file, which a resumed run
+/// does not read.
+std::vector<GarmentOpening> garment_openings(const Level& level, const Positions& x,
+                                             const TriangleMesh& body);
+
 /// Says through which openings no part of the body passes, as "no part of the body passes through the
 /// opening of sleeve_left, by its edge cuff". "" if there is none, and for a garment that hangs on a smaller
 /// body, such as a hanger, of which a part passes through one opening.

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <utility>
 
-#include "core/app/dressing/worn.h"
 #include "core/app/experiment/declared_metrics.h"
 #include "core/app/experiment/garment_place.h"
 #include "core/app/report/run_data.h"
@@ -12,7 +11,6 @@
 #include "core/app/run/recorder_files.h"
 #include "core/kernel/files/file.h"
 #include "core/kernel/files/number_text.h"
-#include "core/kernel/files/string_utils.h"
 #include "core/kernel/threads/parallel.h"
 #include "core/kernel/threads/stopwatch.h"
 #include "core/kernel/version.h"
@@ -68,15 +66,12 @@ std::string message_of(const LevelResult& r, const LevelModel& model, double for
   return r.message + "; the largest force is at " + place_in_garment(model.level(), static_cast<int>(vertex));
 }
 
-/// The table of a garment's openings. It has nothing of the pattern's file, which a resumed run does not
-/// read.
-Json entries_of(const std::vector<Opening>& openings, const TriangleMesh& cloth) {
+/// The table of a garment's openings.
+Json entries_of(const std::vector<GarmentOpening>& openings) {
   Json entries = Json::array();
-  for (const Opening& opening : openings) {
-    std::vector<std::string> pieces;
-    for (const int h : opening.half_edges) add_new(pieces, cloth.piece_names.at(cloth.piece[h / 3]));
+  for (const GarmentOpening& opening : openings) {
     const Eigen::Vector3d& middle = opening.middle;
-    entries.push_back({{"pieces", pieces},
+    entries.push_back({{"pieces", opening.pieces},
                        {"middle", {middle.x(), middle.y(), middle.z()}},
                        {"length", opening.length},
                        {"passes", opening.passed}});
@@ -325,8 +320,7 @@ void Recorder::level_finished(const LevelResult& r) {
     const Level& level = scene_.hierarchy.levels[r.level];
     entry["levels"].back()["pieces"] =
         garment_pieces(level, r.x, garment.back().values, state.contact_pressure);
-    entry["levels"].back()["openings"] =
-        entries_of(openings_of(level, r.x, dressed_body(experiment_, model)), level.rest);
+    entry["levels"].back()["openings"] = entries_of(scene_.garment->openings(model, r.x));
   }
   if (experiment_.parameters.snapshots > 0)
     entry["levels"].back()["snapshots"] = add_snapshots(r, cost, state);

@@ -7,7 +7,6 @@
 #include <utility>
 #include <vector>
 
-#include "core/app/dressing/verdict.h"
 #include "core/app/run/audit.h"
 #include "core/app/run/checkpoint.h"
 #include "core/app/run/recorder.h"
@@ -75,9 +74,8 @@ class RunObserver : public Observer {
   }
   void level_finished(const LevelResult& reported) override {
     const WorkClock watch;
-    const LevelResult result =
-        with_verdict(experiment_, scene_,
-                     audited(scene_, reported, experiment_.force_tolerance(now_.methods.at(now_.method))));
+    LevelResult result = audited(scene_, reported, experiment_.force_tolerance(now_.methods.at(now_.method)));
+    if (scene_.garment) result = scene_.garment->judged(std::move(result));
     const Work audit = watch.work();
     if (const auto& before = now_.state.finished; !before.empty() && result.level <= before.back().level)
       throw std::runtime_error("the method reported level " + std::to_string(result.level) + " after level " +

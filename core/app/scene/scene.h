@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -24,12 +25,24 @@ struct FollowingVertex {
 };
 using FollowingVertices = std::vector<FollowingVertex>;
 
+/// A border of a garment that is sewn.
+struct GarmentOpening {
+  std::vector<std::string> pieces;                   ///< along it, each once
+  double length = 0;                                 ///< [m]
+  Eigen::Vector3d middle = Eigen::Vector3d::Zero();  ///< mean of its vertices [m]
+  bool passed = false;                               ///< whether a part of the body passes through it
+};
+
 /// A cloth that is put on a body before it is loaded. Its pieces are measured one by one, and energies are
 /// not compared with the start, where its seams are long.
 struct Garment {
   std::string remark;      ///< on its start
   ConfigErrors warnings;   ///< on its start
   ConfigError no_restart;  ///< why it begins from no other state
+  /// The openings at x (n×3) [m], the longest first.
+  std::function<std::vector<GarmentOpening>(const LevelModel& model, const Positions& x)> openings;
+  /// A result of the finest level with what the garment is found to be, where it has come to rest.
+  std::function<LevelResult(LevelResult result)> judged;
 };
 
 /// The problem of an experiment, and what it was made from.
