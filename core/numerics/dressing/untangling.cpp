@@ -21,7 +21,7 @@ constexpr int steps_of_each = 100;
 constexpr double step_length = 0.1;
 /// Steps in which the obstacles' triangles that the cloth may reach stay the same ones.
 constexpr int steps_of_reach = 25;
-/// The pairs that are left after the steps with one time, over those before, with which it is worth to go on.
+/// The steps with the next time follow if those with one leave at most this part of the pairs that cross.
 constexpr double least_progress = 0.75;
 
 TriangleMesh joined(const std::vector<TriangleMesh>& meshes) {
