@@ -1,6 +1,11 @@
 // Garments that friction holds while they are put on.
 
+#include <Eigen/Eigenvalues>
+
+#include "core/app/dressing/pin_support.h"
+#include "core/numerics/model/derivative_check.h"
 #include "tests/configs/killed_dressings.h"
+#include "tests/support/evaluate.h"
 #include "tests/support/tube_dress.h"
 
 using namespace drape;
@@ -94,6 +99,40 @@ TEST_CASE("A band that friction holds on a cone stays where it is put on, and on
   CHECK(std::abs(height_of_band(folder, {{"friction", "0.4"}})) < 0.01);
   CHECK(std::abs(height_of_band(folder, with_own_friction(folder, "0.4"))) < 0.01);
   CHECK(height_of_band(folder, {{"friction", "0"}}) < -0.05);
+}
+
+TEST_CASE("Pins keep a garment up until it is sewn, when they hold it") {
+  const Scratch folder;
+  write_band(folder, 0.03);
+  const auto height = [&](const std::string& pins) {
+    return height_of_band(folder, {{"friction", "0"}, {"pins", pins}, {"methods.pcs", "{}"}});
+  };
+  CHECK(height("[{region: piece, piece: front}]") > -0.02);
+  CHECK(height("[]") < -0.05);
+}
+
+TEST_CASE("The force that supports pins is the derivative of its energy, and acts below them alone") {
+  const Scratch folder;
+  write_band(folder, 0.05);
+  const Experiment e = experiment_in(folder / "e.yaml", {{"pins", "[{region: piece, piece: front}]"}});
+  const auto scene = scene_of(e);
+  const Positions placed = scene->starts[0];
+  DressingStart start;
+  start.placed = placed;
+  const DressingSetup setup{e, *scene, std::make_shared<const DressingStart>(std::move(start))};
+  const Level& level = scene->hierarchy.levels[0];
+  const auto support = pin_support(setup)->bind(level, e.parameters.material);
+  CHECK(support->value(placed.rowwise() + Eigen::RowVector3d(0.3, 0, 0.1)) == 0);
+  Positions x = placed;
+  x.col(2).array() -= 0.01;
+  CHECK(support->value(x) == Approx(5e5 * 4e-4 * 0.01 * 0.01 / 2));
+  x += 0.005 * Positions::Random(x.rows(), 3);
+  CHECK(check_derivatives(*support, x, 1e-4).gradient.error < 1e-8);
+  // Its Hessian is exact for a translation, and not smaller for any other motion.
+  const Eigen::MatrixXd hessian = dense(hessian_of(*support, x, Projection::none)),
+                        difference = hessian - hessian_by_differences(*support, x, 1e-4);
+  CHECK((difference * flat(Positions::Ones(x.rows(), 3))).norm() < 1e-6 * hessian.norm());
+  CHECK(Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(difference).eigenvalues()[0] > -1e-6 * hessian.norm());
 }
 
 TEST_CASE("An obstacle's own friction does not act while a garment that rises is sewn") {

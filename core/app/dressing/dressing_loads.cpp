@@ -4,8 +4,8 @@
 #include <stdexcept>
 #include <utility>
 
+#include "core/app/dressing/load_forces.h"
 #include "core/app/experiment/experiment_path.h"
-#include "core/numerics/model/required.h"
 
 namespace drape {
 
@@ -82,11 +82,7 @@ bool DressingLoads::has_friction(const std::vector<double>& values) const {
 }
 
 Positions DressingLoads::forces(const Level& level, const Positions& x) const {
-  Positions gradient = Positions::Zero(x.rows(), 3);
-  for (const NamedEnergy& named : experiment_.energies)
-    if (named.energy->role() == EnergyRole::external)
-      bound_energy(*named.energy, level, experiment_.parameters.material)->add_gradient(x, gradient);
-  return -gradient;
+  return load_forces(experiment_, level, x);
 }
 
 std::shared_ptr<const LoadState> DressingLoads::at(std::vector<double> values,

@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <set>
 
 #include "core/app/dressing/dressing_loads.h"
+#include "core/app/dressing/load_forces.h"
 #include "core/app/dressing/worn.h"
 #include "core/app/experiment/garment_place.h"
 #include "core/app/scene/scene_summary.h"
@@ -27,8 +29,11 @@ struct Shaping {
   double inflation = 0;
   /// Times of the smoothing, which reaches as many edges as their root: finer meshes need longer ones.
   std::array<double, 4> smoothings;
+  /// The longest time along the loads: a waist would be drawn down to the metres of skirt below it.
+  double longest_along = std::numeric_limits<double>::infinity();
 };
-constexpr Shaping shapings[] = {{0, {1, 0.3, 2, 4}}, {0.2, {1, 0.3, 2, 4}}, {0, {8, 16, 32, 64}}};
+constexpr Shaping shapings[] = {
+    {0, {1, 0.3, 2, 4}}, {0.2, {1, 0.3, 2, 4}}, {0, {8, 16, 32, 64}, 1}, {0, {8, 16, 32, 64}}};
 /// Times of the contraction that are tried.
 constexpr double contractions[] = {0.009, 0.018, 0.028, 0.05};
 /// Starts that are untangled, those that intersect least.
@@ -144,13 +149,21 @@ class StartSearch {
     return is_worn;
   }
 
+  /// The placed garment smoothed for a time, along the loads for at most `longest_along`.
+  Positions smoothed_placed(double time, double longest_along) const {
+    Positions smooth = smoothed(level_.rest.triangles, placed_, time);
+    if (time <= longest_along || !up_) return smooth;
+    const Positions along = smoothed(level_.rest.triangles, placed_, longest_along);
+    return smooth + (along - smooth) * up_->transpose() * *up_;
+  }
+
   /// Tries the starts of a shaping until one is worn.
   bool shape(const Shaping& shaping) {
     const double way = shaping.inflation * median_edge(level_);
     std::vector<DressingStart> shapes;
     for (const double t : shaping.smoothings) {
-      const Positions smooth = smoothed(level_.rest.triangles, scene_.starts[0], t);
-      shapes.push_back({0, t, way, false, {inflated({smooth, level_.rest.triangles}, way)}});
+      const Positions smooth = smoothed_placed(t, shaping.longest_along);
+      shapes.push_back({0, t, way, false, {inflated({smooth, level_.rest.triangles}, way)}, placed_});
     }
     std::set<std::size_t> crossed;  // shapes that cross themselves
     for (const double contraction : contractions) {
@@ -178,6 +191,8 @@ class StartSearch {
   const Scene& scene_;
   const Level& level_ = scene_.hierarchy.levels[0];
   const TriangleMesh full_;
+  const Positions& placed_ = scene_.starts[0];
+  const std::optional<Eigen::RowVector3d> up_ = upward(load_forces(e_, level_, placed_));
   const std::vector<Intersection> none_;
   std::map<double, std::shared_ptr<const LevelModel>> models_;  // by contraction
   std::vector<Trial> trials_;

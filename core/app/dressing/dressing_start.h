@@ -13,6 +13,7 @@ struct DressingStart {
   double inflation = 0;             ///< of the smoothed garment, along its normals [m]
   bool is_untangled = false;        ///< then, where it crossed itself or the body
   std::vector<Positions> garments;  ///< of every level, n×3 [m]
+  Positions placed = {};            ///< the pieces of the coarsest level as they were placed, n×3 [m]
   double enclosure = 0;             ///< the largest winding number around a point of the contracted body
   std::string not_placed = {};      ///< not_placed_text
 };

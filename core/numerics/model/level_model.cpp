@@ -103,7 +103,7 @@ void LevelModel::bind_energies(const std::vector<NamedEnergy>& energies, const L
   };
   for (std::size_t t = 0; t < energies.size(); ++t) {
     const NamedEnergy& e = energies[t];
-    const Term* old = before ? &before->terms_.at(t) : nullptr;
+    const Term* old = before && t < before->terms_.size() ? &before->terms_[t] : nullptr;
     const Level& level = level_of(e.energy->role());
     if (old && old->kind == e.energy && old->level == &level && before->material_ == material_) {
       terms_.push_back(*old);
@@ -116,7 +116,10 @@ void LevelModel::bind_energies(const std::vector<NamedEnergy>& energies, const L
         throw std::runtime_error("energy " + term.name +
                                  " changes its stencils with a parameter that a schedule changes; "
                                  "stencils must stay the same");
-      if (old) term.slots = old->slots;
+      if (old)
+        term.slots = old->slots;
+      else if (before && own.rows() > 0)
+        term.slots = std::make_shared<BlockSlots>(*before->pattern_, own);
       stencils.push_back(std::move(own));
       terms_.push_back(std::move(term));
     }

@@ -34,9 +34,10 @@ struct DirichletVertex {
 class LevelModel {
  public:
   /// `dirichlet` must not list a vertex twice. Shares with `before`, a model of the same level at another
-  /// pseudo-time, all that is equal. Throws std::runtime_error if an energy's stencils differ from those in
-  /// `before`: the sparsity pattern must not change over time. Membranes rest as in `membranes`, the same
-  /// level with another rest shape, as while a garment is sewn; without it as in `level`.
+  /// pseudo-time, all that is equal; its energies may be followed by more. Throws std::runtime_error if an
+  /// energy's stencils differ from those in `before`: the sparsity pattern must not change over time.
+  /// Membranes rest as in `membranes`, the same level with another rest shape, as while a garment is sewn;
+  /// without it as in `level`.
   LevelModel(const Level& level, const Material& material, const std::vector<NamedEnergy>& energies,
              std::vector<DirichletVertex> dirichlet,
              const std::vector<std::shared_ptr<ContactModel>>& contacts = {},
