@@ -1,6 +1,7 @@
 // Garments that friction holds while they are put on.
 
 #include <Eigen/Eigenvalues>
+#include <limits>
 
 #include "core/app/dressing/pin_support.h"
 #include "core/numerics/model/derivative_check.h"
@@ -51,7 +52,8 @@ double height_of_band(const Scratch& folder, const Overrides& overrides) {
   return s.x().col(2).mean();
 }
 
-/// The highest point of the hem of a box's cover that is 3 % too small, put on with these changes [m].
+/// The highest point of the hem of a box's cover that is 3 % too small, put on with these changes [m];
+/// infinite if it drifts away.
 double hem_of_cover(const Overrides& overrides) {
   const Scratch folder;
   folder.write(
@@ -84,6 +86,7 @@ double hem_of_cover(const Overrides& overrides) {
       "{body: box.obj}\nmethods: {pcs: {}}\nmetrics: []\n");
   const Solved s = solved(experiment_in(folder / "e.yaml", overrides));
   INFO(s.levels[0].message);
+  if (s.levels[0].outcome == Outcome::infeasible) return std::numeric_limits<double>::infinity();
   CHECK(s.levels[0].outcome == Outcome::converged);
   double highest = 0;
   for (int v = 0; v < s.level().vertex_count(); ++v)
