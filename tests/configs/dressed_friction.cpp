@@ -110,11 +110,11 @@ TEST_CASE("Pins keep a garment up until it is sewn, when they hold it") {
   const auto height = [&](const std::string& pins) {
     return height_of_band(folder, {{"friction", "0"}, {"pins", pins}, {"methods.pcs", "{}"}});
   };
-  CHECK(height("[{region: piece, piece: front}]") > -0.02);
+  CHECK(height("[{region: piece, piece: front}]") > -0.04);  // .1 while nothing supports it
   CHECK(height("[]") < -0.05);
 }
 
-TEST_CASE("The force that supports pins is the derivative of its energy, and acts below them alone") {
+TEST_CASE("The force that supports pins is the derivative of its energy, and acts far below alone") {
   const Scratch folder;
   write_band(folder, 0.05);
   const Experiment e = experiment_in(folder / "e.yaml", {{"pins", "[{region: piece, piece: front}]"}});
@@ -127,7 +127,7 @@ TEST_CASE("The force that supports pins is the derivative of its energy, and act
   const auto support = pin_support(setup)->bind(level, e.parameters.material);
   CHECK(support->value(placed.rowwise() + Eigen::RowVector3d(0.3, 0, 0.1)) == 0);
   Positions x = placed;
-  x.col(2).array() -= 0.01;
+  x.col(2).array() -= 0.03;
   CHECK(support->value(x) == Approx(5e5 * 4e-4 * 0.01 * 0.01 / 2));
   x += 0.005 * Positions::Random(x.rows(), 3);
   CHECK(check_derivatives(*support, x, 1e-4).gradient.error < 1e-8);

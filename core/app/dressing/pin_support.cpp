@@ -9,6 +9,8 @@ namespace drape {
 
 namespace {
 
+constexpr double unsupported = 0.02;  // garments sink and rise again by so much while they are sewn [m]
+
 /// The vertices of a pin on a level.
 struct Supported {
   std::vector<int> vertices;
@@ -54,7 +56,7 @@ class BoundPinSupport final : public BoundEnergy {
   }
 
  private:
-  /// How far a pin's vertices are below where they were placed [m].
+  /// How far a pin's vertices are below where they are supported [m].
   double sunk(const Supported& pin, const Positions& x) const {
     double height = 0;
     for (std::size_t k = 0; k < pin.vertices.size(); ++k)
@@ -83,7 +85,7 @@ class PinSupport final : public Energy {
     for (const PinParameters& pin : pins_) {
       Supported own = supported(search.selected(pin), level);
       const Supported placed = supported(coarse.selected(pin), coarsest_);
-      own.height = (placed_(placed.vertices, Eigen::all) * up_.transpose()).dot(placed.shares);
+      own.height = (placed_(placed.vertices, Eigen::all) * up_.transpose()).dot(placed.shares) - unsupported;
       pins.push_back(std::move(own));
     }
     return std::make_unique<BoundPinSupport>(std::move(pins), up_,
