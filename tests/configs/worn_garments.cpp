@@ -78,3 +78,20 @@ TEST_CASE("A T-shirt is worn whose arms are in its sleeves, or cross them as it 
     if (arm_angle == 55) CHECK_THAT(ran.err, Catch::Contains("untangled where it crossed"));
   }
 }
+
+TEST_CASE("A garment whose upper edges are placed along the middles of level arms starts above them") {
+  const Scratch folder;
+  write_dressed(folder, 0);
+  folder.write("tshirt.yaml", R"(properties: {units_in_meter: 100, up: y}
+pattern:
+  panels:
+    front: {translation: [0, 0, 20], vertices: &v {a: [-26, 70], b: [26, 70], c: [28, 112], d: [55, 116], e: [55, 130], f: [10, 131], g: [-10, 131], h: [-55, 130], i: [-55, 116], j: [-28, 112]}, edges: &e {hem: [a, b], side_1: [b, c], under_1: [c, d], cuff_1: [d, e], upper_1: [e, f], neck: [f, g], upper_2: [g, h], cuff_2: [h, i], under_2: [i, j], side_2: [j, a]}}
+    back: {translation: [0, 0, -20], rotation: [0, 180, 0], vertices: *v, edges: *e}
+  stitches: {a: [front.side_1, back.side_2], b: [front.under_1, back.under_2], c: [front.upper_1, back.upper_2], d: [front.upper_2, back.upper_1], e: [front.under_2, back.under_1], f: [front.side_2, back.side_1]}
+)");
+  const Ended run =
+      drape_ends("run e.yaml --out out --set cloth.file=tshirt.yaml --set dress.worn=true", folder);
+  INFO(run.err);
+  CHECK(run.exit_code == 0);
+  CHECK_THAT(run.out + run.err, Catch::Contains("raised by"));
+}

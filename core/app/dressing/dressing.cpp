@@ -120,6 +120,7 @@ Garment garment_of(const Experiment& e, const Scene& scene, const DressingStart&
           (start.inflation > 0
                ? ", each layer moved by " + length_text(start.inflation) + " to its right side"
                : "") +
+          (start.rise > 0 ? ", raised by " + length_text(start.rise) : "") +
           (start.is_untangled ? ", untangled where it crossed" : "") + ", the body shrunk (contraction " +
           general_text(start.contraction, 3) + " of its area)",
       {},

@@ -20,6 +20,8 @@ namespace drape {
 
 namespace {
 
+constexpr double any_time = std::numeric_limits<double>::infinity();
+
 /// Shapes of a garment that are tried: one after the other, until one does not cross itself however it is
 /// smoothed.
 struct Shaping {
@@ -30,10 +32,17 @@ struct Shaping {
   /// Times of the smoothing, which reaches as many edges as their root: finer meshes need longer ones.
   std::array<double, 4> smoothings;
   /// The longest time along the loads: a waist would be drawn down to the metres of skirt below it.
-  double longest_along = std::numeric_limits<double>::infinity();
+  double longest_along = any_time;
+  /// Way against the loads, as a part of the body's height. Sleeves of level arms are placed with their upper
+  /// edges where the middles of the arms are, to which contracted ones shrink.
+  double rise = 0;
 };
-constexpr Shaping shapings[] = {
-    {0, {1, 0.3, 2, 4}}, {0.2, {1, 0.3, 2, 4}}, {0, {8, 16, 32, 64}, 1}, {0, {8, 16, 32, 64}}};
+constexpr Shaping shapings[] = {{0, {1, 0.3, 2, 4}},
+                                {0.2, {1, 0.3, 2, 4}},
+                                {0, {8, 16, 32, 64}, 1},
+                                {0, {8, 16, 32, 64}},
+                                {0, {1, 0.3, 2, 4}, any_time, 0.03},
+                                {0, {1, 0.3, 2, 4}, any_time, 0.06}};
 /// Times of the contraction that are tried.
 constexpr double contractions[] = {0.009, 0.018, 0.028, 0.05};
 /// Starts that are untangled, those that intersect least.
@@ -157,13 +166,21 @@ class StartSearch {
     return smooth + (along - smooth) * up_->transpose() * *up_;
   }
 
+  /// The body's height, against the loads [m].
+  double body_height() const {
+    const Eigen::VectorXd heights = full_.vertices * up_->transpose();
+    return heights.maxCoeff() - heights.minCoeff();
+  }
+
   /// Tries the starts of a shaping until one is worn.
   bool shape(const Shaping& shaping) {
-    const double way = shaping.inflation * median_edge(level_);
+    if (shaping.rise > 0 && !up_) return false;
+    const double way = shaping.inflation * median_edge(level_), rise = shaping.rise * body_height();
     std::vector<DressingStart> shapes;
     for (const double t : shaping.smoothings) {
-      const Positions smooth = smoothed_placed(t, shaping.longest_along);
-      shapes.push_back({0, t, way, false, {inflated({smooth, level_.rest.triangles}, way)}, placed_});
+      Positions smooth = smoothed_placed(t, shaping.longest_along);
+      if (rise > 0) smooth.rowwise() += rise * *up_;
+      shapes.push_back({0, t, way, rise, false, {inflated({smooth, level_.rest.triangles}, way)}, placed_});
     }
     std::set<std::size_t> crossed;  // shapes that cross themselves
     for (const double contraction : contractions) {

@@ -11,6 +11,7 @@ struct DressingStart {
   double contraction = 0;           ///< of the body, of its area [1]
   double smoothing = 0;             ///< of the placed garment [1]
   double inflation = 0;             ///< of the smoothed garment, along its normals [m]
+  double rise = 0;                  ///< of the smoothed garment, against the loads [m]
   bool is_untangled = false;        ///< then, where it crossed itself or the body
   std::vector<Positions> garments;  ///< of every level, n×3 [m]
   Positions placed = {};            ///< the pieces of the coarsest level as they were placed, n×3 [m]
